@@ -1,0 +1,32 @@
+"""The rigid block on a spring, paper eqs (4)-(6)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from stickslip.quantities import check_quantities, quantity
+
+
+@dataclass(frozen=True)
+class SpringBlock:
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
+
+    Source: Campillo et al. 1996, eqs (4)-(6); the damping is an addition.
+    """
+
+    kind: ClassVar[str] = "spring-block"
+
+    mass: float = quantity("kg", "mass m", above=0)
+    stiffness: float = quantity("N/m", "stiffness K of the spring", above=0)
+    normal_force: float = quantity("N", "normal force S on the contact, compression positive", above=0)
+    damping: float = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    @property
+    def period(self) -> float:
+        """2 pi sqrt(m / K): the period of free oscillation, in s."""
+        return 2.0 * math.pi * math.sqrt(self.mass / self.stiffness)
+
+    def __post_init__(self) -> None:
+        check_quantities(self)

@@ -1,0 +1,37 @@
+"""Coulomb friction with a static and a dynamic coefficient."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.errors import InputError
+from stickslip.friction.contract import FrictionLaw
+from stickslip.quantities import quantity
+
+
+@dataclass(frozen=True)
+class Coulomb(FrictionLaw):
+    """|tau| <= static S at rest, |tau| = dynamic S in slip: the limit alpha -> infinity of the hyperbolic rate law."""
+
+    kind: ClassVar[str] = "coulomb"
+    source: ClassVar[str] = "Campillo et al. 1996, section 4 (limit of eq. 15)"
+
+    static: float = quantity("1", "friction coefficient at rest", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient in slip", at_least=0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.static < self.dynamic:
+            raise InputError(f"Coulomb: static must be at least dynamic, got static {self.static:g} < dynamic {self.dynamic:g}")
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.dynamic + 0.0 * v
+
+    @property
+    def static_excess(self) -> float:
+        return self.static - self.dynamic
+
+    def range(self) -> tuple[float, float]:
+        return self.dynamic, self.static

@@ -1,0 +1,28 @@
+"""Hyperbolic slip-rate law, paper eq. (15)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.friction.contract import FrictionLaw
+from stickslip.quantities import quantity
+
+
+@dataclass(frozen=True)
+class HyperbolicRate(FrictionLaw):
+    """mu(v) = dynamic + (static - dynamic) / (1 + alpha v): the paper's muD + (muS - muD) / (1 + alpha v)."""
+
+    kind: ClassVar[str] = "hyperbolic-rate"
+    source: ClassVar[str] = "Campillo et al. 1996, eq. (15)"
+
+    static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient muD at high slip rate", at_least=0)
+    alpha: float = quantity("s/m", "how fast friction changes with slip rate", at_least=0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.dynamic + (law.static - law.dynamic) / (1.0 + law.alpha * v)
+
+    def range(self) -> tuple[float, float]:
+        return min(self.static, self.dynamic), max(self.static, self.dynamic)

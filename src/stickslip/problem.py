@@ -1,0 +1,94 @@
+"""A problem: one body, one friction law, how they are loaded and where they start."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.bodies import Body, ElasticSlab
+from stickslip.errors import InputError, nearest
+from stickslip.friction import FrictionLaw
+from stickslip.quantities import check_quantities, quantity
+
+SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Everything that a run needs but its duration and its tolerance.
+
+    The slab's loads are stresses (Pa), the block's forces (N). Give either `initial_load` or `initial_excess`; the excess over
+    the static strength is kept exactly, and a load within 4 ulp of the strength counts as excess 0. With excess 0 the contact
+    stays stuck for pull_rate 0 and slips at 0+ for pull_rate > 0. An initial load beyond the strength slips at once; the left
+    limit at t = 0 is then the initial state at rest.
+
+    far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
+    `selection` names the rule that picks one slip rate where several solve the contact equation.
+    """
+
+    body: Body
+    friction: FrictionLaw
+    pull_rate: float = quantity("m/s", "rate V at which the driver is pulled", default=0.0)
+    initial_slip: float = quantity("m", "slip u0 at the start", default=0.0)
+    initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
+    initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
+    initial_state: float | None = field(default=None)
+    far_stress: float | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
+    far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
+    selection: str = "perfect-delay"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.body, Body):
+            raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
+        if not isinstance(self.friction, FrictionLaw):
+            raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
+        check_quantities(self)
+        if (self.initial_load is None) == (self.initial_excess is None):
+            raise InputError("Problem: give either initial_load or initial_excess, and not both")
+        if self.initial_state is not None:
+            raise InputError(f"Problem: initial_state: {type(self.friction).__name__} has no state variable")
+        if self.selection not in SELECTION_RULES:
+            raise InputError(f"Problem: selection rule '{self.selection}' is unknown; {nearest(self.selection, SELECTION_RULES)}")
+        self._check_far_side()
+
+    def _check_far_side(self) -> None:
+        free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
+        if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
+            raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
+
+    @property
+    def normal(self) -> float:
+        """S: normal stress (Pa) of the slab, normal force (N) of the block."""
+        return self.body.normal_stress if isinstance(self.body, ElasticSlab) else self.body.normal_force
+
+    @property
+    def load_unit(self) -> str:
+        """Unit of loads and tractions: Pa for the slab, N for the block."""
+        return "Pa" if isinstance(self.body, ElasticSlab) else "N"
+
+    @property
+    def law_slip(self) -> float:
+        """The slip (m) that the friction law sees at the start: u0, or its magnitude where the law counts the path."""
+        return abs(self.initial_slip) if self.friction.counts == "path" else self.initial_slip
+
+    @cached_property
+    def strength(self) -> float:
+        """Static strength S mu_static(u0) at the start (Pa or N): the reference from which loads are kept as differences."""
+        return self.normal * float(self.friction.static_coefficient(self.law_slip))
+
+    @cached_property
+    def excess(self) -> float:
+        """Initial load minus static strength (Pa or N), exact where it was given as such."""
+        if self.initial_excess is not None:
+            return self.initial_excess
+        assert self.initial_load is not None
+        difference = self.initial_load - self.strength
+        return 0.0 if abs(difference) <= 4 * np.spacing(self.strength) else difference
+
+    @property
+    def load(self) -> float:
+        """Shear load on the contact at t = 0 (Pa or N)."""
+        return self.initial_load if self.initial_load is not None else self.strength + self.excess

@@ -1,0 +1,74 @@
+"""Physical quantities as dataclass fields: unit, meaning and range stated once, where the field is declared.
+
+Laws and bodies check themselves from it, and scenarios, `stickslip new` and the documentation read it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import numbers
+from dataclasses import dataclass
+from typing import Any
+
+from stickslip.errors import InputError
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Unit (SI), meaning and allowed range of a number."""
+
+    unit: str
+    meaning: str
+    above: float | None = None
+    at_least: float | None = None
+    infinite: bool = False
+
+    def check(self, owner: str, name: str, value: Any) -> float:
+        """Return the value as a float, or raise InputError naming owner and field."""
+        where = f"{owner}: {name}"
+        if isinstance(value, bool) or not isinstance(value, numbers.Real):
+            raise InputError(f"{where} must be a number in {self.label}, got {value!r}")
+        number = float(value)
+        if math.isnan(number) or (math.isinf(number) and not self.infinite):
+            raise InputError(f"{where} must be finite, got {number}")
+        if self.above is not None and not number > self.above:
+            raise InputError(f"{where} must be greater than {self.above:g} {self.label}, got {number:g}")
+        if self.at_least is not None and not number >= self.at_least:
+            raise InputError(f"{where} must be at least {self.at_least:g} {self.label}, got {number:g}")
+        return number
+
+    @property
+    def label(self) -> str:
+        """The unit as it is shown to people: a pure number shows nothing."""
+        return "(a pure number)" if self.unit == "1" else self.unit
+
+
+def quantity(
+    unit: str,
+    meaning: str,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    infinite: bool = False,
+    default: Any = dataclasses.MISSING,
+) -> Any:
+    """Declare a dataclass field that holds a physical quantity in SI."""
+    return dataclasses.field(
+        default=default, metadata={"quantity": Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite)}
+    )
+
+
+def quantities_of(kind: type) -> dict[str, Quantity]:
+    """The quantities that a law or body declares, by field name."""
+    return {f.name: f.metadata["quantity"] for f in dataclasses.fields(kind) if "quantity" in f.metadata}
+
+
+def check_quantities(owner: Any) -> None:
+    """Check every declared quantity of a frozen dataclass and store it as a float; None stays where it is the default."""
+    optional = {f.name for f in dataclasses.fields(owner) if f.default is None}
+    for name, declared in quantities_of(type(owner)).items():
+        value = getattr(owner, name)
+        if value is None and name in optional:
+            continue
+        object.__setattr__(owner, name, declared.check(type(owner).__name__, name, value))
