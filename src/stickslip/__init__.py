@@ -1,10 +1,69 @@
-"""stickslip: dynamic frictional sliding of a rigid block and of an elastic slab."""
+"""stickslip: dynamic frictional sliding of a rigid block and of an elastic slab.
+
+    import stickslip as ss
+    slab = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=10e3, normal_stress=100e6)
+    law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+    problem = ss.Problem(slab, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+    solution = ss.simulate(problem, duration=20.0)
+
+SI units throughout; compression positive. Source: Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from stickslip import friction
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.errors import InputError
 from stickslip.problem import Problem
 
+if TYPE_CHECKING:
+    from stickslip.contact.uniqueness import uniqueness
+    from stickslip.evolution.simulate import simulate
+    from stickslip.evolution.solution import Solution
+    from stickslip.scenarios import load_scenario
+    from stickslip.storage import load, save
+
 __version__ = "0.1.0"
 
-__all__ = ["ElasticSlab", "InputError", "Problem", "SpringBlock", "friction"]
+YEAR = 31_557_600.0
+"""Julian year, s."""
+
+_LATER = {
+    "Solution": "stickslip.evolution.solution",
+    "load": "stickslip.storage",
+    "load_scenario": "stickslip.scenarios",
+    "save": "stickslip.storage",
+    "simulate": "stickslip.evolution.simulate",
+    "uniqueness": "stickslip.contact.uniqueness",
+}
+"""Names that are imported when first used: the compiler and the table libraries take their time to load."""
+
+__all__ = [
+    "YEAR",
+    "ElasticSlab",
+    "InputError",
+    "Problem",
+    "Solution",
+    "SpringBlock",
+    "friction",
+    "load",
+    "load_scenario",
+    "save",
+    "simulate",
+    "uniqueness",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LATER:
+        value = getattr(import_module(_LATER[name]), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'stickslip' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -10,7 +10,9 @@ motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
 Friction is kept as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
 released from the very edge of equilibrium keeps its digits. s >= 0 is the magnitude of the slip rate, q its integral, and
 x = x_start + chi q the slip that the law counts. Time inside a piece is t = t0 + A eta + B eta^2 / 2, dt/d eta = A + B eta: B is
-zero except where a piece ends or starts at a fold, where s goes as a square root of time and eta is that root.
+zero except where a piece ends or starts at a fold, where s goes as a square root of time and eta is that root. A contact that
+leaves rest exactly at its strength has no net force by definition, not by subtraction: k[10] = 0 says so, k[11] is the step
+from static to sliding friction.
 """
 
 from __future__ import annotations
@@ -274,7 +276,7 @@ class FormulaWriter:
         return _function("value", "c, dx, s, out", "_array, types.float64, types.float64, _array", body)
 
     def rate_jet(self) -> str:
-        """Massless contact. k holds Z, S, chi, A, B, dx, offset, M, K, s_0; L the load's series; s receives the rate's."""
+        """Massless contact. k is laid out by `stickslip.evolution.layout`; L holds the load's series; s receives the rate's."""
         body = ["Z = k[0]", "S = k[1]", "A = k[2] * k[3]", "B = k[2] * k[4]", "dx = k[5]", "offset = k[6]"]
         implicit = self.rate_dependent[self.formula]
         if implicit:
@@ -282,7 +284,7 @@ class FormulaWriter:
             body += [f"resistance = 1.0 / (Z + S * {self.slope(self.formula, RATE, 'd')})"]
         else:
             body += [*self.order_zero(), "resistance = 1.0 / Z"]
-            body += [f"s_0 = (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
+            body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
         body += ["s[0] = s_0"]
         for k in range(1, self.limit + 1):
             body.append(f"x_{k} = {1.0 / k!r} * (A * s_{k - 1}{f' + B * s_{k - 2}' if k > 1 else ''})")
@@ -302,7 +304,7 @@ class FormulaWriter:
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
         body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
-        body += [f"a_0 = ({force}) * inertia"]
+        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia"]
         for k in range(1, self.limit + 1):
             body.append(f"q_{k} = {1.0 / k!r} * (A * s_{k - 1}{f' + B * s_{k - 2}' if k > 1 else ''})")
             body.append(f"s_{k} = {1.0 / k!r} * (A * a_{k - 1}{f' + B * a_{k - 2}' if k > 1 else ''})")

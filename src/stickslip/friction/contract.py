@@ -67,6 +67,13 @@ class FrictionLaw(ABC):
         """How far static friction exceeds the formula at v = 0+: zero for a law that is continuous there."""
         return 0.0
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """Parameter and value beyond which Z v + S mu(v) falls somewhere, for Z = impedance (Pa s/m) and S = normal (Pa).
+
+        None for a law without a closed form of it. Several slip rates then solve the contact equation (paper, section 3).
+        """
+        return None
+
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0) -> NDArray[np.float64]:
         """mu at slip u (m) and slip rate of magnitude v (m/s, >= 0; 0 means the limit 0+). Broadcasts; no unit."""
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))

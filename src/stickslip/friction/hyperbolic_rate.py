@@ -26,3 +26,8 @@ class HyperbolicRate(FrictionLaw):
 
     def range(self) -> tuple[float, float]:
         return min(self.static, self.dynamic), max(self.static, self.dynamic)
+
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """alpha_c = Z / (S (muS - muD)), paper section 3; a law that strengthens has none."""
+        fall = normal * (self.static - self.dynamic)
+        return ("alpha", impedance / fall) if fall > 0.0 else None

@@ -1,0 +1,85 @@
+"""The command `stickslip`: one file a command; errors become one line and an exit code."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+from typer.exceptions import TyperException
+
+from stickslip.cli.check import check
+from stickslip.cli.new import new
+from stickslip.cli.paper import paper
+from stickslip.cli.run import run
+from stickslip.errors import InputError
+
+_HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
+
+What happens at a frictional contact once inertia and waves matter: how it
+slips, how it stops, and whether the answer is even unique.
+
+\b
+  stickslip new --list             scenarios that come with the package
+  stickslip new slab > mine.toml   a commented scenario to start from
+  stickslip check mine.toml        what it means, what to know before a run
+  stickslip run mine.toml          run it; --figure mine.png draws it
+  stickslip paper --out paper      the source paper, claim by claim
+"""
+
+app = typer.Typer(
+    name="stickslip",
+    help=_HELP,
+    invoke_without_command=True,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (run, check, new, paper):
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from stickslip import __version__
+
+        typer.echo(f"stickslip {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def start(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and stop.", callback=_print_version, is_eager=True)
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        context.get_help()
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point. Exit codes: 0 done, 1 the run failed, 2 the input cannot be used, 130 interrupted."""
+    sys.exit(_code(arguments))
+
+
+def _code(arguments: Sequence[str] | None) -> int:
+    try:
+        code = app(arguments, prog_name="stickslip", standalone_mode=False)
+    except InputError as error:
+        return _fail(str(error))
+    except TyperException as error:
+        return _fail(error.format_message())
+    except OSError as error:
+        return _fail(f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error))
+    except (KeyboardInterrupt, typer.Abort):
+        code = 130
+    if code == 130:
+        return _fail("interrupted", code=130)
+    return code if isinstance(code, int) else 0
+
+
+def _fail(message: str, code: int = 2) -> int:
+    typer.echo(f"stickslip: {' '.join(message.split())}", err=True)
+    return code

@@ -1,0 +1,38 @@
+"""Names that the shell completes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+STARTERS = ("slab", "block")
+
+
+def complete_scenario(incomplete: str) -> list[str]:
+    """Bundled scenarios, and the TOML files and folders that match what is typed."""
+    from stickslip.scenarios import library
+
+    typed = Path(incomplete)
+    folder = typed if incomplete.endswith("/") else typed.parent
+    files = [str(path) + ("/" if path.is_dir() else "") for path in _listing(folder) if path.is_dir() or path.suffix == ".toml"]
+    return [name for name in [*library.names(), *sorted(files)] if name.startswith(incomplete)]
+
+
+def _listing(folder: Path) -> list[Path]:
+    try:
+        return [path for path in folder.iterdir() if not path.name.startswith(".")]
+    except OSError:
+        return []
+
+
+def complete_template(incomplete: str) -> list[str]:
+    """What `stickslip new` knows."""
+    from stickslip.scenarios import library
+
+    return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
+
+
+def complete_rule(incomplete: str) -> list[str]:
+    """Selection rules."""
+    from stickslip.problem import SELECTION_RULES
+
+    return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]

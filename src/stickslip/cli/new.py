@@ -1,0 +1,55 @@
+"""`stickslip new`: a commented scenario to start from."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from stickslip.cli.names import complete_template
+from stickslip.errors import InputError
+
+
+def new(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help="slab, block, or the name of a bundled scenario.", autocompletion=complete_template, show_default=False
+        ),
+    ] = None,
+    show_list: Annotated[bool, typer.Option("--list", "-l", help="List the names, with what each shows.")] = False,
+) -> None:
+    """Print a commented scenario to start from.
+
+    "slab" and "block" are starters that explain every key, its unit and its
+    range; the others are runs of the paper. Redirect the text into a file,
+    edit it, and hand it to `stickslip check` and `stickslip run`.
+
+    \b
+      stickslip new slab > mine.toml
+      stickslip new fig6-slab
+      stickslip new --list
+    """
+    if show_list:
+        _print_list()
+    elif name is None:
+        raise InputError("new: which scenario? `stickslip new --list` lists them")
+    else:
+        from stickslip.scenarios.templates import template
+
+        typer.echo(template(name), nl=False)
+
+
+def _print_list() -> None:
+    import tomllib
+
+    from stickslip.cli.show import console, table
+    from stickslip.scenarios import library
+
+    listing = table("name", "what it shows")
+    listing.add_row("slab", "starter: an elastic slab, every key explained")
+    listing.add_row("block", "starter: a block on a spring, every key explained")
+    for name in library.names():
+        content = tomllib.loads(library.text(name))
+        listing.add_row(name, f"{content['title']}. {content['description']}")
+    console().print(listing)

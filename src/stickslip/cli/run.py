@@ -1,0 +1,144 @@
+"""`stickslip run`: simulate a scenario and say what happened."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stickslip.cli.names import complete_rule, complete_scenario
+from stickslip.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from rich.console import Console
+
+    from stickslip.evolution.solution import Solution
+    from stickslip.scenarios.scenario import Scenario
+
+FIRST = 12
+"""Rows of a table that are shown."""
+
+
+def run(
+    scenario: Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Save the whole solution (netCDF, .nc).", show_default=False)
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
+    ] = None,
+    duration: Annotated[
+        str | None, typer.Option(help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
+    ] = None,
+    rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    selection: Annotated[
+        str | None,
+        typer.Option(
+            help="Selection rule instead: perfect-delay, maxwell, minimal, maximal.",
+            autocompletion=complete_rule,
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Simulate a scenario and say what happened: slip events, shocks, and what ended the run.
+
+    Times are in s, slips in m, slip rates in m/s, tractions in Pa (slab) or
+    N (block). Existing files are replaced, once the new ones are complete.
+
+    \b
+      stickslip run fig6-slab
+      stickslip run mine.toml --out mine.nc --figure mine.png
+      stickslip run fig6-slab --duration "480 year" --selection maxwell
+
+    Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
+    """
+    from stickslip.cli.files import check_target
+
+    for path, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", (".png", ".pdf", ".svg"))):
+        if path is not None:
+            check_target(path, option, suffixes)
+    chosen = _adjusted(scenario, duration, rtol, selection)
+    solution = _simulate(chosen)
+    _show(chosen, solution)
+    for line in _save(solution, out, figure):
+        typer.echo(line)
+    if solution.status.name == "interrupted":
+        raise KeyboardInterrupt
+    raise typer.Exit(0 if solution.status.ok else 1)
+
+
+def _adjusted(name: str, duration: str | None, rtol: float | None, selection: str | None) -> Scenario:
+    """The scenario with what the options change. Raises InputError."""
+    from stickslip.problem import SELECTION_RULES
+    from stickslip.scenarios.scenario import load_scenario
+    from stickslip.scenarios.schema import check_rtol, read_duration
+
+    loaded = load_scenario(name)
+    changes: dict[str, Any] = {}
+    if duration is not None:
+        changes["duration"] = read_duration(duration, "--duration")
+    if rtol is not None:
+        changes["rtol"] = check_rtol(rtol, "--rtol")
+    if selection is not None:
+        if selection not in SELECTION_RULES:
+            raise InputError(f"--selection '{selection}' is unknown; {nearest(selection, SELECTION_RULES)}")
+        changes["problem"] = replace(loaded.problem, selection=selection)
+    return replace(loaded, **changes)
+
+
+def _simulate(scenario: Scenario) -> Solution:
+    from stickslip.cli.show import number, progress_to
+
+    with progress_to(f"{scenario.name}:") as report:
+
+        def progress(time: float, pieces: int, doing: str) -> None:
+            report(f"{number(time, 6)} of {number(scenario.duration, 6)} s, {pieces} pieces, {doing}")
+
+        return scenario.run(progress)
+
+
+def _show(scenario: Scenario, solution: Solution) -> None:
+    from stickslip.cli.show import clean, console, with_unit
+
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{solution.status.name}: {solution.status.message}")
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    screen.print(f"selection rule {solution.selection_note}\n")
+    force = scenario.problem.load_unit
+    units = {"start": "s", "end": "s", "slip": "m", "peak_rate": "m/s", "peak_time": "s", "time": "s"}
+    units |= {"rate_before": "m/s", "rate_after": "m/s"}
+    units |= dict.fromkeys(("traction_drop", "static_drop", "traction_before", "traction_after"), force)
+    _print(screen, "slip event", solution.events, units)
+    _print(screen, "shock", solution.shocks, units)
+
+
+def _print(screen: Console, what: str, rows: DataFrame, units: dict[str, str]) -> None:
+    from stickslip.cli.show import number, table
+
+    if rows.empty:
+        screen.print(f"no {what}\n")
+        return
+    shown = table(*(f"{name}\n{units.get(name, '')}".rstrip() for name in rows.columns), numbers=True)
+    for row in rows.head(FIRST).itertuples(index=False):
+        shown.add_row(*(number(float(value)) if isinstance(value, float) else str(value) for value in row))
+    more = f", the first {FIRST} of them" if len(rows) > FIRST else ""
+    screen.print(f"{len(rows)} {what}{'s' if len(rows) > 1 else ''}{more}")
+    screen.print(shown)
+    screen.print()
+
+
+def _save(solution: Solution, out: Path | None, figure: Path | None) -> list[str]:
+    from stickslip.cli.files import write_atomically
+
+    written = []
+    if out is not None:
+        solution.save(out)
+        written.append(f"written: {out}")
+    if figure is not None:
+        write_atomically(figure, solution.plot().savefig)
+        written.append(f"written: {figure}")
+    return written

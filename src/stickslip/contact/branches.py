@@ -1,0 +1,142 @@
+"""Branches and folds: where the resistance g(s) = Z s + S mu(u, s) rises, and every slip rate that meets a given load.
+
+Source: Campillo et al. 1996, section 3 and Fig. 3. A solution of g(s) = load is stable where g rises.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.contact.resistance import Resistance, resistance
+from stickslip.errors import InputError
+from stickslip.problem import Problem
+
+_POINTS_PER_DECADE = 64
+_BELOW, _ABOVE = 1e-8, 1e4
+"""How far the search for folds reaches beyond the slowest and the fastest scale of the contact."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A maximal interval of slip rates (m/s) on which g rises, and the excess over static strength (Pa) at its two ends.
+
+    The last branch ends at infinity. The first may start at rate 0, with excess_from = g(0+) - S mu_static; every other finite
+    end is a fold.
+    """
+
+    rate_from: float
+    rate_to: float
+    excess_from: float
+    excess_to: float
+
+
+def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
+    """The stable branches of a slab's contact equation at a law slip (m; default: the start), slowest first.
+
+    Raises InputError for a block, and for a law whose friction never stops falling faster than Z s rises.
+    """
+    return branches_of(resistance(problem, law_slip))
+
+
+def branches_of(g: Resistance) -> tuple[Branch, ...]:
+    """The stable branches of a resistance, slowest first; folds are polished to rounding."""
+    if not g.law.depends_on_rate:
+        return (Branch(0.0, math.inf, g.start, math.inf),)
+    rates = _search_grid(g)
+    rising = g.slope(rates) > 0.0
+    rising[0] |= bool(g.slope(0.0) == 0.0 and rising[1])
+    if not rising[-1]:
+        raise InputError(f"{type(g.law).__name__}: friction still falls faster than Z v rises at {rates[-1]:.3g} m/s")
+    turns = np.flatnonzero(rising[1:] != rising[:-1])
+    folds = [_fold(g, rates[i], rates[i + 1]) for i in turns]
+    ends = [*([0.0] if rising[0] else []), *folds, math.inf]
+    return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
+
+
+def _branch(g: Resistance, low: float, high: float) -> Branch:
+    return Branch(low, high, float(g.excess(low)), math.inf if math.isinf(high) else float(g.excess(high)))
+
+
+def _search_grid(g: Resistance) -> NDArray[np.float64]:
+    """0 and slip rates in geometric progression over every scale, refined where g' nearly touches zero between two of them."""
+    low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
+    count = math.ceil((high - low) * _POINTS_PER_DECADE)
+    rates = np.concatenate(([0.0], np.logspace(low, high, count)))
+    for _ in range(3):
+        slope = g.slope(rates)
+        size = np.abs(slope)
+        middle = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
+        same = np.sign(slope)
+        near = np.flatnonzero(middle & (same[1:-1] == same[:-2]) & (same[1:-1] == same[2:])) + 1
+        extra = [np.linspace(rates[i - 1], rates[i + 1], 17) for i in near]
+        rates = np.unique(np.concatenate([rates, *extra]))
+    return rates
+
+
+def _fold(g: Resistance, low: float, high: float) -> float:
+    """The rate between low and high at which g' changes sign, to rounding: sections of 64, so that numpy does the work."""
+    first = bool(g.slope(low) > 0.0)
+    for _ in range(40):
+        rates = np.linspace(low, high, 65)
+        other = np.flatnonzero((g.slope(rates[1:]) > 0.0) != first)
+        k = int(other[0]) if other.size else 63
+        low, high = float(rates[k]), float(rates[k + 1])
+        if high - low <= 2.0 * np.spacing(high):
+            break
+    return high if not first else low
+
+
+def rate_on(g: Resistance, branch: Branch, excess: float) -> float:
+    """The slip rate (m/s) on a branch at which the resistance exceeds the static strength by `excess` (Pa), to rounding.
+
+    Raises ValueError where the branch does not exist at that excess.
+    """
+    if not branch.excess_from <= excess <= branch.excess_to:
+        raise ValueError(f"branch from {branch.excess_from:g} to {branch.excess_to:g} Pa has no slip rate at {excess:g} Pa")
+    high = branch.rate_to if math.isfinite(branch.rate_to) else max(branch.rate_from, g.fastest(excess))
+    return _root(g, branch.rate_from, high, excess)
+
+
+def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Every slip rate s >= 0 (m/s), stick (0) included, that meets an excess (Pa), ascending; and whether each is stable.
+
+    A fold counts once, and as not stable; stick is stable as long as the static strength holds (excess <= 0).
+    """
+    found = {0.0: True} if excess <= 0.0 else {}
+    rate, level = 0.0, g.start
+    for branch in stable:
+        if branch.excess_from < excess < level and branch.rate_from > rate:
+            found.setdefault(_root(g, rate, branch.rate_from, excess), False)
+        if branch.excess_from < excess < branch.excess_to:
+            found.setdefault(rate_on(g, branch, excess), True)
+        for end, height in ((branch.rate_from, branch.excess_from), (branch.rate_to, branch.excess_to)):
+            if height == excess:
+                found.setdefault(end, False)
+        rate, level = branch.rate_to, branch.excess_to
+    rates = np.array(sorted(found))
+    return rates, np.array([found[rate] for rate in rates.tolist()], bool)
+
+
+def _root(g: Resistance, low: float, high: float, excess: float) -> float:
+    """Newton's method in a bracket on which g is monotone; it bisects where Newton leaves the bracket or hardly gains."""
+    ends = (float(g.excess(low)) - excess, float(g.excess(high)) - excess)
+    for end, miss in zip((low, high), ends, strict=True):
+        if miss == 0.0:
+            return end
+    rising, rate, last = ends[1] > 0.0, 0.5 * (low + high), high - low
+    for _ in range(200):
+        miss, slope = float(g.excess(rate)) - excess, float(g.slope(rate))
+        if miss == 0.0:
+            break
+        low, high = (low, rate) if (miss > 0.0) == rising else (rate, high)
+        step = -miss / slope if slope else math.inf
+        if not low < rate + step < high or abs(step) > 0.5 * last:
+            step = 0.5 * (low + high) - rate
+        last, rate = abs(step), rate + step
+        if last <= np.spacing(rate):
+            break
+    return rate

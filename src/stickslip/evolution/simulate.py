@@ -1,0 +1,68 @@
+"""Run a problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from stickslip.errors import InputError
+from stickslip.evolution import layout as at
+from stickslip.evolution.engine import advance
+from stickslip.evolution.history import History
+from stickslip.evolution.setup import prepare, row_time, start_state
+from stickslip.evolution.solution import Solution
+from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
+from stickslip.problem import Problem
+
+STEPS_PER_CALL = 200_000
+FIRST_CAPACITY = 512
+OUT_OF_BUDGET = -1
+
+Progress = Callable[[float, int, str], None]
+"""Called now and then with the simulated time (s), the number of pieces so far, and what the contact does."""
+
+
+def simulate(
+    problem: Problem, duration: float, rtol: float = 1e-10, *, progress: Progress | None = None, max_pieces: int = 4_000_000
+) -> Solution:
+    """Run a problem from t = 0 to `duration` (s) with relative tolerance `rtol` (1e-15 to 1e-2).
+
+    Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time.
+    Raises InputError for a duration that is not positive and finite, or an rtol out of range.
+    """
+    if not (math.isfinite(duration) and duration > 0):
+        raise InputError(f"simulate: duration must be a positive time in s, got {duration!r}")
+    if not 1e-15 <= rtol <= 1e-2:
+        raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
+    setup = prepare(problem, rtol)
+    state, count = start_state(problem)
+    work, store = at.new_work(), at.new_store(FIRST_CAPACITY)
+    last_row, last_theta = split_time(duration, row_time(problem))
+    try:
+        while True:
+            code = advance(setup, state, count, work, store, last_row, last_theta, STEPS_PER_CALL)
+            length = int(count[at.LENGTH])
+            if progress is not None:
+                time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
+                progress(float(time), length, "slips" if count[at.MODE] else "stuck")
+            if code == at.FULL:
+                if length >= max_pieces:
+                    code = FULL_HISTORY
+                    break
+                store = at.resized(store, length, min(4 * len(store.row), max_pieces + 16))
+            elif code != OUT_OF_BUDGET:
+                break
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    length = int(count[at.LENGTH])
+    history = History(at.trimmed(store, length), problem, row_time(problem), float(setup.par[at.RAMP]), duration)
+    return Solution(problem, duration, rtol, STATUSES[code], history)
+
+
+def split_time(time: float, row: float) -> tuple[int, float]:
+    """A time as (whole rows, offset in the row), the offset in (0, row]."""
+    rows = math.floor(time / row)
+    offset = time - rows * row
+    if offset <= 0.0 and rows > 0:
+        return rows - 1, row
+    return rows, min(offset, row)

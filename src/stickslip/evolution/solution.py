@@ -1,0 +1,168 @@
+"""What a run gives: histories to evaluate, tables, energy, and what ended it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.errors import InputError, nearest
+from stickslip.evolution.history import History, Moments, Side
+from stickslip.evolution.status import Status
+from stickslip.evolution.tables import default_event_rate, events_table, shocks_table
+from stickslip.problem import Problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+CURVES = ("slip", "slip_rate", "traction", "load")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Solution:
+    """A finished run. Times in s from the start of the run; arrays in, arrays of the same shape out.
+
+    `side` ("left" or "right") picks the limit at a shock; the left limit at t = 0 is the initial state at rest.
+    Times outside the run raise InputError. Tables are built when they are asked for.
+    """
+
+    problem: Problem
+    duration: float
+    rtol: float
+    status: Status
+    history: History
+
+    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
+        time = np.asarray(t, float)
+        return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
+
+    def slip(self, t: ArrayLike) -> Floats:
+        """Slip u (m) at times t (s). Absolute: it starts at the initial slip."""
+        at, shape = self._at(t, "right")
+        return (self.problem.initial_slip + self.history.slipped(at)).reshape(shape)
+
+    def slip_rate(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Slip rate v (m/s) at times t (s)."""
+        at, shape = self._at(t, side)
+        return self.history.rate(at).reshape(shape)
+
+    def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Friction on the contact tau (slab: Pa, block: N) at times t (s), positive where it opposes forward slip."""
+        at, shape = self._at(t, side)
+        return (self.problem.strength + self.history.friction(at)).reshape(shape)
+
+    def load(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Load at times t (s): beta of eqs (12)-(13) for the slab (Pa), the spring's force for the block (N)."""
+        at, shape = self._at(t, side)
+        return (self.problem.strength + self.history.excess(at)).reshape(shape)
+
+    @cached_property
+    def events(self) -> pd.DataFrame:
+        """Slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
+        return self.catalogue()
+
+    def catalogue(self, event_rate: float | None = None) -> pd.DataFrame:
+        """Slip events: start, end (s; NaN if unfinished), slip (m), peak_rate (m/s), peak_time (s), traction_drop and static_drop
+        (Pa or N: friction before minus after, and the stiffness times the slip), pulses (maxima of |v| separated by minima
+        below half the lower one).
+
+        An event is a maximal interval with |v| above event_rate (m/s; default 1e-6 S (range of mu) / Z, for the block
+        / sqrt(K m); 0 takes every slip).
+        """
+        return events_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+
+    @cached_property
+    def shocks(self) -> pd.DataFrame:
+        """Jumps of the slip rate: time (s), cause (start, fold, echo, loading), rate_before and rate_after (m/s),
+        traction_before and traction_after (Pa)."""
+        return shocks_table(self.history)
+
+    @cached_property
+    def breaks(self) -> Floats:
+        """Times (s) at which pieces of the history meet, 0 and the end included."""
+        return np.append(self.history.start, self.history.end[-1:])
+
+    def energy(self, t: ArrayLike) -> xr.Dataset:
+        """Energies at times t (s), as differences from the start: see `stickslip.observables.energy`."""
+        from stickslip.observables.energy import energy
+
+        return energy(self, t)
+
+    def curve(
+        self, name: Literal["slip", "slip_rate", "traction", "load"], start: float = 0.0, end: float | None = None, points: int = 2000
+    ) -> tuple[Floats, Floats]:
+        """Times (s) and values for drawing: dense where the solution varies, with both limits at every shock."""
+        if name not in CURVES:
+            raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, CURVES)}")
+        end = self.history.end[-1] if end is None else end
+        breaks = self.breaks[(self.breaks > start) & (self.breaks < end)]
+        inside = np.concatenate([np.linspace(a, b, 8)[1:-1] for a, b in zip(breaks[:-1], breaks[1:], strict=True)]) if len(
+            breaks
+        ) in range(2, points) else np.empty(0)
+        right = np.unique(np.concatenate([np.linspace(start, end, points), inside, breaks]))
+        limits = breaks if len(breaks) < points else np.asarray(self.shocks.time)
+        time = np.concatenate([right, limits])
+        order = np.lexsort((np.concatenate([np.ones(len(right)), np.zeros(len(limits))]), time))
+        if name == "slip":
+            return time[order], self.slip(time)[order]
+        evaluate = getattr(self, name)
+        values = np.concatenate([evaluate(right), evaluate(limits, side="left")])
+        return time[order], values[order]
+
+    def dataset(self, t: ArrayLike) -> xr.Dataset:
+        """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance."""
+        from stickslip.storage import solution_dataset
+
+        return solution_dataset(self, np.atleast_1d(np.asarray(t, float)))
+
+    def save(self, path: str | Path) -> Path:
+        """Write everything to a netCDF file, from which `stickslip.load` gives this solution back bit for bit."""
+        from stickslip.storage import save
+
+        return save(self, path)
+
+    def plot(self, start: float = 0.0, end: float | None = None) -> Figure:
+        """Slip, slip rate, traction and load against time."""
+        from stickslip.figures.run import plot_run
+
+        return plot_run(self, start, end)
+
+    def _lines(self) -> list[tuple[str, str]]:
+        problem, events = self.problem, self.events
+        largest = f", largest slip {events.slip.max():.6g} m, peak rate {events.peak_rate.max():.6g} m/s" if len(events) else ""
+        return [
+            ("body", repr(problem.body)),
+            ("friction", repr(problem.friction)),
+            ("loading", f"pull rate {problem.pull_rate:.6g} m/s, initial load {problem.load:.9g} {problem.load_unit}"),
+            ("run", f"{self.duration:.6g} s, rtol {self.rtol:g}, {len(self.history)} pieces"),
+            ("status", str(self.status)),
+            ("events", f"{len(events)}{largest}"),
+            ("shocks", f"{len(self.shocks)}"),
+            ("selection", self.selection_note),
+        ]
+
+    @cached_property
+    def selection_note(self) -> str:
+        """Whether the answer rests on the selection rule."""
+        from stickslip.contact.uniqueness import uniqueness
+
+        regime = uniqueness(self.problem).regime
+        if regime == "irregular":
+            return f"{self.problem.selection}: the contact equation has several solutions, this run rests on the rule"
+        return f"{self.problem.selection}: without effect, the solution is unique"
+
+    def __repr__(self) -> str:
+        return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        rows = "".join(f"<tr><th style='text-align:left'>{name}</th><td>{escape(text)}</td></tr>" for name, text in self._lines())
+        return f"<table><caption>stickslip Solution</caption>{rows}</table>"

@@ -1,0 +1,38 @@
+"""What ended a run, and what to try if it failed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, STORM
+
+
+@dataclass(frozen=True)
+class Status:
+    """Name, message and whether the run reached its end."""
+
+    name: str
+    message: str
+    ok: bool
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.message}"
+
+
+FULL_HISTORY = -2
+INTERRUPTED = -3
+
+STATUSES = {
+    FINISHED: Status("finished", "the run reached its duration", True),
+    LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
+    STORM: Status(
+        "event storm",
+        "events follow each other without any time between them: the run stops here; try a contact_mass, or another law",
+        False,
+    ),
+    FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
+    FULL_HISTORY: Status(
+        "too many pieces", "the history reached its limit of pieces: shorten the duration, loosen rtol or raise max_pieces", False
+    ),
+    INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),
+}

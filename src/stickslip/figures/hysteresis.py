@@ -1,0 +1,105 @@
+"""Figure 4: the rule of perfect delay, walked by an actual run whose load rises and then falls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.figures import resistance
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
+
+if TYPE_CHECKING:
+    from stickslip.evolution import Solution
+
+CASE = "loop"
+
+
+def data(solution: Solution) -> xr.Dataset:
+    """The run in the plane of slip rate and load, and in time; with the set K that it walks. Its load must rise, then fall."""
+    time, rate = solution.curve("slip_rate")
+    _, load = solution.curve("load")
+    turn = int(np.argmax(load))
+    background = resistance.data({CASE: solution.problem}, float(rate.max()))
+    run = {
+        "run_time": quantity("run_time", time, "time", "t", "s"),
+        "run_slip_rate": quantity("run_time", rate, "slip rate", "v", "m/s"),
+        "run_load": quantity("run_time", load, "load", r"\beta", "Pa"),
+        "run_turn": xr.Variable((), turn, {"long_name": "index at which the load turns from rising to falling"}),
+    }
+    return background.assign(run).assign_attrs(title="The rule of perfect delay")
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """The loop on the left, the same run against time on the right."""
+    figure, axes = panels(2, 2, (7.2, 3.9), width_ratios=(1.25, 1))
+    grid = axes[0, 0].get_gridspec()
+    axes[0, 0].remove()
+    axes[1, 0].remove()
+    loop = figure.add_subplot(grid[:, 0])
+    _draw_loop(loop, dataset)
+    _draw_time(axes[0, 1], axes[1, 1], dataset)
+    letter(loop, "a   Set K and the paths walked")
+    letter(axes[0, 1], "b   The run")
+    return figure
+
+
+def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
+    turn = int(dataset["run_turn"])
+    return (slice(None, turn + 1), VERMILLION, "load rises: ODABE"), (slice(turn, None), BLUE, "load falls: EBCDO")
+
+
+def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
+    resistance.draw_set(axes, dataset, CASE, quiet=True)
+    rate, load = shown(dataset["run_slip_rate"]), shown(dataset["run_load"])
+    shift = 0.012 * rate.max()  # the two paths share the branches: drawn side by side, not on top of each other
+    for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
+        x, y = rate[part] + side * shift, load[part] - side * 0.35
+        axes.plot(x, y, color=colour, linewidth=1.8, label=text)
+        _arrows(axes, x, y, colour)
+    resistance.draw_points(axes, dataset, CASE)
+    axes.set_ylim(40, 90)
+    axes.set_ylabel(label(dataset["run_load"]))
+    axes.legend(loc="lower right")
+
+
+def _arrows(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+    """Arrow heads in the middle of the jump and halfway along the slipping and the sticking stretch."""
+    jump = int(np.argmax(np.abs(np.diff(x))))
+    for first, last in ((jump, jump + 1), *_middles(jump, x.size)):
+        axes.annotate(
+            "",
+            _between(x, y, first, last, 0.6),
+            _between(x, y, first, last, 0.4),
+            arrowprops={"arrowstyle": "-|>", "color": colour},
+        )
+
+
+def _middles(jump: int, size: int) -> list[tuple[int, int]]:
+    halves = [(0, jump), (jump + 1, size - 1)]
+    return [(low + 2 * (high - low) // 5, low + 3 * (high - low) // 5) for low, high in halves if high - low > 10]
+
+
+def _between(x: NDArray[np.float64], y: NDArray[np.float64], first: int, last: int, share: float) -> tuple[float, float]:
+    return float(x[first] + share * (x[last] - x[first])), float(y[first] + share * (y[last] - y[first]))
+
+
+def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
+    time = shown(dataset["run_time"])
+    for axes, name in ((top, "run_load"), (bottom, "run_slip_rate")):
+        for part, colour, _ in _parts(dataset):
+            axes.plot(time[part], shown(dataset[name])[part], color=colour)
+        axes.set(ylabel=label(dataset[name]), xlim=(0, time[-1]))
+    for point in "AC":
+        level = dataset[f"{CASE}_point_{point}"].values[1] / 1e6
+        top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+        top.annotate(f"fold {point}, {level:.2f} MPa", (0, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
+    zero_line(bottom)
+    top.tick_params(labelbottom=False)
+    bottom.set_xlabel(label(dataset["run_time"]))
+    bottom.sharex(top)

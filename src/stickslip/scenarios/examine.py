@@ -1,0 +1,219 @@
+"""What a user should know about a scenario before trusting a run: its numbers, its start, its stability, its uniqueness."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.friction import FrictionLaw
+from stickslip.problem import Problem
+from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.schema import quantities_in
+
+LARGE_STRAIN = 0.01
+"""Shear strain beyond which linear elasticity is doubtful."""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number with its unit and what it is."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Examination:
+    """What `examine` found: numbers as given, numbers that follow, sentences, warnings."""
+
+    given: dict[str, list[Fact]]
+    derived: list[Fact]
+    start: str
+    stability: str
+    uniqueness: Uniqueness
+    warnings: list[str]
+
+
+def examine(scenario: Scenario) -> Examination:
+    """Examine a scenario without running it. Raises InputError like `contact.uniqueness`."""
+    problem = scenario.problem
+    contact = uniqueness(problem)
+    return Examination(
+        given=_given(scenario),
+        derived=_derived(problem),
+        start=_start(problem),
+        stability=_stability(problem),
+        uniqueness=contact,
+        warnings=_warnings(scenario, contact),
+    )
+
+
+def _given(scenario: Scenario) -> dict[str, list[Fact]]:
+    problem = scenario.problem
+    body, law = type(problem.body), type(problem.friction)
+    initial = {f.name.removeprefix("initial_"): getattr(problem, f.name) for f in fields(problem) if f.name.startswith("initial_")}
+    holders = {
+        "body": (body, vars(problem.body)),
+        "friction": (law, vars(problem.friction)),
+        "loading": (body, vars(problem)),
+        "initial": (body, initial),
+        "run": (body, {"duration": scenario.duration, "rtol": scenario.rtol}),
+    }
+    return {
+        table: [
+            Fact(name, values[name], declared.unit, declared.meaning)
+            for name, (declared, _) in quantities_in(table, kind).items()
+            if values[name] is not None
+        ]
+        for table, (kind, values) in holders.items()
+    }
+
+
+def _derived(problem: Problem) -> list[Fact]:
+    body, unit = problem.body, problem.load_unit
+    start = [
+        Fact("strength", problem.strength, unit, "static strength S mu at the start"),
+        Fact("load", problem.load, unit, "shear load on the contact at the start"),
+        Fact("excess", problem.excess, unit, "load minus static strength"),
+    ]
+    if isinstance(body, SpringBlock):
+        return [
+            Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
+            Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "what a slip rate costs: plays Z's part"),
+            Fact("K V", body.stiffness * problem.pull_rate, "N/s", "rate of loading while stuck"),
+            *start,
+        ]
+    return [
+        Fact("Z", body.impedance, "Pa s/m", "impedance rho c"),
+        Fact("G", body.shear_modulus, "Pa", "shear modulus rho c^2"),
+        Fact("R", body.two_way_time, "s", "two-way travel time 2 h/c"),
+        Fact("G/h", body.stiffness, "Pa/m", "load lost per metre of slow slip"),
+        Fact("r", body.reflection, "1", "reflection at the driver: -1 rigid, 0 matched, +1 dead load"),
+        Fact("G V/h", body.stiffness * problem.pull_rate, "Pa/s", "rate of loading at first"),
+        *start,
+    ]
+
+
+def loading_rate(problem: Problem) -> float:
+    """How fast the load of a stuck contact grows (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
+    body = problem.body
+    if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
+        return problem.far_stress_rate
+    return body.stiffness * problem.pull_rate
+
+
+def _start(problem: Problem) -> str:
+    excess, unit, pulled = problem.excess, problem.load_unit, problem.pull_rate > 0
+    if problem.load < -problem.strength:
+        return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
+    if excess > 0:
+        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}"
+    if excess == 0:
+        return (
+            "slips at 0+: the load is the static strength and grows" if pulled else "stays stuck: the load is the static strength"
+        )
+    wait = _wait(problem)
+    when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
+    return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
+
+
+def _wait(problem: Problem) -> float:
+    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab."""
+    rate = loading_rate(problem)
+    return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
+
+
+def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:
+    """Derivatives of mu with respect to slip (1/m) and slip rate (s/m) at a law slip (m) and a rate (m/s; 0 means 0+).
+
+    By a complex step, which loses no digits: a law's formula is analytic.
+    """
+    piece = law.pieces[int(np.searchsorted(np.asarray(law.knots), slip, side="right"))]
+    step = 1e-100
+    by_slip = np.imag(piece(law, np.complex128(complex(slip, step)), np.complex128(rate)))
+    by_rate = np.imag(piece(law, np.complex128(slip), np.complex128(complex(rate, step))))
+    return float(by_slip) / step, float(by_rate) / step
+
+
+def _stability(problem: Problem) -> str:
+    """Static stability at the start and how fast a small disturbance grows."""
+    body = problem.body
+    by_slip, by_rate = slopes(problem.friction, problem.law_slip)
+    if isinstance(body, SpringBlock):
+        return _block_stability(body, by_slip, by_rate)
+    number = -problem.normal * by_slip / body.stiffness
+    if by_slip >= 0:
+        return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
+    if not math.isinf(body.driver_impedance):
+        return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
+    if number < 1:
+        return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
+    return f"statically unstable: alpha_w h = {number:.6g} > 1{_slab_growth(number, body)}"
+
+
+def _slab_growth(number: float, body: ElasticSlab) -> str:
+    """Growth rate lambda: lambda coth(lambda h/c) = c alpha_w, by Newton's method on y coth y = alpha_w h."""
+    y = number
+    for _ in range(60):
+        coth = 1.0 / math.tanh(y)
+        y -= (y * coth - number) / (coth + y * (1.0 - coth * coth))
+    return f"; a small disturbance grows at {2.0 * y / body.two_way_time:.6g} /s"
+
+
+def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
+    spring, dash = body.stiffness + body.normal_force * by_slip, body.damping + body.normal_force * by_rate
+    fastest = max((-dash + sign * cmath.sqrt(dash * dash - 4 * body.mass * spring) for sign in (1, -1)), key=lambda root: root.real)
+    growth = fastest / (2 * body.mass)
+    values = f"K + S mu'(u) = {spring:.6g} N/m, damping + S mu'(v) = {dash:.6g} N s/m"
+    if spring < 0 or (growth.real > 0 and growth.imag == 0):
+        return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
+    if growth.real > 0:
+        return f"swings with growing amplitude and does not run away: {values}; growth {growth.real:.6g} /s"
+    return f"statically stable: {values}"
+
+
+def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
+    problem, found = scenario.problem, []
+    steady = isinstance(problem.body, SpringBlock) or math.isinf(problem.body.driver_impedance)
+    if steady and -problem.strength <= problem.load and problem.excess <= 0 and _wait(problem) > scenario.duration:
+        found.append("the run ends before loading reaches the static strength: nothing will slip")
+    if isinstance(problem.body, ElasticSlab):
+        found += _slab_warnings(scenario, problem.body, contact)
+    rule = problem.selection
+    if contact.regime == "regular" and rule != "perfect-delay":
+        found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
+    return found
+
+
+def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -> list[str]:
+    found, problem = [], scenario.problem
+    strain = abs(problem.load) / body.shear_modulus
+    if strain > LARGE_STRAIN:
+        found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
+    if scenario.duration < body.two_way_time:
+        found.append(f"the run ends before the first echo returns at R = {body.two_way_time:.6g} s")
+    if contact.regime == "irregular":
+        if contact.window is not None and contact.window[1] - contact.window[0] < 1e-9 * problem.strength:
+            found.append(
+                "the window of several slip rates is narrower than 1e-9 of the strength: small changes of the numbers matter"
+            )
+        found += _chaos(body, contact)
+    return found
+
+
+def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
+    """An echo multiplies a disturbance of a slipping branch by |r (1 - 2 Z/g'(v))|."""
+    if contact.resistance is None:
+        return []
+    rates = [jump.rate_after for jump in contact.jumps if jump.rate_after > 0]
+    gains = [abs(body.reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
+    if max(gains, default=0.0) <= 1.0:
+        return []
+    return [f"each echo multiplies a disturbance by up to {max(gains):.3g}: long catalogues are chaotic beyond a horizon"]

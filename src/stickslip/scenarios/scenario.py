@@ -1,0 +1,143 @@
+"""A scenario: a problem with a duration, read from one TOML file and written back in SI."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tomli_w
+
+from stickslip.errors import InputError, nearest
+from stickslip.problem import Problem
+from stickslip.scenarios import library
+from stickslip.scenarios.schema import KINDS, check_rtol, read_document
+from stickslip.scenarios.values import show
+
+if TYPE_CHECKING:
+    from stickslip.evolution.solution import Solution
+
+LARGEST = 1_000_000
+"""Bytes of the largest scenario file that is read: they are untrusted."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A problem, how long to run it (s) and how accurately; where it came from does not count when two are compared."""
+
+    problem: Problem
+    duration: float
+    rtol: float = 1e-10
+    title: str = ""
+    description: str = ""
+    name: str = field(default="scenario", compare=False)
+    source: str = field(default="", compare=False, repr=False)
+
+    def run(self, progress: Callable[..., Any] | None = None) -> Solution:
+        """Simulate. `progress` is handed to `stickslip.simulate`."""
+        from stickslip.evolution.simulate import simulate  # the compiler behind it takes a second to import
+
+        return simulate(self.problem, self.duration, rtol=self.rtol, progress=progress)
+
+    def to_toml(self) -> str:
+        """The scenario as TOML: every value written out, in SI, and read back to the last digit."""
+        tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
+        problem = self.problem
+        for table, owner in (("body", problem.body), ("friction", problem.friction)):
+            tables[table] = {"kind": owner.kind} | _without_none({f.name: getattr(owner, f.name) for f in fields(owner)})
+        given = _without_none({f.name: getattr(problem, f.name) for f in fields(problem) if f.name not in ("body", "friction")})
+        selection = given.pop("selection")
+        tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
+        tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
+        tables["run"] = {"duration": self.duration, "rtol": self.rtol, "selection": selection}
+        return tomli_w.dumps(tables, multiline_strings=True)
+
+
+def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def load_scenario(path_or_name: str | Path) -> Scenario:
+    """Read a scenario file, or a bundled scenario by its name.
+
+    Raises InputError with one line: the file, the place in it, what was found and what is allowed.
+    """
+    if isinstance(path_or_name, str) and path_or_name in library.names():
+        return read_scenario(library.text(path_or_name), path_or_name)
+    path = Path(path_or_name)
+    file = _shown(path)
+    return read_scenario(_read_file(path, file), file, name=path.stem)
+
+
+def read_scenario(text: str, file: str, name: str | None = None) -> Scenario:
+    """A scenario from TOML text; `file` is what messages call it. Raises InputError like `load_scenario`."""
+    try:
+        raw = tomllib.loads(text)
+    except RecursionError:
+        raise InputError(f"{file}: not a scenario: nested too deeply") from None
+    except ValueError as error:  # tomllib.TOMLDecodeError, and whole numbers beyond what Python converts
+        raise InputError(f"{file}: not TOML: {' '.join(str(error).split())}") from None
+    content = read_document(raw, file)
+    problem = _problem(content, file)
+    run = content["run"]
+    check_rtol(run["rtol"], file, "[run] rtol")
+    about = {"title": content["title"], "description": content["description"], "name": name or file, "source": text}
+    return Scenario(problem, run["duration"], run["rtol"], **about)
+
+
+def _problem(content: dict[str, Any], file: str) -> Problem:
+    initial = {name: value for name, value in content["initial"].items() if value is not None}
+    if ("load" in initial) == ("excess" in initial):
+        found = "both" if "load" in initial else "neither"
+        raise InputError(f"{file}: [initial] needs either load or excess (load minus static strength), got {found}")
+    body, friction = (_build(table, content[table], file) for table in KINDS)
+    start = {f"initial_{name}": value for name, value in initial.items()}
+    try:
+        return Problem(body, friction, **content["loading"], **start, selection=content["run"]["selection"])
+    except InputError as error:
+        raise InputError(f"{file}: {_in_tables(_without_owner(error))}") from None
+
+
+def _in_tables(message: str) -> str:
+    """A message of `Problem` with its names as they stand in the file."""
+    return f"[loading] {message}" if message.startswith("far_stress") else message.replace("initial_", "[initial] ")
+
+
+def _build(table: str, content: dict[str, Any], file: str) -> Any:
+    kind = KINDS[table][content["kind"]]
+    try:
+        return kind(**{name: value for name, value in content.items() if name != "kind"})
+    except InputError as error:
+        raise InputError(f"{file}: [{table}] {_without_owner(error)}") from None
+
+
+def _without_owner(error: InputError) -> str:
+    """The message behind "ElasticSlab: ": a reader of a file knows tables, not classes."""
+    return str(error).partition(": ")[2]
+
+
+def _read_file(path: Path, file: str) -> str:
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(LARGEST + 1)
+        if len(data) > LARGEST:
+            raise InputError(f"{file}: larger than {LARGEST} bytes: not a scenario")
+        return data.decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file, and no bundled scenario of that name; {_hint(path)}") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not a text file in UTF-8") from None
+
+
+def _shown(path: Path) -> str:
+    """A path as it can be shown in one line."""
+    return str(path) if str(path).isprintable() else show(str(path))
+
+
+def _hint(path: Path) -> str:
+    hint = nearest(path.stem, library.names())
+    return hint if hint.startswith("did") else "`stickslip new --list` lists them"

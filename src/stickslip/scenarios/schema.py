@@ -1,0 +1,169 @@
+"""What a scenario file may hold, read from what bodies, laws and `Problem` declare about themselves.
+
+A new law or body appears here by being registered. pydantic checks names and types, `Quantity` checks values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields, replace
+from functools import cache
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, create_model
+
+from stickslip.bodies import BODIES
+from stickslip.errors import InputError, nearest
+from stickslip.friction import LAWS
+from stickslip.problem import SELECTION_RULES, Problem
+from stickslip.quantities import Quantity, quantities_of
+from stickslip.scenarios.values import describe, read_quantity, show
+
+KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
+TABLES = ("body", "friction", "loading", "initial", "run")
+DURATION = Quantity("s", "how long to simulate", above=0)
+RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
+LARGEST_RTOL = 1e-2
+STATE = Quantity("1", "state variable of the friction law")
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class _Document(_Strict):
+    title: str = ""
+    description: str = ""
+    body: dict[str, Any]
+    friction: dict[str, Any]
+    loading: dict[str, Any] = Field(default_factory=dict)
+    initial: dict[str, Any]
+    run: dict[str, Any]
+
+
+def quantities_in(table: str, kind: type) -> dict[str, tuple[Quantity, Any]]:
+    """Each quantity of a table with its default (MISSING where there is none).
+
+    `kind` is the law for [friction] and the body for every other table: loads are stresses for a slab, forces for a block.
+    """
+    if table in KINDS:
+        return _declared(kind)
+    if table == "run":
+        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10)}
+    ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
+    found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
+    return found | {"state": (STATE, None)} if table == "initial" else found
+
+
+def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
+    return {f.name: (f.metadata["quantity"], f.default) for f in fields(kind) if "quantity" in f.metadata}
+
+
+def _of_body(declared: Quantity, body: type) -> Quantity:
+    """A load in the body's own unit: that of its normal stress (Pa) or normal force (N)."""
+    if declared.unit != "Pa or N":
+        return declared
+    return replace(declared, unit=next(q.unit for name, q in quantities_of(body).items() if name.startswith("normal_")))
+
+
+@cache
+def table_model(table: str, kind: type) -> type[BaseModel]:
+    """The pydantic model of one table."""
+    entries: dict[str, Any] = {"kind": (str, ...)} if table in KINDS else {}
+    for name, (declared, default) in quantities_in(table, kind).items():
+        read = Annotated[float, Field(allow_inf_nan=declared.infinite), BeforeValidator(_reader(f"[{table}] {name}", declared))]
+        about = Field(... if default is MISSING else default, description=describe(declared))
+        entries[name] = (read if default is not None else read | None, about)
+    if table == "run":
+        entries["selection"] = (Annotated[str, BeforeValidator(_selection)], SELECTION_RULES[0])
+    model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
+    return model
+
+
+def _reader(name: str, declared: Quantity) -> Any:
+    def read(value: Any, info: ValidationInfo) -> float:
+        return read_quantity(value, declared, info.context["file"], name)  # type: ignore[index] # always given, in _validate
+
+    return read
+
+
+def read_duration(text: str, name: str) -> float:
+    """A duration (s) typed by hand: a number of seconds, or a text with a unit. Raises InputError beginning with `name`."""
+    try:
+        value: float | str = float(text)
+    except ValueError:
+        value = text
+    return read_quantity(value, DURATION, name, "duration")
+
+
+def check_rtol(value: float, where: str, name: str = "rtol") -> float:
+    """A relative tolerance that `simulate` takes. Raises InputError."""
+    if RTOL.check(where, name, value) > LARGEST_RTOL:
+        raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {value:g}")
+    return value
+
+
+def _selection(value: Any, info: ValidationInfo) -> str:
+    if value not in SELECTION_RULES:
+        hint = nearest(str(value), SELECTION_RULES)
+        raise InputError(f"{info.context['file']}: [run] selection {show(value)} is unknown; {hint}")  # type: ignore[index] # as above
+    return str(value)
+
+
+def read_document(raw: Mapping[str, Any], file: str) -> dict[str, Any]:
+    """Check a parsed TOML document; return title, description and the five tables, every quantity a float in SI.
+
+    Raises InputError: one line that begins with `file` and says the place, what was found and what is allowed.
+    """
+    document = _validate(_Document, dict(raw), file)
+    kinds = {table: kind_of(table, document[table], file) for table in KINDS}
+    for table in TABLES:
+        model = table_model(table, kinds.get(table, kinds["body"]))
+        document[table] = _validate(model, document[table], file, table)
+    return document
+
+
+def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
+    """The class that `kind` names in a [body] or [friction] table."""
+    kind, registered = content.get("kind"), KINDS[table]
+    if "kind" not in content:
+        raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
+    if not isinstance(kind, str) or kind not in registered:
+        raise InputError(f"{file}: [{table}] kind {show(kind)} is unknown; {nearest(str(kind), registered)}")
+    return registered[kind]
+
+
+def _validate(model: type[BaseModel], raw: dict[str, Any], file: str, table: str = "") -> dict[str, Any]:
+    try:
+        return dict(model.model_validate(raw, context={"file": file}))
+    except ValidationError as error:
+        raise InputError(_one_line(error, model, file, table)) from None
+
+
+_RANK = {"extra_forbidden": 0, "missing": 2}
+"""Which of several errors is told: a misspelt key makes the right one missing too, and the misspelling is the news."""
+
+
+def _one_line(error: ValidationError, model: type[BaseModel], file: str, table: str) -> str:
+    first = min(error.errors(), key=lambda one: _RANK.get(one["type"], 1))
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, InputError):
+        return str(cause)
+    name = str(first["loc"][0])
+    shown = name if name.replace("_", "").replace("-", "").isalnum() and name.isascii() and len(name) <= 40 else show(name)
+    place = f"[{table}] {shown}" if table else f"[{shown}]" if name in TABLES or isinstance(first["input"], dict) else shown
+    if first["type"] == "extra_forbidden":
+        return f"{file}: {place} is unknown; {_belongs(name, table) or nearest(name, model.model_fields)}"
+    if first["type"] == "missing":
+        meaning = model.model_fields[name].description if table else None
+        return f"{file}: {place} is missing" + (f": {meaning}" if meaning else "")
+    return f"{file}: {place} must be {'a table' if name in TABLES else 'text in quotes'}, got {show(first['input'])}"
+
+
+def _belongs(name: str, table: str) -> str:
+    """A hint where the key is right but stands in another table."""
+    for body in KINDS["body"].values():
+        for other in TABLES:
+            if other not in ("friction", table) and name in table_model(other, body).model_fields:
+                return f"it belongs into [{other}]"
+    return ""
