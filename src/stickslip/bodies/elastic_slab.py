@@ -37,7 +37,9 @@ class ElasticSlab:
         check_quantities(self)
         if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
             limit = self.wave_speed * math.sqrt(4 / 3)
-            raise InputError(f"ElasticSlab: p_wave_speed must exceed sqrt(4/3) wave_speed = {limit:g} m/s, got {self.p_wave_speed:g}")
+            raise InputError(
+                f"ElasticSlab: p_wave_speed must exceed sqrt(4/3) wave_speed = {limit:g} m/s, got {self.p_wave_speed:g}"
+            )
 
     @property
     def impedance(self) -> float:

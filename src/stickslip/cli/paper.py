@@ -24,9 +24,10 @@ def paper(
     """
     from stickslip.cli.files import check_folder
     from stickslip.cli.show import progress_to
-    from stickslip.paper import make
 
     check_folder(out, "--out")
+    from stickslip.paper import make
+
     with progress_to("paper") as report:
         make(out, report)
     typer.echo(f"written: {out}")

@@ -12,14 +12,8 @@ from stickslip.cli.names import complete_rule, complete_scenario
 from stickslip.errors import InputError, nearest
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
-    from rich.console import Console
-
     from stickslip.evolution.solution import Solution
     from stickslip.scenarios.scenario import Scenario
-
-FIRST = 12
-"""Rows of a table that are shown."""
 
 
 def run(
@@ -56,13 +50,14 @@ def run(
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.files import check_target
+    from stickslip.cli.summary import show_solution
 
     for path, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", (".png", ".pdf", ".svg"))):
         if path is not None:
             check_target(path, option, suffixes)
     chosen = _adjusted(scenario, duration, rtol, selection)
     solution = _simulate(chosen)
-    _show(chosen, solution)
+    show_solution(chosen, solution)
     for line in _save(solution, out, figure):
         typer.echo(line)
     if solution.status.name == "interrupted":
@@ -79,12 +74,12 @@ def _adjusted(name: str, duration: str | None, rtol: float | None, selection: st
     loaded = load_scenario(name)
     changes: dict[str, Any] = {}
     if duration is not None:
-        changes["duration"] = read_duration(duration, "--duration")
+        changes["duration"] = read_duration(duration, "run", "--duration")
     if rtol is not None:
-        changes["rtol"] = check_rtol(rtol, "--rtol")
+        changes["rtol"] = check_rtol(rtol, "run", "--rtol")
     if selection is not None:
         if selection not in SELECTION_RULES:
-            raise InputError(f"--selection '{selection}' is unknown; {nearest(selection, SELECTION_RULES)}")
+            raise InputError(f"run: --selection '{selection}' is unknown; {nearest(selection, SELECTION_RULES)}")
         changes["problem"] = replace(loaded.problem, selection=selection)
     return replace(loaded, **changes)
 
@@ -98,37 +93,6 @@ def _simulate(scenario: Scenario) -> Solution:
             report(f"{number(time, 6)} of {number(scenario.duration, 6)} s, {pieces} pieces, {doing}")
 
         return scenario.run(progress)
-
-
-def _show(scenario: Scenario, solution: Solution) -> None:
-    from stickslip.cli.show import clean, console, with_unit
-
-    screen = console()
-    screen.print(clean(scenario.title or scenario.name), style="bold")
-    screen.print(f"{solution.status.name}: {solution.status.message}")
-    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
-    screen.print(f"selection rule {solution.selection_note}\n")
-    force = scenario.problem.load_unit
-    units = {"start": "s", "end": "s", "slip": "m", "peak_rate": "m/s", "peak_time": "s", "time": "s"}
-    units |= {"rate_before": "m/s", "rate_after": "m/s"}
-    units |= dict.fromkeys(("traction_drop", "static_drop", "traction_before", "traction_after"), force)
-    _print(screen, "slip event", solution.events, units)
-    _print(screen, "shock", solution.shocks, units)
-
-
-def _print(screen: Console, what: str, rows: DataFrame, units: dict[str, str]) -> None:
-    from stickslip.cli.show import number, table
-
-    if rows.empty:
-        screen.print(f"no {what}\n")
-        return
-    shown = table(*(f"{name}\n{units.get(name, '')}".rstrip() for name in rows.columns), numbers=True)
-    for row in rows.head(FIRST).itertuples(index=False):
-        shown.add_row(*(number(float(value)) if isinstance(value, float) else str(value) for value in row))
-    more = f", the first {FIRST} of them" if len(rows) > FIRST else ""
-    screen.print(f"{len(rows)} {what}{'s' if len(rows) > 1 else ''}{more}")
-    screen.print(shown)
-    screen.print()
 
 
 def _save(solution: Solution, out: Path | None, figure: Path | None) -> list[str]:

@@ -13,8 +13,8 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-YEAR = 31_557_600.0
-"""Julian year, in s."""
+from stickslip import YEAR
+
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 _SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.resistance import Resistance, resistance
+from stickslip.contact.roots import bracketed_newton
 from stickslip.errors import InputError
 from stickslip.problem import Problem
 
@@ -122,21 +123,14 @@ def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[
 
 
 def _root(g: Resistance, low: float, high: float, excess: float) -> float:
-    """Newton's method in a bracket on which g is monotone; it bisects where Newton leaves the bracket or hardly gains."""
-    ends = (float(g.excess(low)) - excess, float(g.excess(high)) - excess)
-    for end, miss in zip((low, high), ends, strict=True):
-        if miss == 0.0:
+    """The rate between low and high, where g is monotone, at which it passes an excess."""
+
+    def miss(rate: float) -> tuple[float, float]:
+        value, slope = g.excess_and_slope(rate)
+        return float(value) - excess, float(slope)
+
+    ends = (miss(low)[0], miss(high)[0])
+    for end, value in zip((low, high), ends, strict=True):
+        if value == 0.0:
             return end
-    rising, rate, last = ends[1] > 0.0, 0.5 * (low + high), high - low
-    for _ in range(200):
-        miss, slope = float(g.excess(rate)) - excess, float(g.slope(rate))
-        if miss == 0.0:
-            break
-        low, high = (low, rate) if (miss > 0.0) == rising else (rate, high)
-        step = -miss / slope if slope else math.inf
-        if not low < rate + step < high or abs(step) > 0.5 * last:
-            step = 0.5 * (low + high) - rate
-        last, rate = abs(step), rate + step
-        if last <= np.spacing(rate):
-            break
-    return rate
+    return bracketed_newton(miss, low, high, 0.5 * (low + high), rising=ends[1] > 0.0)

@@ -14,6 +14,7 @@ import numpy as np
 
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.resistance import Resistance
+from stickslip.contact.roots import bracketed_newton
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
@@ -49,20 +50,9 @@ def _winner(g: Resistance, candidates: dict[int, Branch], excess: float) -> int:
 def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | None:
     """The excess (Pa) at which two branches have the same phi, to rounding; None where one is the better wherever both exist."""
     low, high = max(slower.excess_from, faster.excess_from), min(slower.excess_to, faster.excess_to)
-    if not low < high:
+    if not low < high or _gap(g, slower, faster, low)[0] <= 0.0 or _gap(g, slower, faster, high)[0] >= 0.0:
         return None
-    level, gap, slope = high, *_gap(g, slower, faster, high)
-    if _gap(g, slower, faster, low)[0] <= 0.0 or gap >= 0.0:
-        return None
-    for _ in range(100):  # the gap falls at the known rate -(difference of the slip rates): Newton in a bracket
-        low, high = (level, high) if gap > 0.0 else (low, level)
-        step = -gap / slope
-        inside = low < level + step < high
-        level += step if inside else 0.5 * (low + high) - level
-        before, (gap, slope) = gap, _gap(g, slower, faster, level)
-        if inside and abs(step) <= 1e-8 * abs(level) and abs(gap) >= 0.5 * abs(before):
-            break  # rounding has taken over
-    return level
+    return bracketed_newton(lambda excess: _gap(g, slower, faster, excess), low, high, high, rising=False)
 
 
 def _gap(g: Resistance, slower: Branch, faster: Branch, excess: float) -> tuple[float, float]:

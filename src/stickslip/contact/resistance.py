@@ -50,16 +50,22 @@ class Resistance:
         """Excess at s = 0+ (Pa): minus the step from static to sliding friction."""
         return -self.normal * self.law.static_excess if self.law.static_excess else 0.0
 
-    def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """g(s) - S mu_static (Pa) at slip rates s >= 0 (m/s; 0 means 0+), without cancellation between near-equal frictions."""
+    def excess_and_slope(self, rate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """g(s) - S mu_static (Pa) and g'(s) (Pa s/m) at slip rates s >= 0 (m/s; 0 means 0+).
+
+        Near-equal frictions are not subtracted: the excess keeps its digits down to s = 0.
+        """
         rate = np.asarray(rate, float)
-        step, _ = difference(self.tree, self.parameters, self.law_slip, 0.0, rate)
-        return self.impedance * rate + self.normal * step + self.start
+        step, slope = difference(self.tree, self.parameters, self.law_slip, 0.0, rate)
+        return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+
+    def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
+        """g(s) - S mu_static (Pa); see `excess_and_slope`."""
+        return self.excess_and_slope(rate)[0]
 
     def slope(self, rate: ArrayLike) -> NDArray[np.float64]:
         """g'(s) (Pa s/m)."""
-        _, slope = difference(self.tree, self.parameters, self.law_slip, 0.0, rate)
-        return self.impedance + self.normal * slope
+        return self.excess_and_slope(rate)[1]
 
     @cached_property
     def scales(self) -> tuple[float, ...]:

@@ -72,9 +72,9 @@ class Uniqueness:
         g = self.resistance
         forward, stable = rates_at(g, self.branches, load - g.strength)
         backward, mirrored = rates_at(g, self.branches, -load - g.strength)
-        moving = backward > 0.0
-        rates = np.concatenate((-backward[moving][::-1], forward))
-        return rates, np.concatenate((mirrored[moving][::-1], stable))
+        moving, kept = backward > 0.0, forward > (-1.0 if abs(load) <= g.strength else 0.0)
+        rates = np.concatenate((-backward[moving][::-1], forward[kept]))
+        return rates, np.concatenate((mirrored[moving][::-1], stable[kept]))
 
 
 def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:

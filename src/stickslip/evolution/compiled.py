@@ -22,12 +22,11 @@ from typing import Any, TypeVar
 import llvmlite.ir as ir
 import numba
 import platformdirs
-from numba import njit, types
+from numba import carray, njit, types
 from numba.extending import intrinsic
 
 from stickslip.evolution.generate import ORDER, FormulaWriter
 from stickslip.friction.expression import Expression
-
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -69,8 +68,17 @@ def _cached_on_disk() -> Iterator[None]:
 
 def kernel(function: F) -> F:
     """Compile a function of the engine, with the cache of this module."""
+    return _compiled(function)
+
+
+def inlined(function: F) -> F:
+    """As `kernel`, put in place where it is called: a call would copy every field of every array of the engine's state."""
+    return _compiled(function, forceinline=True)
+
+
+def _compiled(function: F, **options: bool) -> F:
     with _cached_on_disk():
-        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract"})(function)
+        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
     return compiled
 
 
@@ -119,6 +127,37 @@ def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) 
 def call_jet(typingctx: Any, address: Any, c: Any, k: Any, load: Any, s: Any) -> Any:
     """rate_jet or motion_jet(c, k, L, s) of the formula at `address`; all are addresses of arrays."""
     return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), _caller("pppp")
+
+
+@intrinsic
+def float_pointer(typingctx: Any, address: Any) -> Any:
+    """An address as a pointer to floats."""
+    return types.CPointer(types.float64)(types.intp), _cast(ir.DoubleType())
+
+
+@intrinsic
+def integer_pointer(typingctx: Any, address: Any) -> Any:
+    """An address as a pointer to 64-bit integers."""
+    return types.CPointer(types.int64)(types.intp), _cast(ir.IntType(64))
+
+
+def _cast(kind: ir.Type) -> Callable[..., Any]:
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.inttoptr(args[0], kind.as_pointer())
+
+    return codegen
+
+
+@kernel
+def floats(array: Any) -> Any:
+    """The same array without its reference count: counting it up and down in every small function costs more than the work."""
+    return carray(float_pointer(array.ctypes.data), array.shape)
+
+
+@kernel
+def integers(array: Any) -> Any:
+    """As `floats`, for integers."""
+    return carray(integer_pointer(array.ctypes.data), array.shape)
 
 
 def _caller(kinds: str) -> Callable[..., Any]:

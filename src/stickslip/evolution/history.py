@@ -58,7 +58,7 @@ class History:
         return np.asarray(self.store.row * self.row_time + self.store.theta_to)
 
     def __len__(self) -> int:
-        return len(self.store.row)
+        return len(self.store.whole)
 
     def find(self, time: Floats, side: Side) -> Moments:
         """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""

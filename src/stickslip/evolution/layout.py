@@ -41,48 +41,84 @@ NO_CAUSE, START, FOLD, ECHO, LOADING = range(5)
 FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED = range(6)
 
 
+# ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
+VALUE_AT, JET_AT = range(2)
+SLIP_SHIFT, OFFSET, KNOT = range(3)
+RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
+FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
+
+# ---- columns of Store's tables ----------------------------------------------------------------------------------------------
+S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE = range(5)
+S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP = range(6)
+
+
 class Setup(NamedTuple):
     """A problem as the engine sees it; nothing here changes during a run."""
 
     par: Floats
-    value_at: Integers  # address of `value`, for each piece of the law
-    jet_at: Integers  # address of `rate_jet` or `motion_jet`
-    constants: Floats  # (pieces, size): what `prepare` filled
-    slip_shift: Floats  # initial law slip minus the piece's own reference slip
-    offset: Floats  # mu(reference of the piece, 0+) - mu_static at the start
-    knots: Floats  # law slip at which a piece ends, minus the initial law slip
-    rate_from: Floats  # branches of the resistance g(s), and the interval of load in which the rule keeps each
-    rate_to: Floats
-    keep_from: Floats
-    keep_to: Floats
-    excess_from: Floats
-    excess_to: Floats
-    first_theta: Floats  # the load of the first round trip: linear between these
-    first_load: Floats
-    first_slope: Floats
-    first_jump: Integers
+    address: Integers  # (2, pieces of the law): of the functions `value` and `rate_jet` or `motion_jet`
+    constants: Floats  # (pieces, size): what `prepare` filled for them
+    law: Floats  # (3, pieces): slip shift and offset to the piece's own reference, law slip (minus the initial one) where it ends
+    branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
+    first: Floats  # (4, pieces + 1): the load of the first round trip, linear between the thetas
 
 
 class Store(NamedTuple):
-    """The history, one entry a piece: load and slip rate as polynomials in xi on [0, 1]."""
+    """The history, one row a piece: load and slip rate as polynomials in xi on [0, 1]. The properties name the columns."""
 
-    row: Integers
-    theta_from: Floats
-    theta_to: Floats
-    speed: Floats
-    bend: Floats
-    mode: Integers  # 0 stuck, +1 slips forwards, -1 backwards
-    piece: Integers  # of the friction law
-    jump: Integers  # whether what leaves the contact jumps where the piece starts
-    cause: Integers  # of a shock where the piece starts
-    slip: Floats  # at the start, minus the initial slip
-    law_slip: Floats
-    load: Floats  # (n, TERMS)
+    whole: Integers
+    real: Floats
+    load: Floats  # (n, TERMS), minus the reference strength
     rate: Floats  # (n, TERMS)
+
+    @property
+    def row(self) -> Integers:
+        """Whole round trips before the piece."""
+        return self.whole[:, S_ROW]
+
+    @property
+    def mode(self) -> Integers:
+        """0 stuck, +1 slips forwards, -1 backwards."""
+        return self.whole[:, S_MODE]
+
+    @property
+    def cause(self) -> Integers:
+        """Of a shock where the piece starts, or 0."""
+        return self.whole[:, S_CAUSE]
+
+    @property
+    def theta_from(self) -> Floats:
+        """Offset in the round trip at which the piece starts, s."""
+        return self.real[:, S_THETA_FROM]
+
+    @property
+    def theta_to(self) -> Floats:
+        """Offset at which it ends, s."""
+        return self.real[:, S_THETA_TO]
+
+    @property
+    def speed(self) -> Floats:
+        """theta = theta_from + speed xi + bend xi^2."""
+        return self.real[:, S_SPEED]
+
+    @property
+    def bend(self) -> Floats:
+        """See speed; zero but next to folds."""
+        return self.real[:, S_BEND]
+
+    @property
+    def slip(self) -> Floats:
+        """Slip at the start of the piece, minus the initial slip, m."""
+        return self.real[:, S_SLIP]
+
+    @property
+    def law_slip(self) -> Floats:
+        """Slip that the law counts at the start of the piece, minus its initial value, m."""
+        return self.real[:, S_LAW_SLIP]
 
 
 class Work(NamedTuple):
-    """Scratch space, and the piece of load being worked on."""
+    """Scratch space, and the piece of load being worked on: the rows of one array."""
 
     load: Floats  # of the whole piece, in xi
     local: Floats  # of the step at hand, in eta on [0, 1]
@@ -91,15 +127,19 @@ class Work(NamedTuple):
     gap: Floats
     k: Floats
     value: Floats
+    bernstein: Floats
     kept_load: Floats  # the piece that goes on behind a fold
     kept: Floats
 
 
+WORK_ROWS = len(Work._fields)
+
+
 def new_store(capacity: int) -> Store:
     """An empty history with room for so many pieces."""
-    floats = {name: np.empty(capacity) for name in ("theta_from", "theta_to", "speed", "bend", "slip", "law_slip")}
-    integers = {name: np.empty(capacity, np.int64) for name in ("row", "mode", "piece", "jump", "cause")}
-    return Store(**floats, **integers, load=np.empty((capacity, TERMS)), rate=np.empty((capacity, TERMS)))
+    return Store(
+        np.empty((capacity, 5), np.int64), np.empty((capacity, 6)), np.empty((capacity, TERMS)), np.empty((capacity, TERMS))
+    )
 
 
 def resized(store: Store, length: int, capacity: int) -> Store:
@@ -108,12 +148,6 @@ def resized(store: Store, length: int, capacity: int) -> Store:
     for old, new in zip(store, larger, strict=True):
         new[:length] = old[:length]
     return larger
-
-
-def new_work() -> Work:
-    """Scratch space for one run."""
-    series = [np.zeros(TERMS) for _ in range(6)]
-    return Work(*series[:5], k=np.zeros(12), value=np.zeros(3), kept_load=series[5], kept=np.zeros(STATES))
 
 
 def trimmed(store: Store, length: int) -> Store:

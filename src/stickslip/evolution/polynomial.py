@@ -8,11 +8,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.evolution.compiled import kernel
+from stickslip.evolution.layout import TERMS
 
 Floats = NDArray[np.float64]
 
 NONE = math.inf
+RECIPROCAL = np.array([0.0, *(1.0 / k for k in range(1, 2 * TERMS))])
+LOW = 9
+"""Terms of the first, cheap test for a root."""
+
+
+def _bernstein(terms: int) -> Floats:
+    """Row k: what the power x^k contributes to each Bernstein coefficient of a polynomial of so many terms on [0, 1]."""
+    return np.array([[math.comb(j, k) / math.comb(terms - 1, k) for j in range(terms)] for k in range(terms)])
+
+
+BERNSTEIN = _bernstein(TERMS)
+LOW_BERNSTEIN = _bernstein(LOW)
 SMALLEST_INTERVAL = 1e-15
+
+
+@kernel
+def copy(source: Floats, target: Floats) -> None:
+    """Plain loop: for such short arrays it beats slice assignment, which checks shapes and overlap."""
+    for k in range(min(len(source), len(target))):
+        target[k] = source[k]
+
+
+@kernel
+def fill(target: Floats, value: float) -> None:
+    for k in range(len(target)):
+        target[k] = value
 
 
 @kernel
@@ -37,7 +63,8 @@ def degree(c: Floats) -> int:
 def restrict(c: Floats, start: float, width: float, out: Floats) -> None:
     """Coefficients of y -> p(start + width y) into `out`: exact but for rounding."""
     n = degree(c)
-    out[:] = c
+    for k in range(len(c)):
+        out[k] = c[k]
     if start != 0.0:
         for j in range(n):
             for k in range(n - 1, j - 1, -1):
@@ -97,27 +124,52 @@ def _falling_root(c: Floats) -> float:
 
 
 @kernel
-def first_descent(c: Floats, end: float) -> float:
-    """First x in [0, end] at which p, positive before, falls below zero; NONE if there is none; 0 if it starts by falling.
+def _clearly_positive(c: Floats) -> bool:
+    """Whether the first terms, by their Bernstein coefficients, stay above anything that the rest can take away on [0, 1]."""
+    rest = 0.0
+    for k in range(LOW, TERMS):
+        rest += abs(c[k])
+    for j in range(1, LOW):
+        coefficient = c[0]
+        for k in range(1, j + 1):
+            coefficient += LOW_BERNSTEIN[k, j] * c[k]
+        if coefficient <= rest:
+            return False
+    return True
 
-    A zero at x = 0 does not count where p rises from it: leading zero coefficients are divided out.
+
+@kernel
+def first_descent(c: Floats, scratch: Floats) -> float:
+    """First x in [0, 1] at which p, positive before, falls below zero; NONE if there is none; 0 if it starts by falling.
+
+    A zero at x = 0 does not count where p rises from it: leading zero coefficients are divided out. Most calls end at a bound
+    on the coefficients or at the signs of the Bernstein coefficients (for which `scratch` is).
     """
     lead = 0
-    while lead < len(c) - 1 and c[lead] == 0.0:
+    while lead < TERMS - 1 and c[lead] == 0.0:
         lead += 1
     if c[lead] < 0.0:
         return 0.0
     if c[lead] == 0.0:
         return NONE
-    bound, power = 0.0, 1.0
-    for k in range(lead + 1, len(c)):
-        power *= end
-        bound += abs(c[k]) * power
+    bound = 0.0
+    for k in range(lead + 1, TERMS):
+        bound += abs(c[k])
     if c[lead] > bound:
         return NONE
-    q = c[lead:].copy()
-    scale(q, end)
-    return end * _isolate(q)
+    if lead == 0 and _clearly_positive(c):
+        return NONE
+    for j in range(TERMS):
+        scratch[j] = c[lead]
+    for k in range(lead + 1, TERMS):
+        for j in range(TERMS):
+            scratch[j] += BERNSTEIN[k - lead, j] * c[k]
+    lowest = scratch[0]
+    for j in range(1, TERMS):
+        lowest = min(lowest, scratch[j])
+    if lowest > 0.0:
+        return NONE
+    return _isolate(c[lead:].copy())
 
 
 @kernel

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import math
-from typing import Any
 
 import numpy as np
 
@@ -38,23 +37,20 @@ def prepare(problem: Problem, rtol: float) -> Setup:
     """Everything that the engine needs to know of a problem; compiles the law's formulas if they are new."""
     law = problem.friction
     if not has_inertia(problem) and law.depends_on_rate and law.depends_on_slip:
-        raise InputError(
-            f"{type(law).__name__} depends on slip and on rate: a slab without contact_mass cannot carry it yet; give a contact_mass"
-        )
+        raise InputError(f"{type(law).__name__} depends on slip and on rate: a slab carries it only with a contact_mass so far")
     par = _parameters(problem, rtol)
+    branches, stick_to = _branches(problem)
+    par[at.STICK_TO] = stick_to
+    return Setup(par, *_formulas(problem), branches, _first_load(problem))
+
+
+def _branches(problem: Problem) -> tuple[at.Floats, float]:
+    """The branches of slip rates and when the selection rule keeps them; one, kept for ever, where the solution is unique."""
+    if not is_algebraic(problem):
+        return np.array([[0.0], [math.inf], [-math.inf], [math.inf], [-math.inf], [math.inf]]), 0.0
     branches, table = selection_table(problem)
-    par[at.STICK_TO] = table.stick_to
-    return Setup(
-        par=par,
-        **_formulas(problem),
-        rate_from=np.array([branch.rate_from for branch in branches]),
-        rate_to=np.array([branch.rate_to for branch in branches]),
-        keep_from=np.array(table.keep_from),
-        keep_to=np.array(table.keep_to),
-        excess_from=np.array([branch.excess_from for branch in branches]),
-        excess_to=np.array([branch.excess_to for branch in branches]),
-        **_first_load(problem),
-    )
+    ends = [[getattr(branch, name) for branch in branches] for name in ("rate_from", "rate_to", "excess_from", "excess_to")]
+    return np.array([*ends[:2], table.keep_from, table.keep_to, *ends[2:]]), table.stick_to
 
 
 def _parameters(problem: Problem, rtol: float) -> at.Floats:
@@ -100,7 +96,7 @@ def inflow(problem: Problem) -> tuple[float, float]:
     return steady, gain * problem.far_stress_rate
 
 
-def _first_load(problem: Problem) -> dict[str, Any]:
+def _first_load(problem: Problem) -> at.Floats:
     """The load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.pull_rate
     if not isinstance(body, ElasticSlab):
@@ -119,21 +115,15 @@ def _first_load(problem: Problem) -> dict[str, Any]:
     return _pieces([0.0, half, 2.0 * half], [excess, reflected], [slope, rate - r * slope], [0, int(jump)])
 
 
-def _pieces(theta: list[float], load: list[float], slope: list[float], jump: list[int] | None = None) -> dict[str, Any]:
-    return {
-        "first_theta": np.array(theta),
-        "first_load": np.array(load),
-        "first_slope": np.array(slope),
-        "first_jump": np.array(jump or [0] * len(load), np.int64),
-    }
+def _pieces(theta: list[float], load: list[float], slope: list[float], jump: list[int] | None = None) -> at.Floats:
+    return np.array([theta, [*load, 0.0], [*slope, 0.0], [*(jump or [0] * len(load)), 0.0]])
 
 
-def _formulas(problem: Problem) -> dict[str, Any]:
-    """Addresses, constants and offsets of the law's pieces."""
+def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
+    """Addresses of the functions and constants of the law's pieces; shifts and offsets to their own references, and knots."""
     law, start = problem.friction, problem.law_slip
-    names = law.parameters()
-    values = np.array([getattr(law, name) for name in names], float)
-    formulas = [compile_formula(tree, names) for tree in law.trees()]
+    values = np.array([getattr(law, name) for name in law.parameters()])
+    formulas = [compile_formula(tree, law.parameters()) for tree in law.trees()]
     home = int(np.searchsorted(np.asarray(law.knots), start, side="right"))
     # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
     references = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
@@ -143,15 +133,10 @@ def _formulas(problem: Problem) -> dict[str, Any]:
     static = float(law.static_coefficient(start))
     at_reference = [float(piece(law, np.float64(x), np.float64(0.0))) for piece, x in zip(law.pieces, references, strict=True)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    jet = "motion_jet" if has_inertia(problem) else "rate_jet"
-    return {
-        "value_at": np.array([formula.value for formula in formulas], np.int64),
-        "jet_at": np.array([getattr(formula, jet) for formula in formulas], np.int64),
-        "constants": constants,
-        "slip_shift": np.array([start - reference for reference in references]),
-        "offset": np.array(offsets),
-        "knots": np.array([knot - start for knot in law.knots]),
-    }
+    jets = [formula.motion_jet if has_inertia(problem) else formula.rate_jet for formula in formulas]
+    address = np.array([[formula.value for formula in formulas], jets], np.int64)
+    knots = [*(knot - start for knot in law.knots), math.inf]
+    return address, constants, np.array([[start - reference for reference in references], offsets, knots])
 
 
 def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at.Floats) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.engine import advance
@@ -36,11 +38,11 @@ def simulate(
         raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
     setup = prepare(problem, rtol)
     state, count = start_state(problem)
-    work, store = at.new_work(), at.new_store(FIRST_CAPACITY)
+    scratch, store = np.zeros((at.WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
     last_row, last_theta = split_time(duration, row_time(problem))
     try:
         while True:
-            code = advance(setup, state, count, work, store, last_row, last_theta, STEPS_PER_CALL)
+            code = advance(setup, state, count, scratch, store, last_row, last_theta, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
             if progress is not None:
                 time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
@@ -49,7 +51,7 @@ def simulate(
                 if length >= max_pieces:
                     code = FULL_HISTORY
                     break
-                store = at.resized(store, length, min(4 * len(store.row), max_pieces + 16))
+                store = at.resized(store, length, min(4 * len(store.whole), max_pieces + 16))
             elif code != OUT_OF_BUDGET:
                 break
     except KeyboardInterrupt:

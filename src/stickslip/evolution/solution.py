@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
+Curve = Literal["slip", "slip_rate", "traction", "load"]
 CURVES = ("slip", "slip_rate", "traction", "load")
 
 
@@ -95,25 +97,22 @@ class Solution:
 
         return energy(self, t)
 
-    def curve(
-        self, name: Literal["slip", "slip_rate", "traction", "load"], start: float = 0.0, end: float | None = None, points: int = 2000
-    ) -> tuple[Floats, Floats]:
+    def curve(self, name: Curve, start: float = 0.0, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Times (s) and values for drawing: dense where the solution varies, with both limits at every shock."""
         if name not in CURVES:
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, CURVES)}")
-        end = self.history.end[-1] if end is None else end
-        breaks = self.breaks[(self.breaks > start) & (self.breaks < end)]
-        inside = np.concatenate([np.linspace(a, b, 8)[1:-1] for a, b in zip(breaks[:-1], breaks[1:], strict=True)]) if len(
-            breaks
-        ) in range(2, points) else np.empty(0)
-        right = np.unique(np.concatenate([np.linspace(start, end, points), inside, breaks]))
-        limits = breaks if len(breaks) < points else np.asarray(self.shocks.time)
-        time = np.concatenate([right, limits])
-        order = np.lexsort((np.concatenate([np.ones(len(right)), np.zeros(len(limits))]), time))
+        end = float(self.breaks[-1]) if end is None else end
+        breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
+        if len(breaks) > points:  # too many pieces to draw each: keep the shocks
+            breaks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
+        inside = [np.linspace(a, b, 8) for a, b in pairwise(breaks)]
+        right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
+        time = np.concatenate([breaks, right])
+        order = np.argsort(time, kind="stable")  # left limits first
         if name == "slip":
             return time[order], self.slip(time)[order]
         evaluate = getattr(self, name)
-        values = np.concatenate([evaluate(right), evaluate(limits, side="left")])
+        values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
         return time[order], values[order]
 
     def dataset(self, t: ArrayLike) -> xr.Dataset:

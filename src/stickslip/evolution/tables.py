@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution.compiled import kernel
 from stickslip.evolution.history import History, Moments
-from stickslip.evolution.layout import TERMS, Floats, Integers, Store
+from stickslip.evolution.layout import S_MODE, TERMS, Floats, Integers, Store
 from stickslip.evolution.polynomial import crossings, evaluate
 from stickslip.problem import Problem
 
@@ -31,7 +31,7 @@ def default_event_rate(problem: Problem) -> float:
 
 @kernel
 def turning_points(store: Store, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers) -> int:
-    """Walk along |slip rate|: at each start, end and extremum of a piece and each crossing of the threshold, note where and how much.
+    """Walk along |slip rate|: note where and how much it is at starts, ends, extrema and crossings of the threshold.
 
     kind: 0 a point above the threshold, +1 the rate rises above it here, -1 it falls to it here. Returns the number of points,
     or -1 if the arrays are too short.
@@ -42,15 +42,15 @@ def turning_points(store: Store, length: int, threshold: float, piece: Integers,
     for n in range(length):
         if found + 3 * MAXIMA_PER_PIECE > len(piece):
             return -1
-        sign = 1.0 if store.mode[n] >= 0 else -1.0
+        sign = 1.0 if store.whole[n, S_MODE] >= 0 else -1.0
         for k in range(TERMS):
             p[k] = sign * store.rate[n, k]
-        contiguous = n > 0 and store.mode[n] == store.mode[n - 1]
-        begins = store.mode[n] != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
+        contiguous = n > 0 and store.whole[n, S_MODE] == store.whole[n - 1, S_MODE]
+        begins = store.whole[n, S_MODE] != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
         if above and not (begins and contiguous):
             found = _note(piece, xi, rate, kind, found, n - 1, 1.0, 0.0, -1)
             above = False
-        if store.mode[n] == 0:
+        if store.whole[n, S_MODE] == 0:
             continue
         if begins:
             found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
+from stickslip.figures.curves import Name, curve, nearly_flat
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
 
 if TYPE_CHECKING:
-    from stickslip.evolution import Solution
+    from stickslip.evolution.solution import Solution
 
+DASHED: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
 COLOURS = (BLUE, VERMILLION)
-ROWS = ("slip", "slip_rate", "traction", "load")
+ROWS: tuple[Name, ...] = ("slip", "slip_rate", "traction", "load")
 
 
 def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: Mapping[str, str] | None = None) -> xr.Dataset:
@@ -25,15 +28,15 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
     contents: dict[str, xr.Variable] = {}
     for name, solution in solutions.items():
         unit = solution.problem.load_unit
-        force = "traction" if unit == "Pa" else "friction force"
+        force, load = ("traction", "load") if unit == "Pa" else ("friction force", "spring force")
         meaning = {
             "slip": ("slip", "u", "m"),
             "slip_rate": ("slip rate", "v", "m/s"),
             "traction": (force, r"\tau", unit),
-            "load": ("load", r"\beta", unit),
+            "load": (load, r"\beta", unit),
         }
         for row in ROWS:
-            time, values = solution.curve(row, 0.0, ends[name])
+            time, values = curve(solution, row, 0.0, ends[name])
             contents[f"{name}_{row}"] = quantity(f"{name}_time", values, *meaning[row])
         contents[f"{name}_time"] = quantity(f"{name}_time", time, "time", "t", "s")
         body = solution.problem.body
@@ -56,21 +59,35 @@ def draw(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw_column(column: list[Axes], dataset: xr.Dataset, name: str, colour: str) -> None:
+def _draw_column(column: NDArray[Any], dataset: xr.Dataset, name: str, colour: str) -> None:
     time = dataset[f"{name}_time"]
-    for panel, row in zip(column, ROWS, strict=False):
+    for panel, row in zip(column[:2], ROWS, strict=False):
         values = dataset[f"{name}_{row}"]
-        if row == "traction":
-            panel.plot(
-                shown(time), shown(dataset[f"{name}_load"]), color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label=r"load $\beta$"
-            )
-        panel.plot(shown(time), shown(values), color=colour, label=rf"{values.attrs['long_name']} ${values.attrs['symbol']}$")
+        panel.plot(shown(time), shown(values), color=colour)
         panel.set_ylabel(label(values))
         zero_line(panel)
-        _mark_echo(panel, dataset, name, named=row == "slip")
+    _draw_stress(column[2], dataset, name, colour)
     span = float(time[-1] - time[0])
-    column[-1].set(xlabel=label(time), xlim=(float(time[0]) - 0.03 * span, float(time[-1])))
-    column[-1].legend(loc="best")
+    column[2].set(xlabel=label(time), xlim=(float(time[0]) - 0.03 * span, float(time[-1])))
+    for panel in column:
+        _mark_echo(panel, dataset, name, named=panel is column[0])
+
+
+def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str) -> None:
+    """Friction and load; as changes from the initial load where they hardly change."""
+    time, friction, load = (dataset[f"{name}_{row}"] for row in ("time", "traction", "load"))
+    text, symbol = friction.attrs["long_name"], friction.attrs["symbol"]
+    if nearly_flat(friction.values, load.values):
+        start = float(load[0])
+        panel.plot(shown(time), load.values - start, color=INK, **DASHED, label=load.attrs["long_name"])
+        panel.plot(shown(time), friction.values - start, color=colour, label=text)
+        panel.set_ylabel(f"{text} change\n${symbol}-\\beta(0)$ ({friction.attrs['units']})")
+    else:
+        panel.plot(shown(time), shown(load), color=INK, **DASHED, label=load.attrs["long_name"])
+        panel.plot(shown(time), shown(friction), color=colour, label=text)
+        panel.set_ylabel(label(friction))
+    zero_line(panel)
+    panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2, borderaxespad=0.0)
 
 
 def _mark_echo(panel: Axes, dataset: xr.Dataset, name: str, named: bool) -> None:
@@ -79,13 +96,5 @@ def _mark_echo(panel: Axes, dataset: xr.Dataset, name: str, named: bool) -> None
     at = float(dataset[f"{name}_two_way_time"])
     panel.axvline(at, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
     if named:
-        panel.annotate(
-            "2h/c",
-            (at, 1.0),
-            (3, -2),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            va="top",
-            fontsize=8,
-            color=GREY,
-        )
+        where: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+        panel.annotate("2h/c", (at, 1.0), (0, 2), ha="center", fontsize=8, color=GREY, **where)

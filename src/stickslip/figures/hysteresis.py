@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -11,18 +11,19 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.figures import resistance
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
+from stickslip.figures.curves import curve
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, quantity, shown, styled, zero_line
 
 if TYPE_CHECKING:
-    from stickslip.evolution import Solution
+    from stickslip.evolution.solution import Solution
 
 CASE = "loop"
 
 
 def data(solution: Solution) -> xr.Dataset:
     """The run in the plane of slip rate and load, and in time; with the set K that it walks. Its load must rise, then fall."""
-    time, rate = solution.curve("slip_rate")
-    _, load = solution.curve("load")
+    time, rate = curve(solution, "slip_rate")
+    _, load = curve(solution, "load")
     turn = int(np.argmax(load))
     background = resistance.data({CASE: solution.problem}, float(rate.max()))
     run = {
@@ -37,15 +38,13 @@ def data(solution: Solution) -> xr.Dataset:
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
     """The loop on the left, the same run against time on the right."""
-    figure, axes = panels(2, 2, (7.2, 3.9), width_ratios=(1.25, 1))
-    grid = axes[0, 0].get_gridspec()
-    axes[0, 0].remove()
-    axes[1, 0].remove()
-    loop = figure.add_subplot(grid[:, 0])
-    _draw_loop(loop, dataset)
-    _draw_time(axes[0, 1], axes[1, 1], dataset)
-    letter(loop, "a   Set K and the paths walked")
-    letter(axes[0, 1], "b   The run")
+    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    axes: Any = figure.subplot_mosaic([["loop", "load"], ["loop", "rate"]], width_ratios=(1.25, 1))
+    _draw_loop(axes["loop"], dataset)
+    _draw_time(axes["load"], axes["rate"], dataset)
+    figure.align_ylabels([axes["load"], axes["rate"]])
+    letter(axes["loop"], "a   Set K and the paths walked")
+    letter(axes["load"], "b   The run")
     return figure
 
 
@@ -62,8 +61,9 @@ def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
         x, y = rate[part] + side * shift, load[part] - side * 0.35
         axes.plot(x, y, color=colour, linewidth=1.8, label=text)
         _arrows(axes, x, y, colour)
-    resistance.draw_points(axes, dataset, CASE)
-    axes.set_ylim(40, 90)
+    axes.set(ylim=(50, 90), xlim=(-0.04 * rate.max(), 1.04 * rate.max()))
+    resistance.draw_points(axes, dataset, CASE, D=(8, 3))
+    axes.annotate("to O", (0, 50), (6, 4), textcoords="offset points", fontsize=9, fontweight="bold")
     axes.set_ylabel(label(dataset["run_load"]))
     axes.legend(loc="lower right")
 
@@ -95,10 +95,10 @@ def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
         for part, colour, _ in _parts(dataset):
             axes.plot(time[part], shown(dataset[name])[part], color=colour)
         axes.set(ylabel=label(dataset[name]), xlim=(0, time[-1]))
-    for point in "AC":
+    for point, left in (("A", 0.0), ("C", 0.25 * time[-1])):
         level = dataset[f"{CASE}_point_{point}"].values[1] / 1e6
         top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-        top.annotate(f"fold {point}, {level:.2f} MPa", (0, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
+        top.annotate(f"fold {point}, {level:.2f} MPa", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
     zero_line(bottom)
     top.tick_params(labelbottom=False)
     bottom.set_xlabel(label(dataset["run_time"]))

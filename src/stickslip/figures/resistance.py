@@ -14,7 +14,7 @@ from stickslip.contact.resistance import resistance
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled
 from stickslip.problem import Problem
 
-OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, 3), "E": (-12, 2)}
+OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Where the name of a point stands, in points from it: clear of the curve."""
 
 
@@ -31,9 +31,13 @@ def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[s
         for point, (rate, load) in corners(problem, largest_rate).items():
             where = {"long_name": f"point {point}: slip rate (m/s), load (Pa)", "units": "m/s, Pa"}
             contents[f"{name}_point_{point}"] = xr.Variable("coordinate", [rate, load], where)
-    names = {"cases": list(problems), "case_titles": [(titles or {}).get(name, name) for name in problems]}
-    where = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s"), "coordinate": ["slip_rate", "load"]}
-    return xr.Dataset(contents, coords=where, attrs={"title": "The set K", **names})
+    attributes = {
+        "title": "The set K",
+        "cases": list(problems),
+        "case_titles": [(titles or {}).get(name, name) for name in problems],
+    }
+    coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s"), "coordinate": ["slip_rate", "load"]}
+    return xr.Dataset(contents, coords=coordinates, attrs=attributes)
 
 
 def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, float]]:
@@ -88,12 +92,16 @@ def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False)
     axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
 
 
-def draw_points(axes: Axes, dataset: xr.Dataset, case: str) -> None:
-    """The points O to E of an irregular case, and the levels of its folds."""
+def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:
+    """The points O to E of an irregular case, and the levels of its folds; `moved` puts names elsewhere (points, from the point)."""
+    offsets = OFFSETS | moved
     found = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
+    low, high = axes.get_ylim()
     for point, (rate, load) in found.items():
+        if not low <= load / 1e6 <= high:
+            continue
         axes.plot(rate, load / 1e6, "o", markersize=3.5, color=INK, zorder=5, clip_on=False)
-        axes.annotate(point, (rate, load / 1e6), OFFSETS[point], textcoords="offset points", fontsize=9, fontweight="bold")
+        axes.annotate(point, (rate, load / 1e6), offsets[point], textcoords="offset points", fontsize=9, fontweight="bold")
     for start, end in (("A", "B"), ("D", "C")):
         if found:
             level = found[start][1] / 1e6

@@ -6,15 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import pyplot
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, SHOWN, VERMILLION, YEAR, letter, styled, zero_line
+from stickslip import YEAR
+from stickslip.figures.curves import Name, curve, nearly_flat
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, SHOWN, VERMILLION, letter, styled, zero_line
 
 if TYPE_CHECKING:
-    from stickslip.evolution import Solution
+    from stickslip.evolution.solution import Solution
 
-MANY = 60  # shocks beyond this are drawn by the curves alone: marks would hide them
+MANY = 60
+"""Shocks beyond this number are drawn by the curves alone: marks would hide them."""
 
 
 @styled
@@ -23,41 +27,39 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
 
     Shocks (jumps of the slip rate) are dotted lines; time is in years where seconds would be unreadable.
     """
-    end = solution.duration if end is None else end
+    end = float(solution.breaks[-1]) if end is None else end
     unit, size = ("year", YEAR) if end - start > 0.5 * YEAR else ("s", 1.0)
     figure = pyplot.figure(figsize=(6.4, 5.6), layout="constrained")
     axes: Any = figure.subplots(3, 1, sharex=True)
-    force, scale = SHOWN[solution.problem.load_unit]
-    for panel, name, divide, colour in _curves(axes, scale):
-        time, values = solution.curve(name, start, end)
-        panel.plot(
-            time / size,
-            values / divide,
-            color=colour,
-            label=name,
-            linestyle="--" if name == "load" else "-",
-            linewidth=1.0 if name == "load" else 1.5,
-        )
-        zero_line(panel)
+    drawn: tuple[tuple[Axes, Name, str], ...] = ((axes[0], "slip", BLUE), (axes[1], "slip_rate", GREEN))
+    for panel, name, colour in drawn:
+        time, values = curve(solution, name, start, end)
+        panel.plot(time / size, values, color=colour)
+    _draw_stress(axes[2], solution, start, end, size)
     for panel in axes:
+        zero_line(panel)
         for at in _shock_times(solution, start, end):
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
     axes[0].set_ylabel("slip $u$ (m)")
     axes[1].set_ylabel("slip rate $v$ (m/s)")
-    axes[2].set(ylabel=f"traction, load ({force})", xlabel=f"time $t$ ({unit})")
-    axes[2].legend(loc="best")
+    axes[2].set_xlabel(f"time $t$ ({unit})")
     letter(axes[0], title or _title(solution))
     figure.align_ylabels()
     return figure
 
 
-def _curves(axes: Any, scale: float) -> tuple[tuple[Any, str, float, str], ...]:
-    return (
-        (axes[0], "slip", 1.0, BLUE),
-        (axes[1], "slip_rate", 1.0, GREEN),
-        (axes[2], "load", scale, INK),
-        (axes[2], "traction", scale, VERMILLION),
-    )
+def _draw_stress(panel: Axes, solution: Solution, start: float, end: float, size: float) -> None:
+    """Traction and load; as changes from the initial load where they hardly change."""
+    units = solution.problem.load_unit
+    (time, load), (_, traction) = curve(solution, "load", start, end), curve(solution, "traction", start, end)
+    unit, scale = SHOWN[units]
+    offset, text = 0.0, f"traction, load ({unit})"
+    if nearly_flat(load, traction):
+        scale, offset, text = 1.0, solution.problem.load, f"change of\ntraction, load ({units})"
+    panel.plot(time / size, (load - offset) / scale, color=INK, linewidth=1.0, linestyle="--", label=r"load $\beta$")
+    panel.plot(time / size, (traction - offset) / scale, color=VERMILLION, label=r"traction $\tau$")
+    panel.set_ylabel(text)
+    panel.legend(loc="best")
 
 
 def _shock_times(solution: Solution, start: float, end: float) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ T = TypeVar("T")
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 INK, GREY, PALE = "#222222", "#7A7A7A", "#D9D9D9"
 
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "mathtext.fontset": "dejavusans",
@@ -57,7 +57,6 @@ STYLE: dict[str, Any] = {
 
 # SI units that are shown under a larger name: (name, how many SI units it holds)
 SHOWN = {"Pa": ("MPa", 1e6), "N": ("TN", 1e12)}
-YEAR = 31_557_600.0
 
 
 def styled(function: Callable[P, T]) -> Callable[P, T]:

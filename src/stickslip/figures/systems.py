@@ -42,7 +42,7 @@ def data(block: Problem, slab: Problem) -> xr.Dataset:
 @styled
 def draw(_: xr.Dataset) -> Figure:
     """A sketch, not to scale: it shows what the symbols mean, the numbers are in the dataset."""
-    figure, axes = panels(1, 2, (7.2, 2.9))
+    figure, axes = panels(1, 2, (7.2, 2.7))
     _draw_block(axes[0, 0])
     _draw_slab(axes[0, 1])
     letter(axes[0, 0], "a   Spring-block")
@@ -51,7 +51,7 @@ def draw(_: xr.Dataset) -> Figure:
 
 
 def _blank(axes: Axes) -> None:
-    axes.set(xlim=(0, 10), ylim=(0.2, 6.4), aspect="equal")
+    axes.set(xlim=(0, 10), ylim=(0.2, 6.8), aspect="equal")
     axes.axis("off")
 
 
@@ -91,13 +91,11 @@ def _draw_slab(axes: Axes) -> None:
         fontsize=10.5,
         bbox={"facecolor": "#FBE3D4", "pad": 1.5, "linewidth": 0},
     )
-    axes.text(5.2, 5.85, "$u(h,t)=D_0+Vt$", ha="center", va="center")
+    axes.text(6.1, 5.9, "$u(h,t)=D_0+Vt$", ha="center", va="center")
     _arrow(axes, (8.2, 5.35), (9.7, 5.35), "$V$", (9.0, 5.6))
     axes.text(7.0, 1.62, "$u(0,t)$")
     _arrow(axes, (2.6, 1.12), (1.0, 1.12), r"$\tau$", (1.8, 0.45), VERMILLION)
-    for at in (4.4, 5.6):
-        _arrow(axes, (at, 0.25), (at, 1.25))
-    axes.text(5.85, 0.5, "$S$")
+    _arrow(axes, (3.4, 6.6), (3.4, 5.5), "$S$", (3.7, 6.0))
     axes.annotate("", (9.1, 5.2), (9.1, 1.4), arrowprops={"arrowstyle": "<->", "linewidth": 0.9, "color": GREY})
     axes.text(9.25, 3.3, "$h$", va="center")
     axes.text(9.3, 1.62, "$x=0$", fontsize=8.0, color=GREY)

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
-from stickslip.friction import FrictionLaw
+from stickslip.friction import FrictionLaw, SinusoidalSlip
 from stickslip.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
@@ -98,7 +98,20 @@ def _derived(problem: Problem) -> list[Fact]:
         Fact("r", body.reflection, "1", "reflection at the driver: -1 rigid, 0 matched, +1 dead load"),
         Fact("G V/h", body.stiffness * problem.pull_rate, "Pa/s", "rate of loading at first"),
         *start,
+        *_pulses(problem),
     ]
+
+
+def _pulses(problem: Problem) -> list[Fact]:
+    """The period of pulses of a slab whose friction oscillates along slip: 2 pi Z / (omega sqrt((load - mu0 S)^2 - (a S)^2))."""
+    law, body = problem.friction, problem.body
+    if not isinstance(law, SinusoidalSlip) or not isinstance(body, ElasticSlab):
+        return []
+    beyond, swing = problem.load - law.mean * problem.normal, abs(law.amplitude) * problem.normal
+    if not (beyond > swing and law.wavenumber):
+        return []
+    period = 2 * math.pi * body.impedance / (abs(law.wavenumber) * math.sqrt((beyond - swing) * (beyond + swing)))
+    return [Fact("pulse period", period, "s", "time between pulses of slip under the load of the start, until the first echo")]
 
 
 def loading_rate(problem: Problem) -> float:

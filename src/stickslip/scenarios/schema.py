@@ -87,13 +87,13 @@ def _reader(name: str, declared: Quantity) -> Any:
     return read
 
 
-def read_duration(text: str, name: str) -> float:
-    """A duration (s) typed by hand: a number of seconds, or a text with a unit. Raises InputError beginning with `name`."""
+def read_duration(text: str, where: str, name: str = "duration") -> float:
+    """A duration (s) typed by hand: a number of seconds, or a text with a unit. Raises InputError beginning with `where`."""
     try:
         value: float | str = float(text)
     except ValueError:
         value = text
-    return read_quantity(value, DURATION, name, "duration")
+    return read_quantity(value, DURATION, where, name)
 
 
 def check_rtol(value: float, where: str, name: str = "rtol") -> float:

@@ -32,8 +32,7 @@ def split_quantity(text: str) -> tuple[float, str] | None:
 def si_factor(unit: str, si: str) -> Fraction:
     """How many `si` one `unit` is, exactly. A year is the Julian year of 31 557 600 s.
 
-    Raises InputError (the end of a sentence that begins with the place) for a name that is no unit, for another dimension, and
-    for units that are not proportional (decibels, degrees Celsius).
+    Raises InputError, the end of a sentence that begins with the place, for a name that is no unit and for another dimension.
     """
     import pint
 
@@ -41,17 +40,15 @@ def si_factor(unit: str, si: str) -> Fraction:
     try:
         parsed = registry.parse_units(_with_one(unit))
         target = registry.parse_units(si)
-        factor = registry.get_root_units(parsed, check_nonmult=True)[0]
+        factor = registry.get_root_units(parsed)[0]
         same = parsed.dimensionality == target.dimensionality
     except pint.UndefinedUnitError as error:
-        name = str(error.args[0])
+        name = str(error.args[0]).removeprefix("delta_")  # decibels and the like: no factor leads from them to SI
         raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
     except pint.PintError:
         raise InputError(f"'{unit}' is not a unit; write it like {si}") from None
     if not same:
-        raise InputError(f"'{unit}' is not a unit of this quantity; use {si} or what converts to it")
-    if factor is None:
-        raise InputError(f"'{unit}' is not proportional to {si}; use {si}")
+        raise InputError(f"'{unit}' does not convert to {si}")
     return Fraction(factor) / Fraction(registry.get_root_units(target)[0])
 
 

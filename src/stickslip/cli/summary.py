@@ -1,0 +1,70 @@
+"""What happened in a run, for people: what ended it, its slip events, its shocks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from stickslip.cli.show import clean, console, number, table, with_unit
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from rich.console import Console
+
+    from stickslip.evolution.solution import Solution
+    from stickslip.scenarios.scenario import Scenario
+
+FIRST = 12
+"""Rows of a table that are shown."""
+LATE = 1e4
+"""Time (s) from which on decimals are shown rather than a number of digits."""
+
+
+def show_solution(scenario: Scenario, solution: Solution) -> None:
+    """Print the summary on standard output."""
+    screen, force = console(), scenario.problem.load_unit
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{solution.status.name}: {solution.status.message}")
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    screen.print(f"selection rule {solution.selection_note}\n")
+    units = ("s", "s", "s", "m", "m/s", force, force, "")
+    _print(screen, "slip event", _with_lengths(solution.events), units)
+    _print(screen, "shock", solution.shocks, ("s", "", "m/s", "m/s", force, force))
+
+
+def _with_lengths(events: DataFrame) -> DataFrame:
+    """Events with their length and the time to their peak: late times have no digits left for either."""
+    shown = events.assign(lasts=events.end - events.start, peak_after=events.peak_time - events.start)
+    for name in ("lasts", "peak_after"):
+        shown[name] = [_resolved(length, late) for length, late in zip(shown[name], events.peak_time, strict=True)]
+    return shown[["start", "lasts", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]]
+
+
+def _resolved(length: float, late: float) -> float:
+    """A difference of two times (s), to the digits that times as late as `late` leave it."""
+    decimals = -math.ceil(math.log10(4.0 * math.ulp(late))) if late > 0 else 15
+    return round(length, decimals) if math.isfinite(length) else length
+
+
+def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:
+    if rows.empty:
+        screen.print(f"no {what}\n")
+        return
+    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(rows.columns, units, strict=True)]
+    for digits in (8, 5):  # fewer where the terminal is narrow
+        shown = table(*headings, numbers=True)
+        for row in rows.head(FIRST).itertuples(index=False):
+            shown.add_row(*(_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)))
+        if screen.measure(shown).maximum < screen.width:
+            break
+    more = f", the first {FIRST} of them" if len(rows) > FIRST else ""
+    screen.print(f"{len(rows)} {what}{'s' if len(rows) > 1 else ''}{more}")
+    screen.print(shown)
+    screen.print()
+
+
+def _cell(value: Any, unit: str, digits: int) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.{digits - 2}f}" if unit == "s" and LATE <= abs(value) < math.inf else number(value, digits)

@@ -1,0 +1,121 @@
+"""Claims on the block's mass and on its rest: 14 and 15."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from stickslip import YEAR
+from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.evolution.solution import Solution
+from stickslip.friction import HyperbolicRate
+from stickslip.paper.cases import Runs, problem
+from stickslip.paper.claims.verdict import Verdict, judge, verdict
+from stickslip.problem import Problem
+
+MASS_FACTORS = (1.0, 1e-2, 1e-4, 1e-6)
+CONTACT_MASSES = (1e6, 1e5, 1e4)
+"""Masses on the slab's contact, kg/m^2: for comparison, the slab itself has rho h = 2.8e7."""
+
+
+def concentrated_mass(runs: Runs) -> Verdict:
+    """Claim 14: take the mass from the block and its rise becomes a jump; put mass on the slab's contact and its jumps vanish."""
+    jump = runs.case("fig6-slab").shocks.rate_after.iloc[0]
+    light = {factor: _lightened(factor) for factor in MASS_FACTORS}
+    block = {factor: runs(case, duration) for factor, (case, duration) in light.items()}
+    slab = {mass: runs(_with_contact_mass(mass), 12.0) for mass in CONTACT_MASSES}
+    rise = {factor: rise_time(s) for factor, s in block.items()}
+    slab_rise = {mass: rise_time(s) for mass, s in slab.items()}
+    lightest = MASS_FACTORS[-1]
+    to_a_jump = rise[lightest] < 1e-4 * rise[1.0] and abs(_peak(block[lightest]) / jump - 1.0) < 0.01
+    shocks = {mass: len(s.shocks) for mass, s in slab.items()}
+    proportional = slab_rise[CONTACT_MASSES[-1]] < 0.1 * slab_rise[CONTACT_MASSES[0]]
+    why = (
+        "Both ways. The block, with the slab's radiation resistance Z times its area as damping, rises from 10 to 90 % of its "
+        "peak in a time that goes to zero with its mass, and its peak goes to the slab's jump: without mass its slip rate "
+        "jumps. The slab with mass on its contact has no shock at all, and rises in a time proportional to that mass."
+    )
+    numbers = [
+        ("jump of the slab", jump, "m/s"),
+        *((f"rise time, block with mass × {factor:g}", t, "s") for factor, t in rise.items()),
+        *((f"largest slip rate, block with mass × {factor:g}", _peak(s), "m/s") for factor, s in block.items()),
+        *((f"shocks, slab with {mass:g} kg/m² on its contact", n, "") for mass, n in shocks.items()),
+        *((f"rise time, slab with {mass:g} kg/m² on its contact", t, "s") for mass, t in slab_rise.items()),
+        *((f"largest slip rate, slab with {mass:g} kg/m² on its contact", _peak(s), "m/s") for mass, s in slab.items()),
+    ]
+    return verdict(
+        14, judge(to_a_jump and not any(shocks.values()) and proportional), "α = 1 s/m, block with K = G × 10³ m", why, *numbers
+    )
+
+
+def _lightened(factor: float) -> tuple[Problem, float]:
+    """The block of Fig. 6 with less mass and the slab's radiation as damping; and a duration that ends shortly after its peak."""
+    case, slab = problem("fig6-block-reconstructed"), problem("fig6-slab").body
+    body, law = case.body, case.friction
+    assert isinstance(body, SpringBlock)
+    assert isinstance(slab, ElasticSlab)
+    assert isinstance(law, HyperbolicRate)
+    area = body.normal_force / slab.normal_stress
+    mass, damping = body.mass * factor, slab.impedance * area
+    growth = (body.normal_force * (law.static - law.dynamic) * law.alpha - damping) / mass
+    return replace(case, body=replace(body, mass=mass, damping=damping)), 120.0 / growth
+
+
+def _with_contact_mass(mass: float) -> Problem:
+    case = problem("fig6-slab")
+    assert isinstance(case.body, ElasticSlab)
+    return replace(case, body=replace(case.body, contact_mass=mass))
+
+
+def _peak(solution: Solution) -> float:
+    return float(solution.events.peak_rate.max())
+
+
+def rise_time(solution: Solution) -> float:
+    """Time (s) from 10 to 90 % of the peak of the first event, on its way up."""
+    event = solution.events.iloc[0]
+    low, high = (_reaches(solution, share * event.peak_rate, event.start, event.peak_time) for share in (0.1, 0.9))
+    return high - low
+
+
+def _reaches(solution: Solution, rate: float, start: float, end: float) -> float:
+    """The first time (s) in (start, end) at which the slip rate reaches `rate`, by sections of 256."""
+    for _ in range(12):
+        time = np.linspace(start, end, 257)
+        first = int(np.argmax(solution.slip_rate(time) >= rate))
+        if first == 0:
+            break
+        start, end = float(time[first - 1]), float(time[first])
+    return end
+
+
+def block_stays_put(runs: Runs) -> Verdict:
+    """Claim 15: run the block on to its second event; beside it, what the spring needs to regain the strength."""
+    readings = {"slip law, K = G × 10³ m": "fig5-block-reconstructed-k", "slip law, ω = 50 /m": "fig5-block-reconstructed-omega"}
+    readings["rate law, K = G × 10³ m"] = "fig6-block-reconstructed"
+    numbers, rests = [], []
+    for reading, name in readings.items():
+        expected = reloading_time(runs.case(name))
+        events = runs(problem(name), expected + 60.0).events
+        rest = float(events.start.iloc[1] - events.end.iloc[0])
+        rests.append(rest)
+        numbers += [
+            (f"rest, {reading}", rest / YEAR, "year"),
+            (f"duration of the event, {reading}", events.end.iloc[0] - events.start.iloc[0], "s"),
+        ]
+        numbers += [(f"reloading time (strength − force)/(K V), {reading}", expected / YEAR, "year")]
+    why = (
+        "The spring has to be pulled by what the event released before the block moves again: years, against an event of "
+        "seconds. As printed there is no event after which to rest."
+    )
+    return verdict(15, judge(False, min(rests) > YEAR), "K = G × 10³ m or ω = 50 /m", why, *numbers)
+
+
+def reloading_time(solution: Solution) -> float:
+    """Time (s) in which the driver raises the spring's force from its value after the run to the static strength."""
+    case = solution.problem
+    assert isinstance(case.body, SpringBlock)
+    slip, load = float(solution.slip(solution.duration)), float(solution.load(solution.duration))
+    strength = case.normal * float(case.friction.static_coefficient(slip))
+    return (strength - load) / (case.body.stiffness * case.pull_rate)

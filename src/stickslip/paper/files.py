@@ -1,0 +1,56 @@
+"""Files that are whole or not there: written under another name, then renamed."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+def whole(path: Path, write: Callable[[Path], object]) -> Path:
+    """Call `write` with a temporary name beside `path`, then rename; nothing is left behind if it fails."""
+    partial = path.with_name(f".{path.name}.partial")
+    try:
+        write(partial)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def save_text(path: Path, text: str) -> Path:
+    """Text in UTF-8 with plain line ends."""
+    return whole(path, lambda partial: partial.write_text(text, encoding="utf-8", newline="\n"))
+
+
+def save_bytes(path: Path, content: bytes) -> Path:
+    """Bytes as they are."""
+    return whole(path, lambda partial: partial.write_bytes(content))
+
+
+def save_table(path: Path, table: pd.DataFrame) -> Path:
+    """CSV with every digit."""
+    return save_text(path, table.to_csv(index=False, lineterminator="\n"))
+
+
+def save_data(path: Path, dataset: xr.Dataset) -> Path:
+    """netCDF-4."""
+    return whole(path, lambda partial: dataset.to_netcdf(partial, engine="h5netcdf"))
+
+
+def image(figure: Figure, kind: str) -> bytes:
+    """A figure as the bytes of a "png" or "svg" file, the same for the same input: no date, no random names."""
+    import matplotlib as mpl
+
+    from stickslip.figures.style import STYLE
+
+    stream = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(stream, format=kind, metadata={"Date": None} if kind == "svg" else {"Software": None})
+    return stream.getvalue()

@@ -1,0 +1,133 @@
+"""Figures 1 to 7 of the paper: which runs, which data, which caption."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from stickslip.contact.uniqueness import uniqueness
+from stickslip.figures import comparison, hysteresis, laws, resistance, systems
+from stickslip.friction import FrictionLaw, HyperbolicRate, SinusoidalSlip
+from stickslip.paper.cases import Runs, problem
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+SHOWN = 7.0
+"""Seconds that Figs 5 to 7 show: somewhat more than one round trip of the waves."""
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A figure: how to get its data, how to draw them, what stands below."""
+
+    number: int
+    title: str
+    caption: str
+    data: Callable[[Runs], xr.Dataset]
+    draw: Callable[[xr.Dataset], Figure]
+
+
+def _systems(_: Runs) -> xr.Dataset:
+    return systems.data(problem("fig6-block-printed"), problem("fig6-slab"))
+
+
+def _laws(_: Runs) -> xr.Dataset:
+    slip: dict[str, FrictionLaw] = {}
+    for name in ("fig5-slab-printed", "fig5-slab-reconstructed"):
+        law = problem(name).friction
+        assert isinstance(law, SinusoidalSlip)
+        slip[rf"$\omega$ = {law.wavenumber:g} /m"] = law
+    rate: dict[str, FrictionLaw] = {}
+    for name in ("fig6-slab", "fig7-slab-critical"):
+        law = problem(name).friction
+        assert isinstance(law, HyperbolicRate)
+        rate[rf"$\alpha$ = {law.alpha:g} s/m"] = law
+    return laws.data(slip, rate, 1.3, 10.0)
+
+
+def _sets(_: Runs) -> xr.Dataset:
+    irregular = problem("fig6-slab")
+    law = irregular.friction
+    assert isinstance(law, HyperbolicRate)
+    alpha = 0.5 * (uniqueness(irregular).critical_value or 0.0)
+    regular = replace(irregular, friction=replace(law, alpha=alpha))
+    titles = {"regular": rf"Regular, $\alpha$ = {alpha:g} s/m", "irregular": rf"Irregular, $\alpha$ = {law.alpha:g} s/m"}
+    return resistance.data({"regular": regular, "irregular": irregular}, 6.0, titles)
+
+
+def _loop(runs: Runs) -> xr.Dataset:
+    return hysteresis.data(runs.case("fig4-loop"))
+
+
+def _side_by_side(block: str, slab: str, titles: tuple[str, str], block_end: float = SHOWN) -> Callable[[Runs], xr.Dataset]:
+    def data(runs: Runs) -> xr.Dataset:
+        solutions = {"block": runs(problem(block), SHOWN), "slab": runs(problem(slab), SHOWN)}
+        ends = {"block": block_end, "slab": SHOWN}
+        return comparison.data(solutions, ends, dict(zip(solutions, titles, strict=True)))
+
+    return data
+
+
+PLATES = (
+    Plate(
+        1,
+        "The two systems",
+        "A rigid block pulled through a spring, and an elastic slab of infinite extent pulled at its far side, both on a "
+        "frictional contact. Not to scale.",
+        _systems,
+        systems.draw,
+    ),
+    Plate(
+        2,
+        "The friction laws",
+        "Left: the sinusoidal slip law (14), as printed and as reconstructed. Right: the hyperbolic rate law (15) of Figs 6 and 7.",
+        _laws,
+        laws.draw,
+    ),
+    Plate(
+        3,
+        "The set K",
+        "Every pair of slip rate and load that solves the contact equation. Regular: one slip rate for each load. "
+        "Irregular: three between the folds A and C. Dotted: the jumps of the rule of perfect delay.",
+        _sets,
+        resistance.draw,
+    ),
+    Plate(
+        4,
+        "The rule of perfect delay, walked by one run",
+        "A slab under a dead load, pushed so that the load rises and falls within one round trip. Left: its path over the "
+        "set K (grey); the two ways are drawn a little apart where they share a branch. Right: the same run in time.",
+        _loop,
+        hysteresis.draw,
+    ),
+    Plate(
+        5,
+        "Block and slab under the slip law",
+        "Reconstructed: ω = 50 /m and 1 mm added to D0; the block's stiffness as printed. The block slips once; the slab "
+        "slips in pulses until the reflected wave arrests it at 2h/c. The block's time axis is shorter.",
+        _side_by_side("fig5-block-reconstructed-omega", "fig5-slab-reconstructed", ("Block, slip law", "Slab, slip law"), 1.2),
+        comparison.draw,
+    ),
+    Plate(
+        6,
+        "Block and slab under the rate law, α = 1 s/m",
+        "The slab as printed; the block with K = G × 10³ m (as printed, K = G × 10⁴ m, it has no macroscopic event). The "
+        "block's slip rate is continuous, the slab's jumps at 0+ and at 2h/c.",
+        _side_by_side("fig6-block-reconstructed", "fig6-slab", (r"Block, $\alpha$ = 1 s/m", r"Slab, $\alpha$ = 1 s/m")),
+        comparison.draw,
+    ),
+    Plate(
+        7,
+        "Block and slab under the rate law just above the critical value, α = αc + 10⁻⁶ s/m",
+        "The slab as printed: two tiny shocks with smooth acceleration between them. The block with K = G × 10³ m and the "
+        "same friction only follows the driver in tiny steps, four orders slower.",
+        _side_by_side(
+            "fig7-block-critical", "fig7-slab-critical", (r"Block, $\alpha_c$ + 10$^{-6}$ s/m", r"Slab, $\alpha_c$ + 10$^{-6}$ s/m")
+        ),
+        comparison.draw,
+    ),
+)
+"""Every figure, in the paper's order."""

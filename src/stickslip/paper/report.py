@@ -1,0 +1,67 @@
+"""The report: one HTML page that needs nothing else."""
+
+from __future__ import annotations
+
+import math
+from base64 import b64encode
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+import stickslip as ss
+from stickslip.paper.cases import READINGS, REFERENCE, Runs
+from stickslip.paper.claims import Outcome, Verdict
+from stickslip.paper.constants import constants
+from stickslip.paper.plates import PLATES
+from stickslip.paper.tables import cases_table
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+MARKS = {Outcome.PRINTED: "✓", Outcome.READING: "◐", Outcome.QUALIFIED: "≈", Outcome.NOT: "✗"}
+"""A sign for each outcome, so that it does not rest on colour."""
+
+
+def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict]) -> str:
+    """The page, from the figures (SVG by number) and the verdicts."""
+    environment = Environment(
+        loader=PackageLoader("stickslip.paper"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["number"] = number
+    environment.filters["quantity"] = lambda measured: with_unit(measured.value, measured.unit)
+    counts = Counter(v.outcome for v in verdicts)
+    return environment.get_template("report.html.j2").render(
+        version=ss.__version__,
+        reference=REFERENCE,
+        rtol=f"{runs.rtol:g}",
+        verdicts=verdicts,
+        outcomes=[(outcome, MARKS[outcome], counts[outcome]) for outcome in Outcome],
+        marks=MARKS,
+        constants=constants(),
+        plates=PLATES,
+        pictures={n: "data:image/svg+xml;base64," + b64encode(svg).decode("ascii") for n, svg in images.items()},
+        cases=[list(row) for row in cases_table(runs).itertuples(index=False)],
+        headings=list(cases_table(runs).columns),
+        readings=READINGS,
+    )
+
+
+def number(value: float | int | str | None, digits: int = 9) -> str:
+    """A number for people: plain where that is short, otherwise a power of ten."""
+    if value is None:
+        return "–"
+    if isinstance(value, str):
+        return value
+    if not math.isfinite(value):
+        return "–" if math.isnan(value) else "∞"
+    if value == 0 or 1e-3 <= abs(value) < 1e7:
+        return f"{value:.{digits}g}".replace("-", "−")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    short = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+    return f"{short} × 10{str(int(exponent)).translate(SUPERSCRIPTS)}".replace("-", "−")
+
+
+def with_unit(value: float, unit: str) -> str:
+    """A number and its unit; stresses of a size in MPa."""
+    if unit == "Pa" and abs(value) >= 1e5:
+        value, unit = value / 1e6, "MPa"
+    return f"{number(value)} {unit}".strip()

@@ -1,0 +1,96 @@
+"""Tables of the paper's cases: runs, events, shocks, claims, constants. Units stand in the headings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from stickslip.paper.cases import READINGS, Runs
+from stickslip.paper.claims import Verdict
+from stickslip.paper.constants import constants
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+UNITS = {
+    "start": "s",
+    "end": "s",
+    "time": "s",
+    "slip": "m",
+    "peak_rate": "m/s",
+    "peak_time": "s",
+    "traction_drop": "Pa or N",
+    "static_drop": "Pa or N",
+    "rate_before": "m/s",
+    "rate_after": "m/s",
+    "traction_before": "Pa",
+    "traction_after": "Pa",
+}
+
+
+def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFrame]:
+    """Every table by the name of its file."""
+    return {
+        "cases": cases_table(runs),
+        "events": _stacked(runs, "events"),
+        "shocks": _stacked(runs, "shocks"),
+        "claims": claims_table(verdicts),
+        "constants": constants_table(),
+    }
+
+
+def cases_table(runs: Runs) -> pd.DataFrame:
+    """One row a case: what was run, and what came of it."""
+    import pandas as pd
+
+    rows = []
+    for name, reading in READINGS.items():
+        solution = runs.case(name)
+        events = solution.catalogue(0.0)
+        row = {
+            "case": name,
+            "reading": reading,
+            "duration [s]": solution.duration,
+            "selection rule": solution.problem.selection,
+            "largest slip rate [m/s]": events.peak_rate.max(),
+            "slip [m]": float(solution.slip(solution.duration)) - solution.problem.initial_slip,
+            "events": len(solution.events),
+            "shocks": len(solution.shocks),
+            "status": solution.status.name,
+        }
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _stacked(runs: Runs, table: str) -> pd.DataFrame:
+    """Events or shocks of every case, one below the other, behind the name of the case."""
+    import pandas as pd
+
+    parts = []
+    for name in READINGS:
+        part: pd.DataFrame = getattr(runs.case(name), table).copy()
+        part.insert(0, "case", name)
+        parts.append(part)
+    # cases without a row would make the columns' types ambiguous
+    whole = pd.concat([part for part in parts if len(part)], ignore_index=True)
+    return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items()})
+
+
+def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
+    """One row a measured number, behind its claim and verdict."""
+    import pandas as pd
+
+    rows = [
+        (v.number, v.claim, str(v.outcome), v.reading, measured.label, measured.value, measured.unit)
+        for v in verdicts
+        for measured in v.measured
+    ]
+    return pd.DataFrame(rows, columns=["number", "claim", "verdict", "reading", "measured", "value", "unit"])
+
+
+def constants_table() -> pd.DataFrame:
+    """The constants in both readings."""
+    import pandas as pd
+
+    rows = [(c.symbol, c.meaning, c.printed, c.reconstructed, c.unit, c.note) for c in constants()]
+    return pd.DataFrame(rows, columns=["symbol", "meaning", "printed", "reconstructed", "unit", "note"])

@@ -1,0 +1,133 @@
+"""What each command says when all is well."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from stickslip import __version__
+from stickslip.cli.names import STARTERS, complete_scenario
+from stickslip.scenarios import library, templates
+from stickslip.scenarios.scenario import load_scenario
+
+
+@pytest.mark.parametrize("name", ["run", "check", "new", "paper"])
+def test_help_says_what_it_does_with_an_example(command, name):
+    shown = command(name, "--help")
+    assert shown.code == 0
+    assert f"stickslip {name} " in shown.out.partition("Usage")[2].partition("\n")[2]
+
+
+def test_without_arguments_it_teaches(command):
+    shown = command()
+    assert shown.code == 0
+    for name in ("run", "check", "new", "paper"):
+        assert re.search(rf"│ {name} ", shown.out)
+    assert shown.out.rstrip() == command("--help").out.rstrip()
+
+
+def test_version(command):
+    assert command("--version").out == f"stickslip {__version__}\n"
+
+
+def test_help_is_fast_because_it_compiles_and_validates_nothing():
+    code = (
+        "import sys\nfrom stickslip.cli.main import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
+        "print(*({'numba', 'pydantic', 'pandas', 'pint', 'matplotlib'} & set(sys.modules)), end='', file=sys.stderr)"
+    )
+    start = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert done.returncode == 0
+    assert time.perf_counter() - start < 5.0
+
+
+@pytest.mark.parametrize("name", templates.template_names())
+def test_new_prints_the_template(command, name):
+    assert command("new", name).out == templates.template(name)
+
+
+def test_new_lists_every_name(command):
+    shown = command("new", "--list")
+    assert shown.code == 0
+    for name in templates.template_names():
+        assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
+
+
+def test_what_new_prints_can_be_checked_and_run(command, tmp_path: Path):
+    (tmp_path / "mine.toml").write_text(command("new", "slab").out)
+    assert command("check", "mine.toml").code == 0
+    assert command("run", "mine.toml").code == 0
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_check(command, name):
+    shown = command("check", name)
+    assert shown.code == 0
+    assert shown.out.startswith(load_scenario(name).title)
+    for word in ("what follows", "start", "stability", "uniqueness"):
+        assert re.search(rf"^{word} ", shown.out, re.MULTILINE)
+
+
+def test_check_shows_units_folds_and_warnings(command):
+    out = command("check", "fig6-slab").out
+    for text in (
+        "9.8 MPa s/m",
+        "34.3 GPa",
+        "5.7142857 s",
+        "(0.05 m/year)",
+        "80 MPa",
+        "slip rate 1.25876976 m/s, load 64471887.2424 Pa",
+    ):
+        assert text in out
+    assert "warning" in out
+
+
+def test_run_says_what_happened(command):
+    shown = command("run", "fig6-slab")
+    assert shown.code == 0
+    assert shown.err == ""
+    for text in ("finished", "1 slip event", "23.440233", "2 shocks", "4.1020408", "this run rests on the rule"):
+        assert text in shown.out
+
+
+def test_run_takes_other_durations_rules_and_tolerances(command):
+    shown = command("run", "fig6-slab", "--duration", "3 s", "--rtol", "1e-6", "--selection", "maxwell")
+    assert shown.code == 0
+    assert "duration 3 s, rtol 1e-06" in shown.out
+    assert "maxwell" in shown.out
+    assert "1 shock\n" in shown.out
+    assert "duration 3 s" in command("run", "fig6-slab", "--duration", "3").out
+
+
+def test_run_writes_what_it_is_asked_for_and_nothing_else(command, tmp_path: Path):
+    shown = command("run", "fig6-slab", "--out", "a.nc", "--figure", "a.svg")
+    assert shown.code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.svg"]
+    assert "written: a.nc" in shown.out
+    assert "written: a.svg" in shown.out
+    assert (tmp_path / "a.svg").read_text().lstrip().startswith("<?xml")
+
+
+def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "fig6-mine.toml").touch()
+    (tmp_path / "notes.txt").touch()
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "deep.toml").touch()
+    monkeypatch.chdir(tmp_path)
+    assert complete_scenario("fig6-") == [name for name in library.names() if name.startswith("fig6-")] + ["fig6-mine.toml"]
+    assert complete_scenario("s") == [name for name in library.names() if name.startswith("s")] + ["sub/"]
+    assert complete_scenario("sub/") == ["sub/deep.toml"]
+    assert complete_scenario("nowhere/") == []
+    request = {"_STICKSLIP_COMPLETE": "complete_bash", "COMP_WORDS": "stickslip new sl", "COMP_CWORD": "2"}
+    code = "from stickslip.cli.main import main; main()"
+    done = subprocess.run([sys.executable, "-c", code], env=os.environ | request, capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["slab"]
+
+
+def test_the_completed_starters_are_those_that_exist():
+    assert set(STARTERS) == set(templates.STARTERS)

@@ -1,0 +1,90 @@
+"""Every failure is one line on standard error and an exit code, and nothing is written."""
+
+from pathlib import Path
+
+import pytest
+
+from stickslip.evolution.status import STATUSES
+from stickslip.scenarios.scenario import Scenario
+
+CASES = [
+    (["rn"], "No such command 'rn'. Did you mean 'run'?"),
+    (["run"], "Missing argument 'scenario'."),
+    (["run", "fig6-slab", "--figur", "a.png"], "No such option: --figur"),
+    (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
+    (["check", "fig6-slap"], "fig6-slap: no such file"),
+    (["check", "."], ".: cannot be read: Is a directory"),
+    (["new"], "new: which scenario? `stickslip new --list` lists them"),
+    (["new", "blok"], "no scenario 'blok'; did you mean 'block'?"),
+    (["run", "fig6-slab", "--out", "a.csv"], "--out a.csv: the name must end in .nc"),
+    (["run", "fig6-slab", "--out", "no/a.nc"], "--out no/a.nc: there is no folder no"),
+    (["run", "fig6-slab", "--figure", "a.xyz"], "--figure a.xyz: the name must end in .png or .pdf or .svg"),
+    (["run", "fig6-slab", "--out", "a.nc", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
+    (["run", "fig6-slab", "--duration", "10 kg"], "run: --duration must be a number in s or a text with a unit"),
+    (["run", "fig6-slab", "--duration", "0"], "run: --duration must be greater than 0 s, got 0"),
+    (["run", "fig6-slab", "--duration", "nan"], "run: --duration must be finite, got nan"),
+    (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
+    (["run", "fig6-slab", "--rtol", "much"], "Invalid value for '--rtol'"),
+    (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
+    (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
+    (["check", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
+    (["check", "\x1b[31mred.toml"], "'\\x1b[31mred.toml': no such file"),
+    (["paper", "--out", "bad.toml/paper"], "--out bad.toml/paper:"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), CASES)
+def test_one_line_and_nothing_written(command, tmp_path: Path, arguments: list[str], message: str):
+    (tmp_path / "bad.toml").write_text(command("new", "slab").out.replace("thickness =", "thicknes ="))
+    shown = command(*arguments)
+    assert shown.code == 2
+    assert shown.out == ""
+    assert shown.err.startswith(f"stickslip: {message}")
+    assert shown.err.count("\n") == 1
+    assert shown.err.strip().isprintable()
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("stickslip.cli.files.os.access", lambda *_: False)
+    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    shown = command("run", "fig6-slab", "--out", "a.nc")
+    assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: the folder . is not writable\n")
+
+
+def test_ctrl_c_is_one_line(command, monkeypatch: pytest.MonkeyPatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Scenario, "run", interrupted)
+    shown = command("run", "fig6-slab")
+    assert (shown.code, shown.out, shown.err) == (130, "", "stickslip: interrupted\n")
+
+
+def test_a_full_disk_is_one_line_and_leaves_no_half_file(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def fails(self, path, **_):
+        Path(path).write_text("half")
+        raise OSError(28, "No space left on device", str(path))
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", fails)
+    shown = command("run", "fig6-slab", "--figure", "a.png")
+    assert shown.code == 2
+    assert shown.err.count("\n") == 1
+    assert "No space left on device" in shown.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok])
+def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: pytest.MonkeyPatch, status):
+    original = Scenario.run
+
+    def failing(self, progress=None):
+        solution = original(self, progress)
+        object.__setattr__(solution, "status", status)
+        return solution
+
+    monkeypatch.setattr(Scenario, "run", failing)
+    shown = command("run", "fig6-slab")
+    assert shown.code == (130 if status.name == "interrupted" else 1)
+    assert status.message in shown.out
+    assert "1 slip event" in shown.out

@@ -1,0 +1,58 @@
+"""A friction law with as many folds as wanted, for the tests of this folder."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import stickslip as ss
+from stickslip.friction.expression import cos, exp
+from stickslip.quantities import quantity
+
+SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
+"""The paper's slab."""
+Z, S = 9.8e6, 1e8
+ALPHA_C = 0.196
+
+
+@dataclass(frozen=True)
+class Wavy(ss.friction.FrictionLaw):
+    """mu = mean + amplitude cos(beat v + turn u) exp(-v / fade) - amplitude cos(turn u): it rises and falls with the rate."""
+
+    kind: ClassVar[str] = "wavy-test"
+    source: ClassVar[str] = "made up"
+
+    mean: float = quantity("1", "friction at rest")
+    amplitude: float = quantity("1", "amplitude")
+    beat: float = quantity("s/m", "wavenumber along the slip rate")
+    fade: float = quantity("m/s", "slip rate at which the waves fade")
+    turn: float = quantity("1/m", "phase along slip", default=0.0)
+    step: float = quantity("1", "step from static to sliding friction", at_least=0, default=0.0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.mean + law.amplitude * cos(law.beat * v + law.turn * u) * exp(-v / law.fade) - law.amplitude * cos(law.turn * u)
+
+    @property
+    def static_excess(self) -> float:
+        return self.step
+
+    def range(self) -> tuple[float, float]:
+        return self.mean - 2 * abs(self.amplitude), self.mean + 2 * abs(self.amplitude) + self.step
+
+
+def hyperbolic(alpha: float) -> ss.friction.HyperbolicRate:
+    """The paper's rate law, eq. (15)."""
+    return ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=alpha)
+
+
+def slab_problem(law: ss.friction.FrictionLaw, selection: str = "perfect-delay", **body: float) -> ss.Problem:
+    """The paper's slab under a law, at the edge of sliding."""
+    changed = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, **body) if body else SLAB
+    return ss.Problem(changed, law, pull_rate=1e-9, initial_excess=0.0, selection=selection)
+
+
+def q_of(alpha: float) -> float:
+    """The paper's q = sqrt(alpha / alpha_c)."""
+    return math.sqrt(alpha / ALPHA_C)

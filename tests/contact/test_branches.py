@@ -1,0 +1,165 @@
+"""Branches, folds and roots against closed forms, mpmath and a dense scan."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.contact.branches import branches, branches_of, rate_on, rates_at
+from stickslip.contact.resistance import resistance
+
+from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem
+
+EVERY_ALPHA = [0.2, 1.0, 37.0, 1e3, 1e6, 1e9]
+
+wavy_laws = st.builds(
+    Wavy,
+    mean=st.just(0.7),
+    amplitude=st.floats(0.02, 0.3),
+    beat=st.floats(0.05, 3.0),
+    fade=st.floats(0.5, 20.0),
+    turn=st.just(0.4),
+    step=st.sampled_from([0.0, 0.05]),
+)
+
+
+@pytest.mark.parametrize("alpha", EVERY_ALPHA)
+def test_folds_of_the_hyperbolic_law(alpha):
+    q = q_of(alpha)
+    (branch,) = branches(slab_problem(hyperbolic(alpha)))
+    assert branch.rate_from == pytest.approx((q - 1) / alpha, rel=1e-13, abs=0)
+    assert branch.excess_from == pytest.approx(Z / alpha * (2 * q - 1) - 0.5 * S, rel=1e-12, abs=0)
+    assert (branch.rate_to, branch.excess_to) == (math.inf, math.inf)
+
+
+def test_fold_just_above_the_critical_value():
+    mpmath = pytest.importorskip("mpmath")
+    law = hyperbolic(ALPHA_C + 1e-6)
+    with mpmath.workdps(40):
+        fall, alpha = S * (mpmath.mpf(law.static) - mpmath.mpf(law.dynamic)), mpmath.mpf(law.alpha)
+        q = mpmath.sqrt(alpha * fall / Z)
+        rate, excess = float((q - 1) / alpha), float(Z / alpha * (2 * q - 1) - fall)
+    (branch,) = branches(slab_problem(law))
+    # muS - muD is off by half an ulp of 0.8, which the 5e-6 between alpha and alpha_c magnifies to 1e-11
+    assert branch.rate_from == pytest.approx(rate, rel=1e-10, abs=0)
+    assert branch.excess_from == pytest.approx(excess, rel=2e-10, abs=0)
+    assert branch.rate_from == pytest.approx(1.3015327e-5, rel=1e-7, abs=0)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-6, 0.1, ALPHA_C])
+def test_one_branch_up_to_the_critical_value(alpha):
+    (branch,) = branches(slab_problem(hyperbolic(alpha)))
+    assert (branch.rate_from, branch.excess_from, branch.rate_to) == (0.0, 0.0, math.inf)
+
+
+@pytest.mark.parametrize("alpha", EVERY_ALPHA)
+def test_upward_jump_of_the_hyperbolic_law(alpha):
+    problem = slab_problem(hyperbolic(alpha))
+    (branch,) = branches(problem)
+    assert rate_on(resistance(problem), branch, 0.0) == pytest.approx((q_of(alpha) ** 2 - 1) / alpha, rel=1e-13, abs=0)
+
+
+def test_rate_given_in_the_design_near_the_critical_value():
+    problem = slab_problem(hyperbolic(ALPHA_C + 1e-6))
+    (branch,) = branches(problem)
+    assert rate_on(resistance(problem), branch, 0.0) == pytest.approx(2.60306876818e-5, rel=1e-10, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("law", "start"),
+    [
+        (ss.friction.Coulomb(0.8, 0.3), -0.5 * S),
+        (ss.friction.Coulomb(0.4, 0.4), 0.0),
+        (ss.friction.SinusoidalSlip(1.0, 0.5, 5.0), 0.0),
+        (ss.friction.LinearSlipWeakening(0.8, 0.3, 0.1), 0.0),
+        (ss.friction.HyperbolicRate(0.3, 0.8, 2.0), 0.0),
+    ],
+)
+def test_laws_with_one_branch_from_rest(law, start):
+    (branch,) = branches(slab_problem(law))
+    assert (branch.rate_from, branch.rate_to, branch.excess_to) == (0.0, math.inf, math.inf)
+    assert branch.excess_from == pytest.approx(start, rel=1e-15, abs=0)
+
+
+def test_rate_on_a_branch_without_rate_dependence_is_linear():
+    problem = slab_problem(ss.friction.Coulomb(0.8, 0.3))
+    (branch,) = branches(problem)
+    for excess in (-4.9e7, 0.0, 1e3, 1e12):
+        assert rate_on(resistance(problem), branch, excess) == pytest.approx((excess + 0.5 * S) / Z, rel=1e-14, abs=0)
+
+
+def test_rate_on_a_branch_that_does_not_exist_there():
+    problem = slab_problem(hyperbolic(1.0))
+    (branch,) = branches(problem)
+    with pytest.raises(ValueError, match="no slip rate"):
+        rate_on(resistance(problem), branch, branch.excess_from - 1.0)
+
+
+def test_a_block_has_no_contact_equation():
+    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
+    with pytest.raises(ss.InputError, match="block"):
+        branches(block)
+
+
+def test_friction_that_falls_faster_than_the_waves_for_ever():
+    forever = Wavy(mean=0.7, amplitude=0.3, beat=1e-9, fade=1e9)
+    light = ss.ElasticSlab(1e-9, 1e-9, 1.0, 1e8)
+    problem = ss.Problem(light, forever, pull_rate=1e-9, initial_excess=0.0)
+    found = branches(problem)  # every scale of this law is huge, and so the search reaches that far
+    assert found[-1].rate_to == math.inf
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.7, 3.1])
+def test_folds_move_with_slip(slip):
+    law = Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3)
+    found = branches(slab_problem(law), slip)
+    assert len(found) >= 2
+    for branch in found:
+        for rate in (branch.rate_from, branch.rate_to):
+            if 0.0 < rate < math.inf:
+                slope = S * law.amplitude * np.exp(-rate / law.fade)
+                slope *= (
+                    -law.beat * np.sin(law.beat * rate + law.turn * slip) - np.cos(law.beat * rate + law.turn * slip) / law.fade
+                )
+                assert abs(Z + slope) < 1e-12 * Z * 10
+
+
+@settings(max_examples=25, deadline=None)
+@given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(0.001, 0.999))
+def test_every_root_of_a_dense_scan_is_found(law, slip, share):
+    g = resistance(slab_problem(law), slip)
+    stable = branches_of(g)
+    excess = g.start + share * (g.fastest(0.0) * Z * 0.3 - g.start)
+    rates, kinds = rates_at(g, stable, excess)
+    scan = np.concatenate(([0.0], np.geomspace(1e-9, 1e3, 200_001)))
+    level = Z * scan + S * (law.coefficient(slip, scan) - law.coefficient(slip)) + g.start - excess
+    crossings = np.flatnonzero((level[1:] > 0) != (level[:-1] > 0))
+    moving = rates > 0.0
+    assert np.count_nonzero(moving) == crossings.size
+    for rate, i in zip(rates[moving], crossings, strict=True):
+        assert scan[i] * (1 - 1e-9) <= rate <= scan[i + 1] * (1 + 1e-9)
+    assert kinds[moving].tolist() == (level[crossings + 1] > 0).tolist()
+    assert np.all(np.abs(g.excess(rates[moving]) - excess) <= 1e-15 * (S + Z * rates[moving]) * 4)
+
+
+@settings(max_examples=25, deadline=None)
+@given(law=wavy_laws, slip=st.floats(0.0, 10.0))
+def test_branches_are_where_the_resistance_rises(law, slip):
+    g = resistance(slab_problem(law), slip)
+    stable = branches_of(g)
+    ends = [end for b in stable for end in (b.rate_from, b.rate_to)]
+    assert ends == sorted(ends)
+    assert ends[-1] == math.inf
+    scan = np.geomspace(1e-6, 1e3, 20_001)
+    inside = np.any([(b.rate_from < scan) & (scan < b.rate_to) for b in stable], axis=0)
+    slope = g.slope(scan)
+    clear = np.abs(slope) > 1e-9 * Z
+    assert np.array_equal(inside[clear], slope[clear] > 0)
+
+
+def test_scales_do_not_leave_the_search_without_a_rate():
+    g = resistance(ss.Problem(SLAB, ss.friction.Coulomb(0.5, 0.5), initial_load=0.0))
+    assert g.scales == (1.0,)

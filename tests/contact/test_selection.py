@@ -1,0 +1,144 @@
+"""Selection tables against the rules' own words, worked out by brute force, and against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.contact.branches import branches_of, rate_on
+from stickslip.contact.maxwell import area
+from stickslip.contact.resistance import resistance
+from stickslip.contact.selection import RULES, selection_table
+from stickslip.problem import SELECTION_RULES
+
+from .laws import ALPHA_C, S, Z, hyperbolic, q_of, slab_problem
+from .test_branches import wavy_laws
+
+
+def maxwell_level(alpha):
+    """Excess and rate of equal areas: x = alpha v solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
+    mpmath = pytest.importorskip("mpmath")
+    with mpmath.workdps(40):
+        q2 = mpmath.mpf(alpha) * 50 / mpmath.mpf("9.8")
+        start = max(2 * (q_of(alpha) - 1), float(mpmath.sqrt(2 * q2 * mpmath.log(1 + q2))))
+        x = mpmath.findroot(lambda x: x**2 / (2 * q2) + x / (1 + x) - mpmath.log(1 + x), start)
+        return float(Z * x / alpha + 0.5 * S / (1 + x) - 0.5 * S), float(x / alpha)
+
+
+def settle(table, branch, excess):
+    """The branch (-1: stick) after the load has moved to a new excess, as the table's docstring says."""
+    if branch < 0:
+        return -1 if excess <= table.stick_to else table.climb(-1, excess)
+    if excess > table.keep_to[branch]:
+        return table.climb(branch, excess)
+    return table.descend(branch, excess) if excess < table.keep_from[branch] else branch
+
+
+def test_one_list_of_names():
+    assert tuple(RULES) == SELECTION_RULES
+
+
+@pytest.mark.parametrize("alpha", [1.0, 100.0, 1e6])
+def test_maxwell_level_of_the_hyperbolic_law(alpha):
+    excess, rate = maxwell_level(alpha)
+    (branch,), table = selection_table(slab_problem(hyperbolic(alpha), "maxwell"))
+    assert table.stick_to == table.keep_from[0] == pytest.approx(excess, rel=1e-13, abs=0)
+    assert rate_on(resistance(slab_problem(hyperbolic(alpha))), branch, table.stick_to) == pytest.approx(rate, rel=1e-12, abs=0)
+
+
+def test_maxwell_level_given_in_the_design():
+    (branch,), table = selection_table(slab_problem(hyperbolic(1.0), "maxwell"))
+    assert table.stick_to + 0.8 * S == pytest.approx(67_215_203.566, rel=0, abs=5e-4)
+    assert rate_on(resistance(slab_problem(hyperbolic(1.0))), branch, table.stick_to) == pytest.approx(2.20613081, rel=0, abs=5e-9)
+
+
+def test_maxwell_level_just_above_the_critical_value():
+    # There g - S muS = -a s + b s^2 up to a relative 1e-5, and equal areas lie at 3/4 of the fold's depth
+    (branch,), table = selection_table(slab_problem(hyperbolic(ALPHA_C + 1e-6), "maxwell"))
+    assert table.stick_to == pytest.approx(0.75 * branch.excess_from, rel=1e-5, abs=0)
+
+
+def test_tables_of_the_hyperbolic_law():
+    (branch,), delay = selection_table(slab_problem(hyperbolic(1.0)))
+    fold = branch.excess_from
+    tables = {rule: selection_table(slab_problem(hyperbolic(1.0), rule))[1] for rule in ("minimal", "maximal")}
+    assert (delay.stick_to, delay.keep_from, delay.keep_to) == (0.0, (fold,), (math.inf,))
+    assert (tables["minimal"].stick_to, tables["minimal"].keep_from) == (0.0, (0.0,))
+    assert (tables["maximal"].stick_to, tables["maximal"].keep_from) == (fold, (fold,))
+    assert all(table.keep_to == (math.inf,) for table in tables.values())
+
+
+@pytest.mark.parametrize(
+    ("rule", "stick_to", "keep_from"),
+    [("perfect-delay", 0.0, -0.5 * S), ("minimal", 0.0, 0.0), ("maximal", -0.5 * S, -0.5 * S), ("maxwell", -0.5 * S, -0.5 * S)],
+)
+def test_tables_of_coulomb_friction(rule, stick_to, keep_from):
+    _, table = selection_table(slab_problem(ss.friction.Coulomb(0.8, 0.3), rule))
+    assert (table.stick_to, table.keep_from[0]) == pytest.approx((stick_to, keep_from), rel=1e-15, abs=0)
+
+
+@pytest.mark.parametrize("rule", SELECTION_RULES)
+@pytest.mark.parametrize("law", [ss.friction.HyperbolicRate(0.3, 0.8, 2.0), ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)])
+def test_no_rule_matters_where_the_slip_rate_is_unique(law, rule):
+    _, table = selection_table(slab_problem(law, rule))
+    assert (table.stick_to, table.keep_from, table.keep_to) == (0.0, (0.0,), (math.inf,))
+
+
+def best(rule, g, stable, excess):
+    """The branch that a memoryless rule takes at an excess, by its own definition."""
+    alive = [-1] if excess <= 0.0 else []
+    alive += [i for i, b in enumerate(stable) if b.excess_from <= excess <= b.excess_to]
+    if rule == "minimal":
+        return alive[0]
+    if rule == "maximal":
+        return alive[-1]
+    return min(alive, key=lambda i: 0.0 if i < 0 else area(g, 0.0, rate_on(g, stable[i], excess), excess))
+
+
+@settings(max_examples=25, deadline=None)
+@given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(-0.5, 1.0), rule=st.sampled_from(SELECTION_RULES[1:]))
+def test_memoryless_rules_by_brute_force(law, slip, share, rule):
+    g = resistance(slab_problem(law), slip)
+    stable = branches_of(g)
+    table = RULES[rule](g, stable)
+    excess = share * 2.0 * S * law.amplitude
+    edges = [
+        table.stick_to,
+        0.0,
+        *table.keep_from,
+        *table.keep_to,
+        *(b.excess_from for b in stable),
+        *(b.excess_to for b in stable),
+    ]
+    assume(all(abs(excess - edge) > 1e-3 for edge in edges))
+    wanted = best(rule, g, stable, excess)
+    starts = [-1, *(i for i in range(len(stable)) if table.keep_from[i] <= table.keep_to[i])]
+    assert {settle(table, start, excess) for start in starts} == {wanted}
+
+
+@settings(max_examples=25, deadline=None)
+@given(law=wavy_laws, slip=st.floats(0.0, 10.0), path=st.lists(st.floats(-0.5, 1.0), min_size=2, max_size=8))
+def test_perfect_delay_takes_the_nearest_stable_root(law, slip, path):
+    g = resistance(slab_problem(law), slip)
+    stable = branches_of(g)
+    table = RULES["perfect-delay"](g, stable)
+    branch, last = -1, -math.inf
+    for share in path:
+        excess = share * 2.0 * S * law.amplitude
+        alive = ([-1] if excess <= 0.0 else []) + [i for i, b in enumerate(stable) if b.excess_from <= excess <= b.excess_to]
+        nearest = [i for i in alive if (i > branch) == (excess > last)]
+        wanted = branch if branch in alive else min(nearest, key=lambda i, b=branch: abs(i - b))
+        branch, last = settle(table, branch, excess), excess
+        assert branch == wanted
+
+
+def test_area_by_its_closed_form():
+    g = resistance(slab_problem(hyperbolic(1e4)))
+    for start, end, excess in [(0.0, 3.0, -1e7), (1e-7, 2e-3, 0.0), (0.5, 0.6, 4e6)]:
+        log = math.log1p(1e4 * end) - math.log1p(1e4 * start)
+        exact = 0.5 * Z * (end**2 - start**2) + 0.5 * S * log / 1e4 - (0.5 * S + excess) * (end - start)
+        assert area(g, start, end, excess) == pytest.approx(exact, rel=1e-13, abs=0)
+    assert np.isclose(area(g, 1.0, 1.0, 0.0), 0.0, rtol=0, atol=0)

@@ -1,0 +1,130 @@
+"""Regimes, folds, jumps and admissible rates; backward symmetry; what the text says."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.contact.uniqueness import uniqueness
+from stickslip.problem import SELECTION_RULES
+
+from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
+
+
+def test_critical_value_and_regimes():
+    for alpha, regime in [(0.1, "regular"), (ALPHA_C, "regular"), (ALPHA_C + 1e-6, "irregular"), (1.0, "irregular")]:
+        found = uniqueness(slab_problem(hyperbolic(alpha)))
+        assert found.regime == regime
+        assert regime in found.summary
+        assert found.critical_parameter == "alpha"
+        assert found.critical_value == pytest.approx(0.196, rel=1e-15, abs=0)
+
+
+def test_folds_and_window():
+    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    (fold,) = found.folds
+    assert fold.rate == pytest.approx(q_of(1.0) - 1.0, rel=1e-14, abs=0)
+    assert fold.load == pytest.approx(64_471_887.242, rel=0, abs=5e-4)
+    assert found.window == pytest.approx((fold.load - 0.8 * S, 0.0), rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("rule", "up", "down"),
+    [
+        ("perfect-delay", (0.0, 4.10204081633, 8e7), (1.25876975726, 0.0, 64_471_887.242)),
+        ("maxwell", (0.0, 2.20613081, 67_215_203.566), (2.20613081, 0.0, 67_215_203.566)),
+        ("minimal", (0.0, 4.10204081633, 8e7), (4.10204081633, 0.0, 8e7)),
+        ("maximal", (0.0, 1.25876975726, 64_471_887.242), (1.25876975726, 0.0, 64_471_887.242)),
+    ],
+)
+def test_what_each_rule_does(rule, up, down):
+    found = uniqueness(slab_problem(hyperbolic(1.0), rule))
+    assert [jump.direction for jump in found.jumps] == ["up", "down"]
+    for jump, wanted in zip(found.jumps, (up, down), strict=True):
+        assert (jump.rate_before, jump.rate_after) == pytest.approx(wanted[:2], rel=5e-9, abs=0)
+        assert jump.load == pytest.approx(wanted[2], rel=1e-11, abs=0)
+    assert f"'{rule}' jumps up" in found.summary
+
+
+@pytest.mark.parametrize(
+    ("load", "count", "stable"),
+    [
+        (0.0, 1, [True]),
+        (6.4e7, 1, [True]),
+        (6.5e7, 3, [True, False, True]),
+        (7.9e7, 3, [True, False, True]),
+        (8.1e7, 1, [True]),
+    ],
+)
+def test_three_or_one_admissible_rates(load, count, stable):
+    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    rates = found.admissible(load)
+    assert rates.size == count
+    assert found.stability(load).tolist() == stable
+    moving = rates[rates > 0]
+    assert Z * moving + S * (0.3 + 0.5 / (1 + moving)) == pytest.approx(np.full(moving.shape, load), rel=1e-14, abs=0)
+
+
+def test_two_admissible_rates_at_the_folds():
+    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    assert found.admissible(found.folds[0].load)[0] == 0.0
+    at_rest = found.admissible(0.8 * S)  # the upper end of the window: stick and the fast branch
+    assert at_rest == pytest.approx([0.0, 4.10204081633], rel=1e-11, abs=0)
+    (slow, fast) = uniqueness(slab_problem(Wavy(0.5, 0.0, 1.0, 1.0, step=0.1))).admissible(0.55 * S)
+    assert slow == 0.0
+    assert fast == pytest.approx(0.05 * S / Z, rel=1e-13, abs=0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(load=st.floats(-2e8, 2e8), alpha=st.floats(0.01, 1e5), slip=st.floats(-3.0, 3.0))
+def test_backward_slip_mirrors_forward_slip(load, alpha, slip):
+    for law in (hyperbolic(alpha), ss.friction.SinusoidalSlip(0.6, 0.2, 5.0), ss.friction.Coulomb(0.6, 0.2)):
+        found = uniqueness(slab_problem(law), slip)
+        assert found.admissible(-load).tolist() == (-found.admissible(load)[::-1]).tolist()
+        assert found.stability(-load).tolist() == found.stability(load)[::-1].tolist()
+        assert np.all(np.diff(found.admissible(load)) > 0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(load=st.floats(0.0, 2e8), alpha=st.floats(0.01, 1e5))
+def test_admissible_rates_solve_the_quadratic(load, alpha):
+    """alpha Z v^2 + (Z + alpha (S muD - load)) v + S muS - load = 0, with stick below the static strength."""
+    roots = np.roots([alpha * Z, Z + alpha * (0.3 * S - load), 0.8 * S - load])
+    wanted = sorted({0.0} if load <= 0.8 * S else set())
+    wanted += sorted(float(r.real) for r in roots if abs(r.imag) < 1e-9 * abs(r) and r.real > 1e-7)
+    found = [rate for rate in uniqueness(slab_problem(hyperbolic(alpha))).admissible(load).tolist() if not 0 < rate <= 1e-7]
+    assert found == pytest.approx(wanted, rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize("rule", SELECTION_RULES)
+def test_where_the_rule_has_no_effect(rule):
+    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0, selection=rule)
+    cases = {
+        "The block has inertia": uniqueness(block),
+        "The contact mass has inertia": uniqueness(slab_problem(hyperbolic(1.0), rule, contact_mass=10.0)),
+        "friction does not depend on the slip rate": uniqueness(slab_problem(ss.friction.SinusoidalSlip(1.0, 0.5, 5.0), rule)),
+        "rises with the slip rate everywhere": uniqueness(slab_problem(hyperbolic(0.1), rule)),
+    }
+    for words, found in cases.items():
+        assert words in found.summary
+        assert f"({rule}) has no effect" in found.summary
+        assert (found.regime, found.jumps, found.folds, found.window) == ("regular", (), (), None)
+
+
+def test_admissible_rates_of_a_state():
+    found = uniqueness(slab_problem(hyperbolic(1.0), contact_mass=10.0))
+    with pytest.raises(ss.InputError, match="state"):
+        found.admissible(7e7)
+
+
+def test_critical_value_of_other_laws():
+    assert ss.friction.Coulomb(0.8, 0.3).critical_value(Z, S) is None
+    assert ss.friction.HyperbolicRate(0.3, 0.8, 1.0).critical_value(Z, S) is None
+
+
+def test_coulomb_friction_is_irregular():
+    found = uniqueness(slab_problem(ss.friction.Coulomb(0.8, 0.3)))
+    assert found.regime == "irregular"
+    assert found.window == pytest.approx((-0.5 * S, 0.0), rel=1e-15, abs=0)
+    assert found.admissible(0.5 * S) == pytest.approx([0.0, 0.2 * S / Z], rel=1e-14, abs=0)

@@ -1,0 +1,93 @@
+"""The bundled scenarios, run: what their comments say, against numbers computed outside the package by two other methods."""
+
+import math
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+
+from stickslip.scenarios.scenario import load_scenario
+
+R = 2e4 / 3500
+YEAR = 31_557_600.0
+
+
+def first_event(name: str) -> pd.Series:
+    solution = load_scenario(name).run()
+    assert solution.status.ok
+    return solution.catalogue(event_rate=0.0).iloc[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "end", "slip", "peak_rate", "peak_time", "pulses"),
+    [
+        ("fig5-slab-printed", 7.584372, 6.0571375e-4, None, R, 1),
+        ("fig5-slab-reconstructed", R, 0.376105283, 10.204432, None, 3),
+        ("fig5-slab-u0-1e-2", R, 1.2428558, None, 1.5676733, 1),
+        ("fig6-slab", R, 23.4402332474, None, R, 1),
+        ("fig7-slab-critical", R, 5.65875644e-4, 1.40832223e-4, R, 1),
+        ("fig5-block-reconstructed-k", 3.029102456, 2.721335481, 5.538637, 2.579243, None),
+        ("fig5-block-reconstructed-omega", 0.586014899, 0.273505101, 1.757632, 0.442580, None),
+        ("fig6-block-reconstructed", 2.226453818, 2.061159848, 3.511221, 1.839772, None),
+    ],
+)
+def test_the_first_event(
+    name: str, end: float, slip: float, peak_rate: float | None, peak_time: float | None, pulses: int | None
+) -> None:
+    """Each number to the digits that are given: half a unit of its last place."""
+    event = first_event(name)
+    assert event.start == 0.0
+    for value, expected in ((event.end, end), (event.slip, slip), (event.peak_rate, peak_rate), (event.peak_time, peak_time)):
+        if expected is not None:
+            assert value == pytest.approx(expected, rel=0.0, abs=0.51 * 10.0 ** _last_place(expected))
+    assert pulses is None or event.pulses == pulses
+
+
+def test_the_pulse_of_the_unstable_printed_slab_under_constant_load() -> None:
+    """Without pulling, the peak is at cot(omega 5e-3 m) Z / (amplitude omega S) exactly."""
+    scenario = load_scenario("fig5-slab-u0-1e-2")
+    still = replace(scenario, problem=replace(scenario.problem, pull_rate=0.0))
+    expected = 9.8e6 / (2.5e8 * math.tan(0.025))
+    assert still.run().events.peak_time[0] == pytest.approx(expected, rel=1e-9, abs=0)
+
+
+def test_the_shocks_of_figure_6() -> None:
+    start, end = load_scenario("fig6-slab").run().shocks.itertuples()
+    assert start.rate_after == pytest.approx(0.402 / 0.098, rel=1e-9, abs=0)  # (alpha / alpha_c - 1) / alpha, pulled a little
+    assert start.traction_after == pytest.approx(39_800_000, rel=1e-9, abs=0)
+    assert end.time == pytest.approx(R, rel=1e-15, abs=0)
+    assert end.traction_after == pytest.approx(-399_999.969, rel=0, abs=6e-4)
+
+
+def _last_place(value: float) -> int:
+    """Exponent of the last decimal place of a number as written."""
+    mantissa, _, exponent = repr(value).partition("e")
+    return int(exponent or 0) - min(len(mantissa.partition(".")[2]), 12)
+
+
+@pytest.mark.parametrize("name", ["fig5-block-printed", "fig6-block-printed", "fig7-block-critical"])
+def test_no_macroscopic_event(name: str) -> None:
+    solution = load_scenario(name).run()
+    assert solution.status.ok
+    assert solution.catalogue(event_rate=0.0).slip.max() < 8e-3
+
+
+def test_the_loop_of_figure_4() -> None:
+    solution = load_scenario("fig4-loop").run()
+    assert solution.shocks.cause.tolist() == ["fold", "fold"]
+    assert solution.load(R / 2) == pytest.approx(85.48e6, rel=1e-12, abs=0)
+    up, down = solution.shocks.itertuples()
+    assert solution.load(up.time) == pytest.approx(80e6, rel=1e-12, abs=0)
+    assert solution.load(down.time) == pytest.approx(64_471_887.242, rel=0, abs=1e-3)
+    assert (up.time, down.time) == pytest.approx((2.243, 5.213), rel=0, abs=5e-4)
+    assert down.rate_after == 0.0
+
+
+@pytest.mark.parametrize(
+    ("rule", "years"), [("perfect-delay", 468.80466), ("minimal", 468.80466), ("maxwell", 394.26), ("maximal", 378.26)]
+)
+def test_the_second_event_tells_the_rules_apart(rule: str, years: float) -> None:
+    events = load_scenario(f"second-event-{rule}").run().events
+    place = 5e-6 if years == 468.80466 else 5e-3
+    assert (events.start[1] - events.end[0]) / YEAR == pytest.approx(years, rel=0, abs=1.1 * place)
+    assert math.isclose(events.slip[0], 23.4402332474, rel_tol=1e-11)

@@ -1,0 +1,124 @@
+"""What `examine` says about a start, against the numbers of the design and against other ways to get them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stickslip import ElasticSlab, Problem, SpringBlock
+from stickslip.friction import LAWS, FrictionLaw, SinusoidalSlip
+from stickslip.scenarios import library
+from stickslip.scenarios.examine import examine, slopes
+from stickslip.scenarios.scenario import Scenario, load_scenario
+
+LAW = SinusoidalSlip(1.0, 0.5, 5.0)
+SLAB = ElasticSlab(2800, 3500, 1e4, 1e8)
+
+
+def growth_in(text: str) -> float:
+    return float(text.partition("grows at ")[2].split(" ")[0])
+
+
+@pytest.mark.parametrize("name", library.names())
+def test_every_bundled_scenario_can_be_examined(name: str) -> None:
+    found = examine(load_scenario(name))
+    assert set(found.given) == {"body", "friction", "loading", "initial", "run"}
+    assert found.start
+    assert found.stability
+    assert found.uniqueness.summary
+
+
+def test_the_numbers_of_the_paper() -> None:
+    derived = {fact.name: fact.value for fact in examine(load_scenario("fig6-slab")).derived}
+    assert derived["Z"] == 9.8e6
+    assert derived["G"] == 3.43e10
+    assert derived["R"] == pytest.approx(2e4 / 3500, rel=1e-15, abs=0)
+    assert derived["strength"] == derived["load"] == 8e7
+    assert derived["excess"] == 0
+
+
+def test_the_pulse_period_is_the_time_between_the_pulses_of_the_reconstructed_slab() -> None:
+    """Peaks at 0.153986, 2.256706 and 4.359426 s; as printed the load does not exceed the largest friction, so none is named."""
+    derived = {fact.name: fact.value for fact in examine(load_scenario("fig5-slab-reconstructed")).derived}
+    assert derived["pulse period"] == pytest.approx(4.359426 - 2.256706, rel=0, abs=2e-5)
+    assert "pulse period" not in {fact.name for fact in examine(load_scenario("fig5-slab-printed")).derived}
+
+
+@pytest.mark.parametrize("law", LAWS.values())
+def test_slopes_are_the_derivatives_of_the_formula(law: type[FrictionLaw]) -> None:
+    friction = law(*(0.9, 0.4, 3.0)[: len(law.parameters())])
+    for slip, rate in ((0.3, 0.2), (1.0, 2.0), (7.0, 0.5)):
+        step = 1e-6
+        by_slip = (friction.coefficient(slip + step, rate) - friction.coefficient(slip - step, rate)) / (2 * step)
+        by_rate = (friction.coefficient(slip, rate + step) - friction.coefficient(slip, rate - step)) / (2 * step)
+        np.testing.assert_allclose(slopes(friction, slip, rate), (by_slip, by_rate), rtol=1e-8, atol=1e-9)
+
+
+@pytest.mark.parametrize(("beyond", "stable"), [(2.744086e-3 - 1e-8, True), (2.744086e-3 + 1e-8, False)])
+def test_the_slab_is_stable_up_to_where_weakening_meets_its_stiffness(beyond: float, stable: bool) -> None:
+    problem = Problem(SLAB, LAW, initial_slip=math.pi / 10 + beyond, initial_excess=0.0)
+    assert examine(Scenario(problem, 10.0)).stability.startswith("statically stable" if stable else "statically unstable")
+
+
+@pytest.mark.parametrize("beyond", [2.8e-3, 1e-2, 0.1, 0.3])
+def test_the_growth_of_the_slab_solves_its_dispersion_relation(beyond: float) -> None:
+    """lambda coth(lambda h/c) = c alpha_w, alpha_w = -S mu'/G."""
+    slip = math.pi / 10 + beyond
+    growth = growth_in(examine(Scenario(Problem(SLAB, LAW, initial_slip=slip, initial_excess=0.0), 10.0)).stability)
+    weakening = -1e8 * 2.5 * math.cos(5 * slip) / 3.43e10
+    assert growth / math.tanh(growth * 1e4 / 3500) == pytest.approx(3500 * weakening, rel=1e-5, abs=0)
+
+
+def test_the_growth_of_the_block_solves_its_characteristic_equation() -> None:
+    block = SpringBlock(2.8e12, 3.43e13, 1e14)
+    slip = math.pi / 5
+    growth = growth_in(examine(Scenario(Problem(block, LAW, initial_slip=slip, initial_excess=0.0), 10.0)).stability)
+    assert 2.8e12 * growth**2 == pytest.approx(2.5e14 - 3.43e13, rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("name", "word"),
+    [
+        ("fig5-block-printed", "statically stable"),
+        ("fig6-block-printed", "swings"),
+        ("fig6-block-reconstructed", "unstable"),
+        ("fig7-block-critical", "swings"),
+        ("fig5-slab-printed", "statically stable"),
+        ("fig5-slab-reconstructed", "statically unstable"),
+    ],
+)
+def test_the_readings_of_the_paper(name: str, word: str) -> None:
+    assert examine(load_scenario(name)).stability.startswith(word)
+
+
+@pytest.mark.parametrize(
+    ("excess", "pull", "words"),
+    [
+        (5.0, 0.0, "slips at once"),
+        (0.0, 1.0, "slips at 0+"),
+        (0.0, 0.0, "stays stuck"),
+        (-6.86e6, 1.0, "loading reaches the strength after about 2 s"),
+        (-3.1e8, 0.0, "slips backwards at once"),
+    ],
+)
+def test_the_start(excess: float, pull: float, words: str) -> None:
+    assert words in examine(Scenario(Problem(SLAB, LAW, pull, initial_excess=excess), 10.0)).start
+
+
+def warnings(scenario: Scenario) -> str:
+    return "\n".join(examine(scenario).warnings)
+
+
+def test_warnings() -> None:
+    slab = load_scenario("fig6-slab")
+    assert "multiplies a disturbance by up to 1.49" in warnings(slab)
+    assert "up to 3.92e+05" in warnings(load_scenario("fig7-slab-critical"))
+    assert "narrower than 1e-9" in warnings(load_scenario("fig7-slab-critical"))
+    assert "before the first echo" in warnings(replace(slab, duration=5.0))
+    assert "nothing will slip" in warnings(replace(slab, problem=replace(slab.problem, initial_excess=-1e6)))
+    soft = replace(slab.problem, body=replace(SLAB, wave_speed=100.0))
+    assert "linear elasticity is doubtful" in warnings(replace(slab, problem=soft))
+    block = load_scenario("fig6-block-printed")
+    assert warnings(block) == ""
+    assert "has no effect" in warnings(replace(block, problem=replace(block.problem, selection="maxwell")))

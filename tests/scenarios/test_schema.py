@@ -1,0 +1,123 @@
+"""The schema is read from what laws and bodies declare: registering one is enough."""
+
+from dataclasses import MISSING, dataclass
+from typing import Any, ClassVar
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from stickslip import ElasticSlab, InputError, Problem, SpringBlock
+from stickslip.bodies import BODIES
+from stickslip.friction import LAWS, FrictionLaw
+from stickslip.quantities import quantities_of, quantity
+from stickslip.scenarios import templates
+from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.scenarios.schema import quantities_in
+
+
+def values(kind: type) -> str:
+    return "".join(f"{name} = 1.5\n" for name, (_, default) in quantities_in("body", kind).items() if default is MISSING)
+
+
+def document(body: type, law: type) -> str:
+    return (
+        f'[body]\nkind = "{body.kind}"\n{values(body)}[friction]\nkind = "{law.kind}"\n{values(law)}'
+        "[initial]\nload = 1.0\n[run]\nduration = 2\n"
+    )
+
+
+@pytest.mark.parametrize("law", LAWS.values())
+@pytest.mark.parametrize("body", BODIES.values())
+def test_every_body_with_every_law_is_read_and_written(body: type, law: type) -> None:
+    scenario = read_scenario(document(body, law), "all")
+    assert type(scenario.problem.body) is body
+    assert type(scenario.problem.friction) is law
+    assert all(getattr(scenario.problem.friction, name) == 1.5 for name in quantities_of(law))
+    assert read_scenario(scenario.to_toml(), "again") == scenario
+
+
+@dataclass(frozen=True)
+class Stribeck(FrictionLaw):
+    """A law that the package does not know."""
+
+    kind: ClassVar[str] = "stribeck"
+    source: ClassVar[str] = "nowhere"
+    level: float = quantity("1", "level", at_least=0)
+    knee: float = quantity("m/s", "where it bends", above=0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.level / (1.0 + v / law.knee)
+
+    def range(self) -> tuple[float, float]:
+        return 0.0, self.level
+
+
+def test_a_new_law_needs_only_its_registration(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(LAWS, "stribeck", Stribeck)
+    text = document(ElasticSlab, Stribeck).replace("knee = 1.5", 'knee = "1 mm/s"')
+    assert read_scenario(text, "new").problem.friction == Stribeck(1.5, 1e-3)
+    with pytest.raises(InputError, match=r"^new: \[friction\] kne is unknown; did you mean 'knee'\?$"):
+        read_scenario(text.replace("knee", "kne"), "new")
+    assert '# kind = "stribeck"' in templates.template("slab")
+
+
+@pytest.mark.parametrize("name", templates.STARTERS)
+def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
+    text = templates.template(name)
+    scenario = read_scenario(text, name)
+    example = load_scenario(templates.STARTERS[name])
+    assert scenario.problem == example.problem
+    body = type(scenario.problem.body)
+    for table, kind in (("body", body), *(("friction", law) for law in LAWS.values()), ("loading", body), ("initial", body)):
+        for key, (declared, _) in quantities_in(table, kind).items():
+            assert any(line.lstrip("# ").startswith(f"{key} = ") and declared.meaning in line for line in text.splitlines())
+
+
+def test_bundled_templates_are_the_bundled_files() -> None:
+    for name in templates.template_names():
+        if name not in templates.STARTERS:
+            assert templates.template(name) == load_scenario(name).source
+    with pytest.raises(InputError, match=r"^no scenario 'slob'; did you mean 'slab'\?$"):
+        templates.template("slob")
+
+
+positive = st.floats(min_value=1e-300, max_value=1e300)
+finite = st.floats(allow_nan=False, allow_infinity=False)
+line = st.text(st.characters(codec="utf-8", exclude_characters="\r"), max_size=30)
+
+
+@given(
+    mass=positive,
+    stiffness=positive,
+    force=positive,
+    pull=finite,
+    slip=finite,
+    excess=finite,
+    duration=positive,
+    title=line,
+    text=line,
+)
+def test_what_is_written_is_read_back_to_the_last_digit(
+    mass: float,
+    stiffness: float,
+    force: float,
+    pull: float,
+    slip: float,
+    excess: float,
+    duration: float,
+    title: str,
+    text: str,
+) -> None:
+    body, law = SpringBlock(mass, stiffness, force), LAWS["coulomb"](0.6, 0.3)
+    problem = Problem(body, law, pull_rate=pull, initial_slip=slip, initial_excess=excess, selection="maxwell")
+    scenario = Scenario(problem, duration, 1e-7, title, text)
+    assert read_scenario(scenario.to_toml(), "written") == scenario
+
+
+def test_options_of_a_slab_are_written_too() -> None:
+    body = ElasticSlab(2800, 3500, 1e4, 1e8, driver_impedance=9.8e6, contact_mass=3.0, p_wave_speed=6000)
+    problem = Problem(body, LAWS["coulomb"](0.6, 0.3), 1e-9, initial_load=5e7, far_stress=1e7, far_stress_rate=0.1)
+    scenario = Scenario(problem, 10.0)
+    assert read_scenario(scenario.to_toml(), "written") == scenario

@@ -1,0 +1,89 @@
+"""Text with a unit to SI: exact, and closed to anything that is not a number with a unit."""
+
+import sys
+from fractions import Fraction
+
+import pytest
+
+from stickslip import InputError
+from stickslip.scenarios.units import COMMON_UNITS, si_factor, split_quantity, to_si
+
+
+@pytest.mark.parametrize(
+    ("number", "unit", "si", "expected"),
+    [
+        (10.0, "km", "m", 10_000.0),
+        (0.05, "m/year", "m/s", 0.05 / 31_557_600),
+        (5.0, "cm / yr", "m/s", 5.0 / 3_155_760_000),
+        (100.0, "MPa", "Pa", 1e8),
+        (2.8, "g/cm^3", "kg/m^3", 2800.0),
+        (9.8, "MPa s/m", "Pa s/m", 9.8e6),
+        (9.8, "MPa*s/m", "Pa s/m", 9.8e6),
+        (5.0, "/ m", "1/m", 5.0),
+        (5.0, "m^-1", "1/m", 5.0),
+        (343.0, "TN/m", "N/m", 3.43e14),
+        (1.0, "kg*m/s**2", "N", 1.0),
+        (480.0, "year", "s", 480 * 31_557_600.0),
+        (1.0, "psi", "Pa", 6894.757293168362),
+    ],
+)
+def test_converts_to_the_last_digit(number: float, unit: str, si: str, expected: float) -> None:
+    assert to_si(number, unit, si) == pytest.approx(expected, rel=2.3e-16, abs=0)
+
+
+def test_the_year_is_julian() -> None:
+    assert si_factor("year", "s") == Fraction(31_557_600)
+
+
+@pytest.mark.parametrize("unit", COMMON_UNITS)
+def test_every_common_unit_is_one(unit: str) -> None:
+    assert split_quantity(f"1.5 {unit}" if unit[0] != "1" else f"1.5 {unit[1:]}") is not None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "km", "10", "ten km", "10 km km^", "10 m; import os", "__import__('os')", "10 m**99", "10 m^9999999", "1e9999 m"),
+        *(
+            "10 (m)",
+            "10 m+1",
+            "10 m %",
+            "nan m",
+            "inf m",
+            "10 m\n20 m",
+            "10 " + "m*" * 40 + "m",
+            "0x10 m",
+            "10 m.__class__",
+            "9**9**9",
+        ),
+    ],
+)
+def test_anything_else_is_no_quantity(text: str) -> None:
+    assert split_quantity(text) is None
+
+
+def test_a_number_too_large_for_a_float_is_infinite_and_left_to_the_range_check() -> None:
+    assert split_quantity("1e999 m") == (float("inf"), "m")
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "message"),
+    [
+        ("kg", "m", "'kg' does not convert to m"),
+        ("parsnip", "m", "'parsnip' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
+        ("yaer", "s", "'yaer' is not a unit; did you mean 'year'?"),
+        ("degC", "m", "'degC' does not convert to m"),
+        ("dB/m", "1/m", "'decibel' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
+    ],
+)
+def test_other_units_are_refused(unit: str, si: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        si_factor(unit, si)
+    assert str(caught.value) == message
+
+
+def test_pint_is_not_imported_before_a_unit_is_met() -> None:
+    import subprocess
+
+    code = "import sys, stickslip.scenarios.scenario as s, stickslip.scenarios.templates; sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
