@@ -131,3 +131,13 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_the_completed_starters_are_those_that_exist():
     assert set(STARTERS) == set(templates.STARTERS)
+
+
+def test_paper_says_what_it_wrote(command, monkeypatch: pytest.MonkeyPatch):
+    def make(out: Path, progress) -> Path:
+        progress("figure 1")
+        return out / "report.html"
+
+    monkeypatch.setattr("stickslip.paper.make", make)
+    shown = command("paper", "--out", "new/folder")
+    assert (shown.code, shown.out, shown.err) == (0, f"written: {Path('new/folder/report.html')}\n", "")

@@ -1,11 +1,9 @@
-"""Files that a command writes: checked before the work, complete or absent afterwards."""
+"""Files that a command will write: checked before the work."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
-from uuid import uuid4
 
 from stickslip.errors import InputError
 
@@ -29,13 +27,3 @@ def check_folder(path: Path, option: str) -> None:
         raise InputError(f"{option} {path}: {existing} is not a folder")
     if not os.access(existing, os.W_OK | os.X_OK):
         raise InputError(f"{option} {path}: the folder {existing} is not writable")
-
-
-def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file beside `path`, then give it the name: never half a file."""
-    draft = path.with_name(f".{uuid4().hex}{path.suffix}")
-    try:
-        write(draft)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)

@@ -29,5 +29,5 @@ def paper(
     from stickslip.paper import make
 
     with progress_to("paper") as report:
-        make(out, report)
-    typer.echo(f"written: {out}")
+        written = make(out, report)
+    typer.echo(f"written: {written}")

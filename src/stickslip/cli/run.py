@@ -96,7 +96,7 @@ def _simulate(scenario: Scenario) -> Solution:
 
 
 def _save(solution: Solution, out: Path | None, figure: Path | None) -> list[str]:
-    from stickslip.cli.files import write_atomically
+    from stickslip.files import write_atomically
 
     written = []
     if out is not None:

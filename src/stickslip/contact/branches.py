@@ -69,12 +69,12 @@ def _search_grid(g: Resistance) -> NDArray[np.float64]:
     rates = np.concatenate(([0.0], np.logspace(low, high, count)))
     for _ in range(3):
         slope = g.slope(rates)
-        size = np.abs(slope)
-        middle = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
-        same = np.sign(slope)
-        near = np.flatnonzero(middle & (same[1:-1] == same[:-2]) & (same[1:-1] == same[2:])) + 1
-        extra = [np.linspace(rates[i - 1], rates[i + 1], 17) for i in near]
-        rates = np.unique(np.concatenate([rates, *extra]))
+        left, middle, right = slope[:-2], slope[1:-1], slope[2:]
+        # a parabola through three values of one sign reaches 0 between them only if it bends by 8 times the middle one
+        bend = 4.0 * np.abs(middle) < np.sign(middle) * (left - 2.0 * middle + right)
+        near = np.flatnonzero(bend & (left * middle > 0.0) & (middle * right > 0.0)) + 1
+        extra = np.linspace(rates[near - 1], rates[near + 1], 17)
+        rates = np.unique(np.concatenate((rates, extra.ravel())))
     return rates
 
 

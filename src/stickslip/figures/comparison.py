@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.figures.curves import Name, curve, nearly_flat
+from stickslip.figures.curves import Name, nearly_flat
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
             "load": (load, r"\beta", unit),
         }
         for row in ROWS:
-            time, values = curve(solution, row, 0.0, ends[name])
+            time, values = solution.curve(row, 0.0, ends[name])
             contents[f"{name}_{row}"] = quantity(f"{name}_time", values, *meaning[row])
         contents[f"{name}_time"] = quantity(f"{name}_time", time, "time", "t", "s")
         body = solution.problem.body

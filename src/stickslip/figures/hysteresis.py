@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.figures import resistance
-from stickslip.figures.curves import curve
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, quantity, shown, styled, zero_line
 
 if TYPE_CHECKING:
@@ -22,8 +21,8 @@ CASE = "loop"
 
 def data(solution: Solution) -> xr.Dataset:
     """The run in the plane of slip rate and load, and in time; with the set K that it walks. Its load must rise, then fall."""
-    time, rate = curve(solution, "slip_rate")
-    _, load = curve(solution, "load")
+    time, rate = solution.curve("slip_rate")
+    _, load = solution.curve("load")
     turn = int(np.argmax(load))
     background = resistance.data({CASE: solution.problem}, float(rate.max()))
     run = {

@@ -93,7 +93,7 @@ def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False)
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:
-    """The points O to E of an irregular case, and the levels of its folds; `moved` puts names elsewhere (points, from the point)."""
+    """The points O to E of an irregular case, and the levels of its folds; `moved`: offsets of names in points."""
     offsets = OFFSETS | moved
     found = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
     low, high = axes.get_ylim()

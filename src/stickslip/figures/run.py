@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip import YEAR
-from stickslip.figures.curves import Name, curve, nearly_flat
+from stickslip.figures.curves import Name, nearly_flat
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, SHOWN, VERMILLION, letter, styled, zero_line
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
     axes: Any = figure.subplots(3, 1, sharex=True)
     drawn: tuple[tuple[Axes, Name, str], ...] = ((axes[0], "slip", BLUE), (axes[1], "slip_rate", GREEN))
     for panel, name, colour in drawn:
-        time, values = curve(solution, name, start, end)
+        time, values = solution.curve(name, start, end)
         panel.plot(time / size, values, color=colour)
     _draw_stress(axes[2], solution, start, end, size)
     for panel in axes:
@@ -51,7 +51,7 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
 def _draw_stress(panel: Axes, solution: Solution, start: float, end: float, size: float) -> None:
     """Traction and load; as changes from the initial load where they hardly change."""
     units = solution.problem.load_unit
-    (time, load), (_, traction) = curve(solution, "load", start, end), curve(solution, "traction", start, end)
+    (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
     unit, scale = SHOWN[units]
     offset, text = 0.0, f"traction, load ({unit})"
     if nearly_flat(load, traction):

@@ -116,7 +116,7 @@ def _sqrt(a: _Node) -> _Node:
 
 def _tanh(a: _Node) -> _Node:
     start, end, turn = np.tanh(a.reference), np.tanh(a.value), np.tanh(a.step)
-    step = turn * (1.0 - start * start) / (1.0 + start * turn)
+    step = turn / np.cosh(a.reference) ** 2 / (1.0 + start * turn)
     return _Node(start, step, end, a.slope / np.cosh(a.value) ** 2)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import stickslip as ss
 from stickslip.evolution.solution import Solution
 from stickslip.problem import Problem
@@ -38,11 +36,10 @@ def problem(name: str) -> Problem:
 
 
 class Runs:
-    """Runs at one tolerance, each made once: figures, tables and claims share them. `say` hears what is being run."""
+    """Runs at one tolerance, each made once: figures, tables and claims share them."""
 
-    def __init__(self, rtol: float = 1e-10, say: Callable[[str], object] = lambda _: None) -> None:
+    def __init__(self, rtol: float = 1e-10) -> None:
         self.rtol = rtol
-        self.say = say
         self._made: dict[tuple[Problem, float], Solution] = {}
 
     def case(self, name: str) -> Solution:

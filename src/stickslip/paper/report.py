@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 import stickslip as ss
-from stickslip.paper.cases import READINGS, REFERENCE, Runs
+from stickslip.paper.cases import REFERENCE, Runs
 from stickslip.paper.claims import Outcome, Verdict
 from stickslip.paper.constants import constants
 from stickslip.paper.plates import PLATES
@@ -41,7 +41,6 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict])
         pictures={n: "data:image/svg+xml;base64," + b64encode(svg).decode("ascii") for n, svg in images.items()},
         cases=[list(row) for row in cases_table(runs).itertuples(index=False)],
         headings=list(cases_table(runs).columns),
-        readings=READINGS,
     )
 
 

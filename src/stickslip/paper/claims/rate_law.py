@@ -43,7 +43,7 @@ def block_is_continuous(runs: Runs) -> Verdict:
 
 
 def _largest(solution: Solution) -> float:
-    return float(np.abs(solution.curve("slip_rate")[1]).max())
+    return float(solution.catalogue(0.0).peak_rate.max())
 
 
 def _largest_step(solution: Solution, step: float) -> float:
@@ -62,9 +62,9 @@ def slab_jumps(runs: Runs) -> Verdict:
         "with it, and is slightly negative after arrest: the stress drop overshoots."
     )
     numbers: list[tuple[str, float, str]] = [("shocks", len(shocks), "")]
-    columns = (("time", "s"), ("rate_before", "m/s"), ("rate_after", "m/s"), ("traction_after", "Pa"))
-    for i, shock in shocks.iterrows():
-        numbers += [(f"shock {i}, {name.replace('_', ' ')}", shock[name], unit) for name, unit in columns]
+    units = {"time": "s", "rate_before": "m/s", "rate_after": "m/s", "traction_after": "Pa"}
+    for i, shock in enumerate(shocks[list(units)].to_dict("records"), start=1):
+        numbers += [(f"shock {i}, {name.replace('_', ' ')}", shock[name], unit) for name, unit in units.items()]
     numbers.append(("slip", solution.events.slip.sum(), "m"))
     return verdict(6, judge(len(shocks) > 0), "α = 1 s/m", why, *numbers)
 

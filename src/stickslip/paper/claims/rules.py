@@ -83,7 +83,7 @@ def one_solution(_: Runs) -> Verdict:
     numbers, good = [], True
     for name, case in ((f"α = {half:g} s/m", replace(slab, friction=replace(law, alpha=half))), ("slip law", slip)):
         contact = uniqueness(case)
-        counts = [len(contact.admissible(load)) for load in (case.strength * np.linspace(0.0, 2.0, 401)).tolist()]
+        counts = [len(contact.admissible(load)) for load in (case.strength * np.linspace(-2.0, 2.0, 801)).tolist()]
         most, least = max(counts), min(counts)
         good &= contact.regime == "regular" and most == least == 1 and not contact.folds
         numbers += [
@@ -91,7 +91,7 @@ def one_solution(_: Runs) -> Verdict:
             (f"fewest, {name}", least, ""),
             (f"folds, {name}", len(contact.folds), ""),
         ]
-    why = "g rises from stick on, so every load meets it once: at rest, or at one slip rate."
+    why = "g rises from stick on, so every load meets it once: at rest, or at one slip rate, forwards or backwards."
     return verdict(9, judge(good), "α = αc/2, and the slip law", why, *numbers)
 
 
@@ -122,7 +122,7 @@ def not_an_energy_criterion(runs: Runs) -> Verdict:
     why = (
         "Maxwell's rule (the least integral of g − β: equal areas) lets slip begin below the static strength. The first event "
         f"is the same under every rule{size}, because it starts at the static strength; the second tells them apart. Perfect "
-        f"delay waits longest, so it minimises nothing that Maxwell's rule minimises. {SO_FAR}"
+        f"delay keeps stick up to the static strength, long after Maxwell's rule has left it. {SO_FAR}"
     )
     numbers = [
         *((f"from arrest to the second event, {rule}", wait, "year") for rule, wait in waits.items()),

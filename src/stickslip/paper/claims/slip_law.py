@@ -98,8 +98,8 @@ def echo_arrests(runs: Runs) -> Verdict:
     rate = {r: float(s.slip_rate(back, side="left")) for r, s in solutions.items()}
     why = (
         "With ω = 50 /m the echo of the first slip, returning at 2h/c, lowers the load by twice what slip had radiated and "
-        "stops the contact at once, by a shock; the rest of the echo keeps it there. As printed the slab creeps too slowly "
-        "for that: it slows down by itself after the echo and arrests later."
+        "stops the contact at once, by a shock; the rest of the echo keeps it there through a whole further round trip. As "
+        "printed the slab creeps too slowly for that: it slows down by itself after the echo and arrests later."
     )
     numbers = [
         ("two-way time 2h/c", back, "s"),

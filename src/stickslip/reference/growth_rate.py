@@ -1,0 +1,33 @@
+"""Linear growth of slip on a slab that weakens with slip, from rest.
+
+A perturbation u = exp(lambda t) sinh(lambda (h - x) / c) of a slab under a rigid driver meets the friction at x = 0 when
+
+    lambda coth(lambda h / c) = c alpha_w,    alpha_w = -S mu'(u) / G
+
+(Campillo et al. 1996, section 2, from eqs (7)-(13)): it grows if and only if alpha_w h > 1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.reference.bisection import bisect
+
+
+def growth_rate(wave_speed: float, thickness: float, shear_modulus: float, normal_stress: float, weakening: float) -> float:
+    """lambda (1/s) for a weakening -mu'(u) in 1/m; wave speed m/s, thickness m, modulus and normal stress Pa.
+
+    0 where the slab is stable.
+    """
+    target = normal_stress * weakening / shear_modulus * thickness
+    if target <= 1.0:
+        return 0.0
+    x = bisect(lambda x: _excess(x) - (target - 1.0), 0.0, target + 1.0)
+    return x * wave_speed / thickness
+
+
+def _excess(x: float) -> float:
+    """x coth x - 1, by its series where the difference would lose digits."""
+    if x < 0.05:
+        return x**2 / 3 - x**4 / 45 + 2 * x**6 / 945 - x**8 / 4725
+    return x / math.tanh(x) - 1.0

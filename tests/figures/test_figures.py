@@ -1,0 +1,143 @@
+"""Every figure is made without error and says what its axes are, in units."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+import stickslip as ss
+from stickslip.figures import comparison, hysteresis, laws, resistance, systems
+from stickslip.figures.run import plot_run
+from stickslip.figures.style import STYLE
+from stickslip.paper.files import image
+
+mpl.use("Agg")
+
+SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
+LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+SLAB_PROBLEM = ss.Problem(SLAB, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+BLOCK_PROBLEM = ss.Problem(BLOCK, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
+
+UNIT = re.compile(r"\((m|m/s|s|year|MPa|Pa|TN|N)\)$")
+
+
+def labels(figure: Figure) -> list[str]:
+    """Axis labels that are shown."""
+    return [text for axes in figure.axes if axes.axison for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
+
+
+def has_unit(text: str) -> bool:
+    return bool(UNIT.search(text)) or text.startswith("friction coefficient")
+
+
+def test_systems_show_the_papers_symbols() -> None:
+    figure = systems.draw(systems.data(BLOCK_PROBLEM, SLAB_PROBLEM))
+    shown = {text.get_text() for axes in figure.axes for text in axes.texts}
+    assert {"$m$", "$K$", "$S$", "$V$", "$h$", r"$\tau$", "$u(t)$", "$u(0,t)$", "$D_0+Vt$", "$u(h,t)=D_0+Vt$"} <= shown
+
+
+def test_laws_have_a_panel_each() -> None:
+    dataset = laws.data({"slip": ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)}, {"rate": LAW}, 2.0, 10.0)
+    assert float(dataset.coefficient_along_rate[0, 0]) == pytest.approx(0.8, rel=1e-15)
+    figure = laws.draw(dataset)
+    assert len(labels(figure)) == 4
+    assert all(has_unit(text) for text in labels(figure))
+
+
+def test_corners_of_an_irregular_contact() -> None:
+    found = resistance.corners(SLAB_PROBLEM, 6.0)
+    assert found["A"] == (0.0, 8e7)
+    assert found["B"][0] == pytest.approx(4.10204081633, rel=1e-11)
+    assert found["C"][1] == pytest.approx(64471887.242, rel=1e-11)
+    assert found["D"] == (0.0, found["C"][1])
+
+
+def test_a_regular_contact_has_no_corners() -> None:
+    regular = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.1))
+    assert resistance.corners(regular, 6.0) == {}
+    figure = resistance.draw(resistance.data({"regular": regular, "irregular": SLAB_PROBLEM}, 6.0))
+    dashed = [sum(line.get_linestyle() == "--" for line in axes.lines) for axes in figure.axes]
+    assert dashed == [0, 1]
+
+
+def test_loop_is_walked_by_the_run() -> None:
+    dataset = hysteresis.data(ss.simulate(LOOP, 5.7))
+    up, down = dataset.run_load[: int(dataset.run_turn) + 1], dataset.run_load[int(dataset.run_turn) :]
+    assert (np.diff(up) >= 0.0).all()
+    assert (np.diff(down) <= 0.0).all()
+    assert float(dataset.run_load.max()) == pytest.approx(60e6 + SLAB.impedance * 2.6, rel=1e-9)
+    figure = hysteresis.draw(dataset)
+    assert all(has_unit(text) for text in labels(figure))
+    assert {"A", "B", "C", "D", "E", "to O"} <= {text.get_text() for text in figure.axes[0].texts}
+
+
+@pytest.fixture(scope="module")
+def side_by_side() -> xr.Dataset:
+    solutions = {"block": ss.simulate(BLOCK_PROBLEM, 7.0), "slab": ss.simulate(SLAB_PROBLEM, 7.0)}
+    return comparison.data(solutions, {"block": 7.0, "slab": 7.0})
+
+
+def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> None:
+    rate = side_by_side.slab_slip_rate
+    assert rate[0] == 0.0
+    assert float(rate[1]) == pytest.approx(4.10204081633, rel=1e-11)
+    assert side_by_side.slab_time[0] == side_by_side.slab_time[1] == 0.0
+
+
+def test_comparison_is_labelled(side_by_side: xr.Dataset) -> None:
+    figure = comparison.draw(side_by_side)
+    assert len(figure.axes) == 6
+    assert len(labels(figure)) == 8
+    assert all(has_unit(text) for text in labels(figure))
+
+
+def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: Path) -> None:
+    side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
+    again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
+    assert image(comparison.draw(side_by_side), "svg") == image(comparison.draw(again), "svg")
+
+
+def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
+    before = dict(mpl.rcParams)
+    figure = plot_run(ss.simulate(SLAB_PROBLEM, 7.0))
+    assert dict(mpl.rcParams) == before
+    assert len(figure.axes) == 3
+    assert all(has_unit(text) for text in labels(figure))
+    assert figure.axes[2].get_xlabel().endswith("(s)")
+    pyplot.close(figure)
+
+
+def test_years_are_shown_as_years() -> None:
+    figure = plot_run(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
+    assert figure.axes[2].get_xlabel().endswith("(year)")
+    assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
+    pyplot.close(figure)
+
+
+def test_the_same_figure_gives_the_same_bytes() -> None:
+    dataset = systems.data(BLOCK_PROBLEM, SLAB_PROBLEM)
+    for kind in ("png", "svg"):
+        assert image(systems.draw(dataset), kind) == image(systems.draw(dataset), kind)
+
+
+@mpl.rc_context(STYLE)
+def test_no_axis_label_is_cut_off(side_by_side: xr.Dataset) -> None:
+    figure = comparison.draw(side_by_side)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        for text in (axes.xaxis.label, axes.yaxis.label):
+            box = text.get_window_extent(renderer)
+            assert figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1
+            assert figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1

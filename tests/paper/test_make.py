@@ -1,0 +1,107 @@
+"""The folder that `stickslip paper` writes."""
+
+from __future__ import annotations
+
+import html
+import re
+import subprocess
+import sys
+from base64 import b64decode
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+from stickslip.paper import make
+from stickslip.paper.claims import STATEMENTS
+from stickslip.paper.files import save_text, whole
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("paper") / "deep" / "folder"
+    steps: list[str] = []
+    assert make(out, steps.append) == out / "report.html"
+    assert len(steps) == 7 + 20 + 2
+    return out
+
+
+def test_every_file_is_there_and_nothing_else(folder: Path) -> None:
+    expected = {f"figure{n}.{kind}" for n in range(1, 8) for kind in ("png", "svg", "nc")}
+    expected |= {f"{name}.csv" for name in ("cases", "events", "shocks", "claims", "constants")} | {"report.html"}
+    assert {path.name for path in folder.iterdir()} == expected
+
+
+@pytest.mark.parametrize("number", range(1, 8))
+def test_data_reopen_with_units(number: int, folder: Path) -> None:
+    dataset = xr.load_dataset(folder / f"figure{number}.nc", engine="h5netcdf")
+    assert dataset.attrs["source"].startswith("stickslip ")
+    assert dataset.attrs["Conventions"].startswith("CF-")
+    numeric = [v for v in dataset.variables.values() if v.dtype.kind == "f"]
+    assert numeric
+    assert all("units" in v.attrs for v in numeric)
+
+
+def test_report_holds_every_claim_and_figure(folder: Path) -> None:
+    page = html.unescape((folder / "report.html").read_text(encoding="utf-8"))
+    for number, claim in STATEMENTS.items():
+        assert f'id="claim-{number}"' in page
+        assert claim in page
+    for number in range(1, 8):
+        assert f'id="figure-{number}"' in page
+    assert "None" not in page
+    assert not re.search(r"\bnan\b", re.sub(r"base64,[A-Za-z0-9+/=]+", "", page))
+
+
+def test_report_needs_nothing_from_outside(folder: Path) -> None:
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "://" not in page
+    assert not re.search(r"<(script|link|iframe|object)\b", page)
+    sources = re.findall(r'(?:src|href)="([^"]{0,40})', page)
+    assert sources
+    assert all(source.startswith("data:image/svg+xml;base64,") for source in sources)
+
+
+def test_pictures_in_the_report_are_the_files(folder: Path) -> None:
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    pictures = [b64decode(code) for code in re.findall(r"base64,([A-Za-z0-9+/=]+)", page)]
+    assert pictures == [(folder / f"figure{n}.svg").read_bytes() for n in range(1, 8)]
+
+
+def test_svg_has_no_date(folder: Path) -> None:
+    assert "dc:date" not in (folder / "figure5.svg").read_text(encoding="utf-8")
+
+
+def test_tables_reopen(folder: Path) -> None:
+    claims = pd.read_csv(folder / "claims.csv")
+    assert set(claims.number) == set(range(1, 21))
+    shocks = pd.read_csv(folder / "shocks.csv")
+    assert set(shocks.columns) >= {"case", "time [s]", "cause", "rate_before [m/s]", "rate_after [m/s]"}
+    events = pd.read_csv(folder / "events.csv")
+    assert "start [s]" in events.columns
+
+
+def test_a_second_run_writes_the_same_bytes(folder: Path, tmp_path: Path) -> None:
+    make(tmp_path)
+    for path in folder.iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_file_is_whole_or_not_there(tmp_path: Path) -> None:
+    path = save_text(tmp_path / "table.csv", "old")
+
+    def fail(partial: Path) -> None:
+        partial.write_text("half")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        whole(path, fail)
+    assert path.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["table.csv"]
+
+
+def test_importing_the_package_imports_no_plotting() -> None:
+    code = "import sys, stickslip, stickslip.paper; print('matplotlib' in sys.modules, 'jinja2' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["False", "False"]
