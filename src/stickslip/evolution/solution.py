@@ -72,8 +72,8 @@ class Solution:
 
     def catalogue(self, event_rate: float | None = None) -> pd.DataFrame:
         """Slip events: start, end (s; NaN if unfinished), slip (m), peak_rate (m/s), peak_time (s), traction_drop and static_drop
-        (Pa or N: friction before minus after, and the stiffness times the slip), pulses (maxima of |v| separated by minima
-        below half the lower one).
+        (Pa or N: friction before minus after, at rest if the rate falls on to zero, and the stiffness times the slip: G slip / h
+        is the slab's mean over a round trip), pulses (maxima of |v| separated by minima below half the lower one).
 
         An event is a maximal interval with |v| above event_rate (m/s; default 1e-6 S (range of mu) / Z, for the block
         / sqrt(K m); 0 takes every slip).

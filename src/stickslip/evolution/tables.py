@@ -148,7 +148,8 @@ def _event(history: History, piece: Any, xi: Any, rate: Any, kind: Any) -> tuple
 
 
 def _moments(piece: Any, xi: Any) -> Moments:
-    piece, xi = np.atleast_1d(piece), np.atleast_1d(xi)
+    """Places in the history by piece and xi."""
+    piece, xi = np.broadcast_arrays(np.atleast_1d(piece), np.atleast_1d(xi))
     return Moments(piece, xi, np.zeros(len(piece)), np.zeros(len(piece), bool))
 
 
@@ -170,10 +171,24 @@ def _friction_before(history: History, piece: int, xi: float) -> float:
 
 
 def _friction_after(history: History, piece: int, xi: float) -> float:
-    """Right limit of the traction (minus the reference)."""
-    if xi == 1.0 and piece + 1 < len(history):
-        piece, xi = piece + 1, 0.0
-    return float(history.friction(_moments(piece, xi))[0])
+    """Traction (minus the reference) after an event that ends here: at rest, where the slip rate falls on to zero from here.
+
+    The traction of a law that strengthens as the rate vanishes is another one an instant before rest: it says nothing of what
+    the event left behind.
+    """
+    at = _moments(piece, xi)
+    last, rate = piece, abs(float(history.rate(at)[0]))
+    mode = history.store.mode
+    while last + 1 < len(history) and mode[last] == mode[piece]:
+        falls = abs(history.rate(_moments(last, [0.25, 0.5, 0.75, 1.0]))) if last > piece else np.array([0.0])
+        if falls.max() > rate:
+            break
+        last += 1
+    if mode[last] != mode[piece]:
+        at = _moments(last, 0.0)
+    elif xi == 1.0 and piece + 1 < len(history):
+        at = _moments(piece + 1, 0.0)
+    return float(history.friction(at)[0])
 
 
 def shocks_table(history: History) -> pd.DataFrame:

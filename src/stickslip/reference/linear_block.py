@@ -68,7 +68,7 @@ class LinearBlock:
         """From onset to arrest (s)."""
         turn = 2.0 * math.pi / self.frequency
         # v = V + R sin(phase): it is positive at the knot, and below zero at the bottom of the sine unless V > R
-        offset, sine, cosine = self._swing
+        _, sine, cosine = self._swing
         bottom = (1.5 * math.pi - math.atan2(cosine, sine)) % (2.0 * math.pi) / self.frequency
         top = bottom - 0.5 * turn
         if math.hypot(sine, cosine) <= self.pull_rate:
@@ -102,7 +102,7 @@ class LinearBlock:
 
     @cached_property
     def _swing(self) -> tuple[float, float, float]:
-        """After the knot: slip = offset + V t + a sin + b cos with rates (a, b) w = (sine, cosine') of the slip rate."""
+        """Slip (m) about which the block swings after the knot, and the sine and cosine part of its slip rate (m/s)."""
         slip, rate = self._growing(self.knot_time)
         steady = (self.excess + self.weakening * self.distance) / self.stiffness + self.pull_rate * self.knot_time
         return steady, (steady - float(slip)) * self.frequency, float(rate) - self.pull_rate

@@ -17,7 +17,7 @@ from stickslip.errors import InputError
 
 @dataclass(frozen=True)
 class PulseTrain:
-    """Impedance (Pa s/m), load beta (Pa), normal stress (Pa), the law's mean, amplitude > 0 and wavenumber > 0 (1/m), slip at t = 0 (m).
+    """Impedance (Pa s/m), load beta (Pa), normal stress (Pa), the law's mean, amplitude > 0 and wavenumber > 0 (1/m), u(0) (m).
 
     Raises InputError unless beta exceeds (mean + amplitude) S: otherwise slip ends at a strength it cannot pass.
     """
@@ -72,7 +72,7 @@ class PulseTrain:
         phase = begin + math.pi * np.asarray(t, float) / self.period
         turns, rest = np.divmod(phase + 0.5 * math.pi, math.pi)
         half = np.arctan((self.wave + self._root * np.tan(rest - 0.5 * math.pi)) / self.surplus)
-        return (half + math.pi * (turns + turn)) * 2.0 / self.wavenumber
+        return np.asarray((half + math.pi * (turns + turn)) * 2.0 / self.wavenumber)
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
         """v(t) in m/s, from the governing equation at the exact slip."""

@@ -1,0 +1,272 @@
+"""A slow and plain second opinion: scipy's DOP853 from one breaking point to the next, history by dense output.
+
+It shares no code with the engine nor with the analysis of the contact. It knows perfect delay only, keeps every piece in memory
+and looks up the load through all round trips before: right for seconds to minutes of sliding, not for years.
+Source of the equations: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(13) for the slab.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.bodies import ElasticSlab
+from stickslip.errors import InputError
+from stickslip.friction.difference import difference
+from stickslip.problem import Problem
+from stickslip.reference.quadratic import fast_rate, fast_room
+
+Load = Callable[[float, float], float]
+_MAX_PIECES = 20_000
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Motion between two times (s): slip since the start (m), slip rate (m/s), load minus initial strength (Pa or N)."""
+
+    start: float
+    end: float
+    slip: Callable[[float], float]
+    rate: Callable[[float], float]
+    load: Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class StepsSolution:
+    """The pieces of a run, end to end; evaluated from the right at the joints."""
+
+    problem: Problem
+    pieces: list[Piece]
+
+    def slip(self, t: ArrayLike) -> NDArray[np.float64]:
+        """u(t) in m, absolute; t in s."""
+        return self.problem.initial_slip + self._values("slip", t)
+
+    def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
+        """v(t) in m/s."""
+        return self._values("rate", t)
+
+    def load(self, t: ArrayLike) -> NDArray[np.float64]:
+        """beta(t) in Pa, or the block's spring force in N."""
+        return self.problem.strength + self._values("load", t)
+
+    def _values(self, name: str, t: ArrayLike) -> NDArray[np.float64]:
+        times = np.asarray(t, float)
+        starts = np.array([piece.start for piece in self.pieces])
+        index = np.clip(np.searchsorted(starts, times.ravel(), side="right") - 1, 0, None)
+        values = [getattr(self.pieces[i], name)(x) for i, x in zip(index.tolist(), times.ravel().tolist(), strict=True)]
+        return np.array(values, float).reshape(times.shape)
+
+
+def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> StepsSolution:
+    """Integrate a problem over `duration` (s).
+
+    Raises InputError without scipy, for a selection rule other than perfect delay, and for a massless contact whose law depends
+    on the slip rate otherwise than by eq. (15); RuntimeError where events pile up.
+    """
+    if problem.selection != "perfect-delay":
+        raise InputError(f"method_of_steps: knows perfect-delay only, got '{problem.selection}'")
+    return _Stepper(problem, rtol).run(float(duration))
+
+
+def _scipy() -> tuple[Any, Any]:
+    try:
+        from scipy.integrate import solve_ivp
+        from scipy.optimize import brentq
+    except ImportError as error:
+        raise InputError("method_of_steps: needs scipy; install it with: pip install scipy") from error
+    return solve_ivp, brentq
+
+
+@dataclass
+class _Stepper:
+    problem: Problem
+    rtol: float
+    pieces: list[Piece] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.solve_ivp, self.brentq = _scipy()
+        body, law = self.problem.body, self.problem.friction
+        self.slab = body if isinstance(body, ElasticSlab) else None
+        self.drag = body.impedance if isinstance(body, ElasticSlab) else body.damping
+        self.mass = body.contact_mass if isinstance(body, ElasticSlab) else body.mass
+        self.normal, self.strength = self.problem.normal, self.problem.strength
+        self.numbers = {name: getattr(law, name) for name in law.parameters()}
+        self.trees, self.knots = law.trees(), law.knots
+        self.hyperbolic = self.mass == 0.0 and law.kind == "hyperbolic-rate"
+        if self.mass == 0.0 and law.depends_on_rate and law.kind not in ("hyperbolic-rate", "coulomb"):
+            raise InputError(f"method_of_steps: cannot solve {type(law).__name__} on a contact without mass")
+        self.path = law.counts == "path"
+        self.part = int(np.searchsorted(self.knots, self.problem.law_slip, side="right"))
+        self.offsets = [
+            float(f(law, self.problem.law_slip, 0.0)) - float(law.coefficient(self.problem.law_slip)) for f in law.pieces
+        ]
+        self.offsets[self.part] = 0.0
+
+    # ---- friction and forces: all as differences from the start ---------------------------------------------------------------
+
+    def friction(self, walked: float, rate: float) -> float:
+        """S [mu(law slip, rate) - mu(law slip at the start, 0)]."""
+        step, _ = difference(self.trees[self.part], self.numbers, self.problem.law_slip, walked, rate)
+        return self.normal * (float(step) + self.offsets[self.part])
+
+    def pull(self, sense: int, load: float) -> float:
+        """Load minus initial static strength, in the sense of slip."""
+        return load if sense > 0 else -2.0 * self.strength - load
+
+    def drive(self, sense: int, load: float, walked: float, rate: float) -> float:
+        """What is left of the load after friction, while slipping."""
+        return self.pull(sense, load) + self.normal * self.problem.friction.static_excess - self.friction(walked, rate)
+
+    def beyond(self, sense: int, load: float, walked: float) -> float:
+        """How far the load exceeds the static strength."""
+        return self.pull(sense, load) - self.friction(walked, 0.0)
+
+    def room(self, sense: int, load: float, walked: float) -> float:
+        """Positive as long as a massless contact can go on slipping."""
+        if self.hyperbolic:
+            return fast_room(self.problem, self.pull(sense, load))
+        return self.drive(sense, load, walked, 0.0)
+
+    def massless_rate(self, sense: int, load: float, walked: float) -> float:
+        if self.hyperbolic:
+            return fast_rate(self.problem, self.pull(sense, load))
+        return max(self.drive(sense, load, walked, 0.0), 0.0) / self.drag
+
+    # ---- the load ---------------------------------------------------------------------------------------------------------------
+
+    def load_near(self, time: float) -> Load:
+        """The load minus initial strength as a function of time and slip, on the stretch between breaking points around `time`."""
+        p, body, start = self.problem, self.problem.body, self.problem.excess
+        if self.slab is None:
+            return lambda t, slip: start + body.stiffness * (p.pull_rate * t - slip)
+        ramp, trip = self.slab.stiffness * p.pull_rate, self.slab.two_way_time
+        if time < 0.5 * trip:
+            return lambda t, slip: start + ramp * t
+        r, far = self.slab.reflection, p.load if p.far_stress is None else p.far_stress
+        steady = 2.0 * self.drag * p.pull_rate * (1.0 if math.isinf(self.slab.driver_impedance) else 0.5 * (1.0 - r))
+        source = next((piece for piece in self.pieces if piece.start <= time - trip < piece.end), None)
+
+        def load(t: float, slip: float) -> float:
+            x = t - trip
+            outgoing = 2.0 * self.drag * source.rate(x) - source.load(x) if source else -ramp * x - start
+            return r * outgoing + steady + (1.0 + r) * (far + p.far_stress_rate * (t - 0.5 * trip) - self.strength)
+
+        return load
+
+    # ---- time -------------------------------------------------------------------------------------------------------------------
+
+    def run(self, duration: float) -> StepsSolution:
+        trip = self.slab.two_way_time if self.slab else math.inf
+        breaks = {0.5 * trip, trip}
+        t, state, sense = 0.0, np.zeros(3), self._sense_at_start()
+        while t < duration:
+            if len(self.pieces) > _MAX_PIECES:
+                raise RuntimeError(f"method_of_steps: events pile up at {t:g} s")
+            breaks = {b for b in breaks if b > t + 1e-13 * max(t, 1e-3)}
+            stop = min([duration, *breaks])
+            load = self.load_near(0.5 * (t + stop))
+            end, state, after = self._rest(t, stop, state, load) if sense == 0 else self._slide(t, stop, state, load, sense)
+            breaks |= {end + trip}
+            t, sense = (
+                end,
+                self._sense(end, min([duration, *(b for b in breaks if b > end)]), state, sense) if after is None else after,
+            )
+        return StepsSolution(self.problem, self.pieces)
+
+    def _sense_at_start(self) -> int:
+        excess = self.problem.excess
+        if excess == 0.0:
+            return 1 if self.problem.pull_rate > 0.0 else 0
+        return next((s for s in (1, -1) if self.beyond(s, excess, 0.0) > 0.0), 0)
+
+    def _sense(self, t: float, stop: float, state: NDArray[np.float64], before: int) -> int:
+        """Direction of slip (0: stick) on the stretch that begins at t."""
+        slip, walked, rate = (float(x) for x in state)
+        if self.mass > 0.0 and rate != 0.0:
+            return int(math.copysign(1, rate))
+        load = self.load_near(0.5 * (t + max(stop, t)))(t, slip)
+        if self.mass == 0.0 and before != 0 and self.room(before, load, walked) > 0.0:
+            return before
+        return next((s for s in (1, -1) if self.beyond(s, load, walked) > 0.0), 0)
+
+    def _rest(self, t: float, stop: float, state: NDArray[np.float64], load: Load) -> tuple[float, NDArray[np.float64], int | None]:
+        """Stay stuck until the load reaches the strength, or to the next breaking point."""
+        slip, walked, _ = (float(x) for x in state)
+        end, after = stop, None
+        for sense in (1, -1):
+
+            def over(x: float, sense: int = sense) -> float:
+                return self.beyond(sense, load(x, slip), walked)
+
+            grid = np.linspace(t, end, 400)
+            above = np.array([over(x) for x in grid.tolist()]) > 0.0
+            onset = np.flatnonzero(above[1:] & ~above[:-1])
+            if above[0] and above[1]:
+                end, after = t, sense
+            elif onset.size:
+                end, after = float(self.brentq(over, grid[onset[0]], grid[onset[0] + 1], xtol=1e-14, rtol=1e-15)), sense
+        self._keep(Piece(t, end, lambda x: slip, lambda x: 0.0, lambda x: load(x, slip)))
+        return end, np.array([slip, walked, 0.0]), after
+
+    def _slide(
+        self, t: float, stop: float, state: NDArray[np.float64], load: Load, sense: int
+    ) -> tuple[float, NDArray[np.float64], int | None]:
+        """Slip one way until the contact stops, the law meets a knot, or the next breaking point comes."""
+        motion = self._with_mass(load, sense) if self.mass > 0.0 else self._without_mass(load, sense)
+        events = [motion[1]]
+        ahead = self.part if self.path or sense > 0 else self.part - 1
+        if 0 <= ahead < len(self.knots):
+            events.append(_terminal(lambda x, y: y[1] - (self.knots[ahead] - self.problem.law_slip), 0.0))
+        run = self.solve_ivp(
+            motion[0], (t, stop), state, method="DOP853", rtol=self.rtol, atol=1e-22, events=events, dense_output=True
+        )
+        end, dense, part = float(run.t[-1]), run.sol, self.part
+
+        def rate(x: float) -> float:
+            slip, walked, speed = dense(x)
+            here, self.part = self.part, part
+            value = float(speed) if self.mass > 0.0 else sense * self.massless_rate(sense, load(x, slip), walked)
+            self.part = here
+            return value
+
+        self._keep(Piece(t, end, lambda x: float(dense(x)[0]), rate, lambda x: load(x, float(dense(x)[0]))))
+        final = np.array(run.y[:, -1])
+        if run.status == 1 and run.t_events[0].size:
+            final[2] = 0.0
+            return end, final, None if self.mass > 0.0 else 0
+        if run.status == 1:
+            self.part += 1 if ahead == self.part else -1
+            return end, final, sense
+        return end, final, None
+
+    def _without_mass(self, load: Load, sense: int) -> tuple[Any, Any]:
+        def velocity(t: float, y: NDArray[np.float64]) -> list[float]:
+            speed = self.massless_rate(sense, load(t, y[0]), y[1])
+            return [sense * speed, speed if self.path else sense * speed, 0.0]
+
+        return velocity, _terminal(lambda t, y: self.room(sense, load(t, y[0]), y[1]), -1.0)
+
+    def _with_mass(self, load: Load, sense: int) -> tuple[Any, Any]:
+        def velocity(t: float, y: NDArray[np.float64]) -> list[float]:
+            speed = sense * y[2]
+            force = self.drive(sense, load(t, y[0]), y[1], max(speed, 0.0)) - self.drag * speed
+            return [y[2], speed if self.path else y[2], sense * force / self.mass]
+
+        return velocity, _terminal(lambda t, y: sense * y[2], -1.0)
+
+    def _keep(self, piece: Piece) -> None:
+        if piece.end > piece.start:
+            self.pieces.append(piece)
+
+
+def _terminal(event: Callable[[float, NDArray[np.float64]], float], direction: float) -> Any:
+    """Mark a function as an event that ends scipy's integration."""
+    marked: Any = event
+    marked.terminal, marked.direction = True, direction
+    return marked
