@@ -13,9 +13,10 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from stickslip.files import write_atomically
 from stickslip.paper import make
 from stickslip.paper.claims import STATEMENTS
-from stickslip.paper.files import save_text, whole
+from stickslip.paper.files import save_text
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +97,7 @@ def test_a_file_is_whole_or_not_there(tmp_path: Path) -> None:
         raise OSError("disk full")
 
     with pytest.raises(OSError, match="disk full"):
-        whole(path, fail)
+        write_atomically(path, fail)
     assert path.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["table.csv"]
 

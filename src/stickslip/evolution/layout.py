@@ -152,4 +152,4 @@ def resized(store: Store, length: int, capacity: int) -> Store:
 
 def trimmed(store: Store, length: int) -> Store:
     """The history without its spare room (views, not copies)."""
-    return Store(*(array[:length] for array in store))
+    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length])

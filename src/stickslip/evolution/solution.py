@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load"]
-CURVES = ("slip", "slip_rate", "traction", "load")
+CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

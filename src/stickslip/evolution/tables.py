@@ -195,7 +195,7 @@ def shocks_table(history: History) -> pd.DataFrame:
     """One row a jump of the slip rate."""
     import pandas as pd
 
-    at = np.flatnonzero(history.store.cause)
+    at = [int(n) for n in np.flatnonzero(history.store.cause)]
     reference = history.problem.strength
     rows = [
         (

@@ -52,10 +52,11 @@ def _slab(solution: Solution, time: Floats) -> dict[str, Floats]:
     body = solution.problem.body
     assert isinstance(body, ElasticSlab)
     waves = Waves(solution.history, body)
-    start = waves.stored(0.0)
+    start, _moving = waves.stored(0.0), 0.5 * body.contact_mass * solution.slip_rate(time) ** 2
     return {
         "work": np.array([waves.work(float(t)) for t in time]),
-        "stored": np.array([waves.stored(float(t)) - start for t in time]) + 0.5 * body.contact_mass * solution.slip_rate(time) ** 2,
+        "stored": np.array([waves.stored(float(t)) - start for t in time])
+        + 0.5 * body.contact_mass * solution.slip_rate(time) ** 2,
         "heat": heat(solution.history, time),
         "damped": np.zeros_like(time),
     }

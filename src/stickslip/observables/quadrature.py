@@ -18,9 +18,7 @@ NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 integrated to rounding."""
 
 
-def over(
-    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: float = 0.0
-) -> Floats:
+def over(history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: float = 0.0) -> Floats:
     """Integral over the part [low, high] (in xi) of each piece; `leaped` whole rows later, for a row at rest."""
     xi = low[:, None] + (high - low)[:, None] * NODES
     at = Moments(np.repeat(piece, len(NODES)), xi.ravel(), np.full(xi.size, leaped), np.zeros(xi.size, bool))

@@ -1,11 +1,12 @@
-"""Files that are whole or not there: written under another name, then renamed."""
+"""The report's files by kind, each written atomically."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from stickslip.files import write_atomically
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -13,25 +14,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Call `write` with a temporary name beside `path`, then rename; nothing is left behind if it fails."""
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        write(partial)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
-    return path
-
-
 def save_text(path: Path, text: str) -> Path:
     """Text in UTF-8 with plain line ends."""
-    return whole(path, lambda partial: partial.write_text(text, encoding="utf-8", newline="\n"))
+    return write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8", newline="\n"))
 
 
 def save_bytes(path: Path, content: bytes) -> Path:
     """Bytes as they are."""
-    return whole(path, lambda partial: partial.write_bytes(content))
+    return write_atomically(path, lambda partial: partial.write_bytes(content))
 
 
 def save_table(path: Path, table: pd.DataFrame) -> Path:
@@ -41,7 +31,7 @@ def save_table(path: Path, table: pd.DataFrame) -> Path:
 
 def save_data(path: Path, dataset: xr.Dataset) -> Path:
     """netCDF-4."""
-    return whole(path, lambda partial: dataset.to_netcdf(partial, engine="h5netcdf"))
+    return write_atomically(path, lambda partial: dataset.to_netcdf(partial, engine="h5netcdf"))
 
 
 def image(figure: Figure, kind: str) -> bytes:

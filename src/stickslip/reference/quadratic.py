@@ -34,6 +34,4 @@ def fast_rate(problem: Problem, excess: float) -> float:
 def fast_room(problem: Problem, excess: float) -> float:
     """Positive where the stable root exists and is positive, falling through 0 where it ends: at the fold, or at excess 0."""
     _, linear, discriminant = _coefficients(problem, excess)
-    if excess >= 0.0:
-        return math.sqrt(max(discriminant, 0.0)) + linear if linear > 0.0 else excess
     return discriminant if linear > 0.0 else excess

@@ -1,0 +1,46 @@
+# Two commands do everything: `make paper` sets up and runs the main job, `make test` sets up and passes the tests.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN = $(VENV)/bin
+PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: paper test lint bench lock clean
+
+paper: $(VENV)/.installed
+	$(BIN)/stickslip paper --out paper
+
+test: lint
+	$(BIN)/python -m pytest -q
+
+lint: $(VENV)/.installed-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(VENV)/.installed-test
+	$(PIP) install -e ".[bench]"
+	$(BIN)/python -m benchmarks.speed
+
+# Pinned installs, checked against hashes; the package itself last, without looking for anything newer.
+$(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
+	$(PIP) install --requirement requirements/run.txt
+	$(PIP) install --no-deps --no-build-isolation --editable .
+	touch $@
+
+$(VENV)/.installed-test: requirements/test.txt $(VENV)/.installed
+	$(PIP) install --requirement requirements/test.txt
+	touch $@
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+# Needs uv; writes versions and hashes, no host.
+lock:
+	for extra in run test; do \
+	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
+	        $$([ $$extra = run ] || echo --extra $$extra) pyproject.toml requirements/build.in --output-file requirements/$$extra.txt --quiet; \
+	done
+
+clean:
+	rm -rf $(VENV) paper build dist
