@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import stickslip
 from stickslip.errors import InputError
 from stickslip.evolution.history import History
 from stickslip.evolution.layout import Store
-from stickslip.evolution.solution import CURVES, Solution
+from stickslip.evolution.solution import CURVES, Curve, Solution
 from stickslip.evolution.status import Status
 from stickslip.files import write_atomically
 from stickslip.scenarios import Scenario, read_scenario
@@ -64,7 +65,7 @@ def solution_dataset(solution: Solution, t: NDArray[np.float64]) -> xr.Dataset:
     return _curves(solution, t, values).assign_attrs(provenance(solution))
 
 
-def _curves(solution: Solution, t: NDArray[np.float64], values: dict[str, NDArray[np.float64]]) -> xr.Dataset:
+def _curves(solution: Solution, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
     unit = units(solution)
     variables = {name: ("time", value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()}
     time = ("time", t, {"units": "s", "long_name": "time since the start of the run"})

@@ -62,8 +62,7 @@ class HyperbolicFolds:
     @property
     def maxwell_rate(self) -> float:
         """v_M (m/s), where equal areas end: x = alpha v solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
-        target = 0.5 * (self.q - 1.0) * (self.q + 1.0) / self.q**2
-        return bisect(lambda x: _missing(x) - target, 0.0, 4.0 * self.q**2) / self.alpha
+        return bisect(lambda x: _imbalance(x, self.q), 0.0, 4.0 * self.q**2) / self.alpha
 
     @property
     def maxwell_load(self) -> float:
@@ -72,8 +71,8 @@ class HyperbolicFolds:
         return self.normal_stress * self.dynamic + self.impedance * rate + self.drop / (1.0 + self.alpha * rate)
 
 
-def _missing(x: float) -> float:
-    """1/2 - [ln(1 + x) - x / (1 + x)] / x^2, which grows with x; by its series where it would lose digits."""
+def _imbalance(x: float, q: float) -> float:
+    """1 / (2 q^2) - [ln(1 + x) - x / (1 + x)] / x^2, which grows with x; by its series where it would lose digits."""
     if x < 0.1:
-        return -sum((-x) ** k * (k + 1) / (k + 2) for k in range(1, 18))
-    return 0.5 - (math.log1p(x) - x / (1.0 + x)) / x**2
+        return -sum((-x) ** k * (k + 1) / (k + 2) for k in range(1, 18)) - 0.5 * (q - 1.0) * (q + 1.0) / q**2
+    return 0.5 / q**2 - (math.log1p(x) - x / (1.0 + x)) / x**2
