@@ -1,6 +1,7 @@
 """Branches, folds and roots against closed forms, mpmath and a dense scan."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -104,12 +105,25 @@ def test_a_block_has_no_contact_equation():
         branches(block)
 
 
-def test_friction_that_falls_faster_than_the_waves_for_ever():
-    forever = Wavy(mean=0.7, amplitude=0.3, beat=1e-9, fade=1e9)
-    light = ss.ElasticSlab(1e-9, 1e-9, 1.0, 1e8)
-    problem = ss.Problem(light, forever, pull_rate=1e-9, initial_excess=0.0)
-    found = branches(problem)  # every scale of this law is huge, and so the search reaches that far
-    assert found[-1].rate_to == math.inf
+@dataclass(frozen=True)
+class Endless(ss.friction.FrictionLaw):
+    """A law that hides its slip-rate scale and is wrong about its range: nothing tells the search how far to go."""
+
+    kind = "endless-test"
+    source = "made up"
+
+    @staticmethod
+    def formula(law, u, v):
+        return 0.5 / (1.0 + 1e-12 * v)
+
+    def range(self):
+        return 0.5, 0.5
+
+
+def test_friction_that_seems_to_fall_faster_than_the_waves_for_ever():
+    problem = ss.Problem(ss.ElasticSlab(1e-9, 1e-9, 1.0, 1e8), Endless(), pull_rate=1e-9, initial_excess=0.0)
+    with pytest.raises(ss.InputError, match=r"Endless: friction still falls faster than Z v rises at 1e\+04 m/s"):
+        branches(problem)
 
 
 @pytest.mark.parametrize("slip", [0.0, 0.7, 3.1])
@@ -163,3 +177,14 @@ def test_branches_are_where_the_resistance_rises(law, slip):
 def test_scales_do_not_leave_the_search_without_a_rate():
     g = resistance(ss.Problem(SLAB, ss.friction.Coulomb(0.5, 0.5), initial_load=0.0))
     assert g.scales == (1.0,)
+
+
+def test_no_unstable_rate_inside_the_step_from_static_to_sliding_friction():
+    law = Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3, step=0.05)
+    g = resistance(slab_problem(law), 1.0)
+    stable = branches_of(g)
+    assert stable[0].rate_from > 0.0
+    below, kinds = rates_at(g, stable, 1.01 * g.start)  # g falls from `start`: once through it on the way down, once on the way up
+    inside, _ = rates_at(g, stable, 0.5 * g.start)
+    assert kinds.tolist()[:3] == [True, False, True]
+    assert below.size == inside.size + 1

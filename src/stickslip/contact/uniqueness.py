@@ -50,7 +50,7 @@ class Uniqueness:
     folds: tuple[Fold, ...] = ()
     jumps: tuple[Jump, ...] = ()
     window: tuple[float, float] | None = None
-    """Lowest and highest load between which more than one slip rate is admissible."""
+    """Loads between which more than one slip rate is admissible, as excess over the static strength (Pa)."""
     resistance: Resistance | None = None
     """The contact equation; None where inertia at the contact makes the slip rate a state."""
     branches: tuple[Branch, ...] = ()

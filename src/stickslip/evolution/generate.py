@@ -38,6 +38,12 @@ def power_difference(base, step, exponent):
         return base**exponent * expm1(exponent * log1p(step / base))
     return (base + step) ** exponent - base**exponent
 
+
+@njit(error_model="numpy")
+def arcsinh_difference(base, step):
+    root, other = sqrt(1.0 + base * base), sqrt(1.0 + (base + step) * (base + step))
+    return asinh(step * (root - base * (2.0 * base + step) / (root + other)))
+
 '''
 
 
@@ -146,8 +152,16 @@ class FormulaWriter:
                 half = f"0.5 * {self.difference(node.arguments[0])}"
                 lines += [f"h{j} = sin({half})", f"g{j} = 2.0 * h{j} * cos({half})", f"h{j} = 2.0 * h{j} * h{j}"]
             lines.append(f"e{i} = {self._difference_rule(node)}")
-            lines.append(f"n{i}_0 = {self.reference(node)} + e{i}")
+            lines.append(f"n{i}_0 = {self._value_rule(node)}")
         return lines
+
+    def _value_rule(self, node: Expression) -> str:
+        """The node's value: from its arguments where that is cheap, since reference plus difference loses digits of small values."""
+        sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
+        if sign is None:
+            return f"{self.reference(node)} + e{self.index[node]}"
+        left, right = (self.coefficient(argument, 0) for argument in node.arguments)
+        return f"{left} {sign} {right}"
 
     def _difference_rule(self, node: Expression) -> str:
         a = node.arguments[0]
@@ -172,7 +186,7 @@ class FormulaWriter:
             "log": f"log1p({ea} / {ra})",
             "sqrt": f"{ea} / (sqrt({ra} + {ea}) + {r})",
             "tanh": f"tanh({ea}) * (1.0 - {r} * {r}) / (1.0 + {r} * tanh({ea}))",
-            "arcsinh": f"asinh({ra} + {ea}) - {r}",
+            "arcsinh": f"arcsinh_difference({ra}, {ea})",
             "pow": f"power_difference({ra}, {ea}, {self.reference(node.arguments[-1])})",
         }[node.operation]
 

@@ -224,8 +224,13 @@ def maximum(c: Floats) -> float:
 
 @kernel
 def crossings(c: Floats, out: Floats) -> int:
-    """Every x in (0, 1) at which p changes sign, ascending into `out` (as many as fit); returns how many."""
-    found = 0
+    """Every x in (0, 1) at which p changes sign, ascending into `out` (as many as fit); returns how many.
+
+    The sign is carried from interval to interval, so that a root on the border between two is found once.
+    """
+    found, sign = 0, 0.0
+    for k in range(len(c) - 1, -1, -1):
+        sign = c[k] if c[k] != 0.0 else sign  # just right of 0 the lowest term decides
     starts, widths = np.empty(128), np.empty(128)
     starts[0], widths[0], waiting = 0.0, 1.0, 1
     part = np.empty_like(c)
@@ -233,17 +238,23 @@ def crossings(c: Floats, out: Floats) -> int:
         waiting -= 1
         start, width = starts[waiting], widths[waiting]
         restrict(c, start + 0.5 * width, 0.5 * width, part)
-        if abs(part[0]) > _tail(part):
-            continue
-        if abs(part[1]) > _slope_tail(part):
-            if part[1] > 0.0:
-                for k in range(len(part)):
-                    part[k] = -part[k]
-            if evaluate(part, -1.0) > 0.0 and part.sum() <= 0.0:
-                out[found] = start + 0.5 * width * (1.0 + _falling_root(part))
-                found += 1
-        elif width >= SMALLEST_INTERVAL:
+        definite = abs(part[0]) > _tail(part)
+        if not definite and abs(part[1]) <= _slope_tail(part) and width >= SMALLEST_INTERVAL:
             starts[waiting], widths[waiting] = start + 0.5 * width, 0.5 * width
             starts[waiting + 1], widths[waiting + 1] = start, 0.5 * width
             waiting += 2
+            continue
+        before, after = evaluate(part, -1.0), part.sum()
+        if math.copysign(1.0, after) != math.copysign(1.0, sign) and after != 0.0:
+            if definite or before == 0.0 or math.copysign(1.0, before) == math.copysign(1.0, after):
+                place = start
+            else:
+                if after > 0.0:
+                    for k in range(len(part)):
+                        part[k] = -part[k]
+                place = start + 0.5 * width * (1.0 + _falling_root(part))
+            if place > 0.0:
+                out[found] = place
+                found += 1
+        sign = after if after != 0.0 else sign
     return found
