@@ -98,6 +98,7 @@ def _history(solution: Solution) -> xr.Dataset:
             "history_real": (("piece", "real_column"), store.real),
             "history_load": (("piece", "term"), store.load),
             "history_rate": (("piece", "term"), store.rate),
+            "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
             "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
             "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
         }
@@ -143,6 +144,6 @@ def load(path: str | Path) -> Solution:
     names = ("history_whole", "history_real", "history_load", "history_rate")
     store = Store(*(np.ascontiguousarray(dataset[name].to_numpy()) for name in names))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
-    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), duration)
+    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
     return Solution(problem, duration, rtol, status, history)

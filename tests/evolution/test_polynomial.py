@@ -87,3 +87,7 @@ def test_crossings_are_all_roots(roots: list[float]) -> None:
     places = np.empty(32)
     found = crossings(padded(poly.polyfromroots(roots)), places)
     assert places[:found] == pytest.approx(roots, rel=0, abs=1e-9)
+
+
+def test_zero_polynomial_has_no_crossing() -> None:
+    assert crossings(np.zeros(TERMS), np.empty(4)) == 0

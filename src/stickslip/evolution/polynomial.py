@@ -231,6 +231,8 @@ def crossings(c: Floats, out: Floats) -> int:
     found, sign = 0, 0.0
     for k in range(len(c) - 1, -1, -1):
         sign = c[k] if c[k] != 0.0 else sign  # just right of 0 the lowest term decides
+    if sign == 0.0:
+        return 0
     starts, widths = np.empty(128), np.empty(128)
     starts[0], widths[0], waiting = 0.0, 1.0, 1
     part = np.empty_like(c)

@@ -57,8 +57,10 @@ def simulate(
     except KeyboardInterrupt:
         code = INTERRUPTED
     length = int(count[at.LENGTH])
-    history = History(at.trimmed(store, length), problem, row_time(problem), float(setup.par[at.RAMP]), duration)
-    return Solution(problem, duration, rtol, STATUSES[code], history)
+    status, kept = STATUSES[code], at.trimmed(store, length)
+    reached = duration if status.ok else float(kept.row[-1] * row_time(problem) + kept.theta_to[-1])
+    history = History(kept, problem, row_time(problem), float(setup.par[at.RAMP]), reached)
+    return Solution(problem, duration, rtol, status, history)
 
 
 def split_time(time: float, row: float) -> tuple[int, float]:

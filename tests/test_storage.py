@@ -1,0 +1,87 @@
+"""Solutions on disk: bit for bit, whole or absent, with their provenance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stickslip as ss
+from tests.evolution.test_verified_numbers import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
+
+RUNS = {
+    "slab, rate law, leap": (rate_law_slab(), 480 * ss.YEAR),
+    "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
+    "block": (slip_law_block(5.0, MODULUS * 1e3), 5.0),
+    "lossy slab": (
+        ss.Problem(
+            ss.ElasticSlab(2800, 3500, 1e4, 1e8, driver_impedance=1e6),
+            ss.friction.LinearSlipWeakening(0.8, 0.3, 0.1),
+            initial_excess=1e5,
+            far_stress=8.1e7,
+            far_stress_rate=10.0,
+        ),
+        30.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
+    run = ss.simulate(*RUNS[name])
+    back = ss.load(ss.save(run, tmp_path / "run.nc"))
+    assert back.problem == run.problem
+    assert (back.duration, back.rtol, back.status) == (run.duration, run.rtol, run.status)
+    times = np.linspace(0.0, run.duration, 101)
+    for quantity in ("slip", "slip_rate", "traction", "load"):
+        assert np.array_equal(getattr(back, quantity)(times), getattr(run, quantity)(times)), quantity
+    assert back.events.equals(run.events)
+    assert back.shocks.equals(run.shocks)
+    again = back.save(tmp_path / "again.nc")
+    assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
+
+
+def test_file_speaks_for_itself(tmp_path: Path) -> None:
+    path = ss.simulate(rate_law_slab(), 12.0).save(tmp_path / "run.nc")
+    with xr.open_dataset(path, engine="h5netcdf") as file:
+        assert file.attrs["source"] == f"stickslip {ss.__version__}"
+        assert file.attrs["selection_rule"] == "perfect-delay"
+        assert "rests on the rule" in file.attrs["selection_note"]
+        assert 'kind = "hyperbolic-rate"' in file.attrs["scenario"]
+        assert file.attrs["rtol"] == 1e-10
+        assert {name: file[name].attrs["units"] for name in ("time", "slip", "slip_rate", "traction", "load")} == {
+            "time": "s",
+            "slip": "m",
+            "slip_rate": "m s-1",
+            "traction": "Pa",
+            "load": "Pa",
+        }
+        assert float(file.slip[-1]) == pytest.approx(23.4402332474, rel=1e-10, abs=0.0)
+        assert list(file.shock_cause.values) == ["start", "echo"]
+
+
+def test_run_without_events_is_saved_too(tmp_path: Path) -> None:
+    run = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0)
+    assert len(ss.load(run.save(tmp_path / "still.nc")).events) == 0
+
+
+def test_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ss.InputError, match="cannot be written"):
+        ss.simulate(rate_law_slab(), 1.0).save(tmp_path / "missing" / "run.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("content", [b"", b"not a netCDF file"])
+def test_files_that_are_not_solutions(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "wrong.nc"
+    path.write_bytes(content)
+    with pytest.raises(ss.InputError, match=r"wrong\.nc: not a netCDF file"):
+        ss.load(path)
+
+
+def test_other_netcdf_files_are_refused(tmp_path: Path) -> None:
+    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(ss.InputError, match="not a solution"):
+        ss.load(tmp_path / "other.nc")
