@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from stickslip import InputError
-from stickslip.scenarios.units import COMMON_UNITS, si_factor, split_quantity, to_si
+from stickslip.units import COMMON_UNITS, si_factor, split_quantity, to_si
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ class Problem:
 
     The slab's loads are stresses (Pa), the block's forces (N). Give either `initial_load` or `initial_excess`; the excess over
     the static strength is kept exactly, and a load within 4 ulp of the strength counts as excess 0. With excess 0 the contact
-    stays stuck for pull_rate 0 and slips at 0+ for pull_rate > 0. An initial load beyond the strength slips at once; the left
+    stays stuck for pull_rate 0 and slips at 0+ for pull_rate > 0. The excess is measured from the strength against forward slip,
+    also where the load is negative. An initial load beyond the strength slips at once; the left
     limit at t = 0 is then the initial state at rest.
 
     far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
@@ -47,7 +48,8 @@ class Problem:
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
         check_quantities(self)
         if (self.initial_load is None) == (self.initial_excess is None):
-            raise InputError("Problem: give either initial_load or initial_excess, and not both")
+            found = "neither" if self.initial_load is None else "both"
+            raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
         if self.initial_state is not None:
             raise InputError(f"Problem: initial_state: {type(self.friction).__name__} has no state variable")
         if self.selection not in SELECTION_RULES:
@@ -85,8 +87,11 @@ class Problem:
         if self.initial_excess is not None:
             return self.initial_excess
         assert self.initial_load is not None
-        difference = self.initial_load - self.strength
-        return 0.0 if abs(difference) <= 4 * np.spacing(self.strength) else difference
+        rounding = 4 * np.spacing(self.strength)
+        for edge in (self.strength, -self.strength):  # forwards and backwards
+            if abs(self.initial_load - edge) <= rounding:
+                return edge - self.strength
+        return self.initial_load - self.strength
 
     @property
     def load(self) -> float:

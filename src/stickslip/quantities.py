@@ -13,6 +13,9 @@ from typing import Any
 
 from stickslip.errors import InputError
 
+LARGEST_WHOLE = 16
+"""Largest whole quantity: exponents."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -23,6 +26,8 @@ class Quantity:
     above: float | None = None
     at_least: float | None = None
     infinite: bool = False
+    whole: bool = False
+    """Only whole numbers, such as an exponent; in a friction law it enters the formula as a number, not as a parameter."""
 
     def check(self, owner: str, name: str, value: Any) -> float:
         """Return the value as a float, or raise InputError naming owner and field."""
@@ -32,6 +37,8 @@ class Quantity:
         number = float(value)
         if math.isnan(number) or (math.isinf(number) and not self.infinite):
             raise InputError(f"{where} must be finite, got {number}")
+        if self.whole and not (number.is_integer() and abs(number) <= LARGEST_WHOLE):
+            raise InputError(f"{where} must be a whole number up to {LARGEST_WHOLE}, got {number:g}")
         if self.above is not None and not number > self.above:
             raise InputError(f"{where} must be greater than {self.above:g} {self.label}, got {number:g}")
         if self.at_least is not None and not number >= self.at_least:
@@ -51,12 +58,12 @@ def quantity(
     above: float | None = None,
     at_least: float | None = None,
     infinite: bool = False,
+    whole: bool = False,
     default: Any = dataclasses.MISSING,
 ) -> Any:
     """Declare a dataclass field that holds a physical quantity in SI."""
-    return dataclasses.field(
-        default=default, metadata={"quantity": Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite)}
-    )
+    declared = Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, whole=whole)
+    return dataclasses.field(default=default, metadata={"quantity": declared})
 
 
 def quantities_of(kind: type) -> dict[str, Quantity]:

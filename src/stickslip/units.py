@@ -60,6 +60,33 @@ def to_si(number: float, unit: str, si: str) -> float:
     return number * float(factor)
 
 
+_BASE = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
+
+
+def si_base(text: str) -> tuple[float, str]:
+    """Number in SI and unit in powers of m, kg and s of a text such as "1 mm/s": 0.001, "m s^-1". Raises InputError."""
+    import pint
+
+    parts = split_quantity(text)
+    if parts is None:
+        raise InputError(
+            f"{ascii(text)[:60]} is not a number with a unit" + (f" up to {LONGEST} characters" * (len(text) > LONGEST))
+        )
+    registry = _registry()
+    try:
+        powers = dict(registry.parse_units(_with_one(parts[1])).dimensionality)
+    except pint.UndefinedUnitError as error:
+        name = str(error.args[0]).removeprefix("delta_")
+        raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
+    except pint.PintError:
+        raise InputError(f"'{parts[1]}' is not a unit") from None
+    if not set(powers) <= set(_BASE) or any(power != int(power) or abs(power) > 9 for power in powers.values()):
+        raise InputError(f"'{parts[1]}' is not made of whole powers of m, kg and s")
+    named = sorted((_BASE[base], int(power)) for base, power in powers.items())
+    si = " ".join(name if power == 1 else f"{name}^{power}" for name, power in named)
+    return to_si(*parts, si), si
+
+
 def _with_one(unit: str) -> str:
     """ "/ m" as "1/ m": the form that unit parsers know."""
     return f"1{unit}" if unit.startswith("/") else unit

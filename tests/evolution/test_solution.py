@@ -97,6 +97,22 @@ def test_excess_zero_without_pull_stays_stuck() -> None:
     assert float(run.slip(100.0)) == 0.0
 
 
+@pytest.mark.parametrize(("static", "dynamic"), [(0.6, 0.3), (0.7, 0.3), (0.9, 0.2), (0.35, 0.1)])
+@pytest.mark.parametrize("pull", [0.0, -1e-9])
+def test_coulomb_at_its_strength_is_not_pushed_over_it_by_rounding(static: float, dynamic: float, pull: float) -> None:
+    for load in ({"initial_excess": 0.0}, {"initial_load": static * NORMAL}, {"initial_load": -static * NORMAL}):
+        if pull < 0 and "initial_load" in load and load["initial_load"] < 0:
+            continue  # there the pull takes it over
+        run = ss.simulate(ss.Problem(SLAB, F.Coulomb(static, dynamic), pull_rate=pull, **load), 20.0)
+        assert float(np.ptp(run.slip(np.linspace(0, 20, 50)))) == 0.0
+        assert len(run.events) == 0
+
+
+def test_constant_slip_rate_has_an_event() -> None:
+    run = ss.simulate(ss.Problem(SLAB, F.Coulomb(0.8, 0.3), initial_load=-8.1e7), 20.0)
+    assert len(run.events) == 1
+
+
 def test_a_load_within_rounding_of_the_strength_is_excess_zero() -> None:
     load = np.nextafter(np.nextafter(8e7, np.inf), np.inf)
     assert replace(rate_law_slab(), initial_excess=None, initial_load=float(load)).excess == 0.0

@@ -49,7 +49,7 @@ def _print(screen: Console, groups: dict[str, list[Fact]]) -> None:
     for heading, facts in groups.items():
         shown.add_row(heading, style="bold")
         for fact in facts:
-            shown.add_row(fact.name, with_unit(fact.value, fact.unit), fact.meaning)
+            shown.add_row(fact.name, fact.value if isinstance(fact.value, str) else with_unit(fact.value, fact.unit), fact.meaning)
         shown.add_section()
     screen.print(shown)
 

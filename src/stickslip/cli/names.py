@@ -31,6 +31,13 @@ def complete_template(incomplete: str) -> list[str]:
     return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
 
 
+def complete_law(incomplete: str) -> list[str]:
+    """Friction laws."""
+    from stickslip.friction import LAWS
+
+    return [kind for kind in LAWS if kind.startswith(incomplete)]
+
+
 def complete_rule(incomplete: str) -> list[str]:
     """Selection rules."""
     from stickslip.problem import SELECTION_RULES

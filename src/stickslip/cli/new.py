@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.names import complete_template
+from stickslip.cli.names import complete_law, complete_template
 from stickslip.errors import InputError
 
 
@@ -16,6 +16,10 @@ def new(
         typer.Argument(
             help="slab, block, or the name of a bundled scenario.", autocompletion=complete_template, show_default=False
         ),
+    ] = None,
+    friction: Annotated[
+        str | None,
+        typer.Option(help="A friction law to put into a starter.", autocompletion=complete_law, show_default=False),
     ] = None,
     show_list: Annotated[bool, typer.Option("--list", "-l", help="List the names, with what each shows.")] = False,
 ) -> None:
@@ -27,6 +31,7 @@ def new(
 
     \b
       stickslip new slab > mine.toml
+      stickslip new block --friction exponential-stribeck
       stickslip new fig6-slab
       stickslip new --list
     """
@@ -37,13 +42,14 @@ def new(
     else:
         from stickslip.scenarios.templates import template
 
-        typer.echo(template(name), nl=False)
+        typer.echo(template(name, friction), nl=False)
 
 
 def _print_list() -> None:
     import tomllib
 
     from stickslip.cli.show import console, table
+    from stickslip.friction import LAWS
     from stickslip.scenarios import library
 
     listing = table("name", "what it shows")
@@ -53,3 +59,7 @@ def _print_list() -> None:
         content = tomllib.loads(library.text(name))
         listing.add_row(name, f"{content['title']}. {content['description']}")
     console().print(listing)
+    laws = table("--friction", "law")
+    for kind, law in LAWS.items():
+        laws.add_row(kind, (law.__doc__ or "").strip().splitlines()[0])
+    console().print(laws)

@@ -14,15 +14,14 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
 import numba
 import platformdirs
-from numba import carray, njit, types
+from numba import njit, types
 from numba.extending import intrinsic
 
 from stickslip.evolution.generate import ORDER, FormulaWriter
@@ -76,99 +75,134 @@ def inlined(function: F) -> F:
     return _compiled(function, forceinline=True)
 
 
-def _compiled(function: F, **options: bool) -> F:
+def reduction(function: F) -> F:
+    """As `inlined`, for sums whose terms may be added in any order, several at a time."""
+    return _compiled(function, fastmath=("contract", "reassoc", "nsz"), forceinline=True)
+
+
+def _compiled(function: F, fastmath: tuple[str, ...] = ("contract",), **options: bool) -> F:
     with _cached_on_disk():
-        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
+        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath=set(fastmath), **options)(function)
     return compiled
 
 
-@dataclass(frozen=True)
 class CompiledFormula:
-    """Addresses of a formula's C functions (see `generate`) and the number of constants it wants."""
+    """A formula's C functions (see `generate`): `prepare` to be called, the addresses of the others, and how many constants.
 
-    prepare: Callable[..., None]
-    value: int
-    rate_jet: int
-    motion_jet: int
-    size: int
-    keep_alive: Any
+    Each is written, compiled and loaded when it is first asked for; what was compiled before comes from the disk.
+    """
+
+    def __init__(self, formula: Expression, parameters: tuple[str, ...]) -> None:
+        self._writer = FormulaWriter(formula, parameters, ORDER)
+        self.size = self._writer.size
+
+    def _function(self, part: str) -> Any:
+        text = self._writer.module(part)
+        name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
+        path = CACHE / "formulas" / f"{name}.py"
+        if not path.exists():
+            with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as draft:
+                draft.write(text)
+            Path(draft.name).replace(path)
+        spec = importlib.util.spec_from_file_location(name, path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module  # numba looks a cached function's module up by its name; this keeps the code alive, too
+        with _cached_on_disk():
+            spec.loader.exec_module(module)
+        return getattr(module, part)
+
+    @cached_property
+    def prepare(self) -> Callable[..., None]:
+        """prepare(parameters, reference slip, constants) through ctypes."""
+        function: Callable[..., None] = self._function("prepare").ctypes
+        return function
+
+    @cached_property
+    def value(self) -> int:
+        """Address of value(c, dx, s, out)."""
+        return int(self._function("value").address)
+
+    @cached_property
+    def rate_jet(self) -> int:
+        """Address of rate_jet(c, k, L, s)."""
+        return int(self._function("rate_jet").address)
+
+    @cached_property
+    def motion_jet(self) -> int:
+        """Address of motion_jet(c, k, L, s)."""
+        return int(self._function("motion_jet").address)
 
 
 @cache
 def compile_formula(formula: Expression, parameters: tuple[str, ...]) -> CompiledFormula:
-    """Write, compile and load the functions of a formula; what was compiled before comes from the disk."""
-    writer = FormulaWriter(formula, parameters, ORDER)
-    text = writer.module()
-    name = f"formula_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
-    path = CACHE / "formulas" / f"{name}.py"
-    if not path.exists():
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as draft:
-            draft.write(text)
-        Path(draft.name).replace(path)
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # numba looks a cached function's module up by its name
-    with _cached_on_disk():
-        spec.loader.exec_module(module)
-    functions = {part: getattr(module, part) for part in ("value", "rate_jet", "motion_jet")}
-    addresses = {part: int(function.address) for part, function in functions.items()}
-    return CompiledFormula(prepare=module.prepare.ctypes, size=writer.size, keep_alive=module, **addresses)
+    """The compiled functions of a formula, the same ones for every problem."""
+    return CompiledFormula(formula, parameters)
+
+
+FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 
 
 @intrinsic
 def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) -> Any:
-    """value(c, dx, s, out) of the formula at `address`; c and out are addresses of arrays."""
-    return types.void(types.int64, types.int64, types.float64, types.float64, types.int64), _caller("pffp")
+    """value(c, dx, s, out) of the formula at `address`."""
+    return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS), _call
 
 
 @intrinsic
 def call_jet(typingctx: Any, address: Any, c: Any, k: Any, load: Any, s: Any) -> Any:
-    """rate_jet or motion_jet(c, k, L, s) of the formula at `address`; all are addresses of arrays."""
-    return types.void(types.int64, types.int64, types.int64, types.int64, types.int64), _caller("pppp")
+    """rate_jet or motion_jet(c, k, L, s) of the formula at `address`."""
+    return types.void(types.int64, FLOATS, FLOATS, FLOATS, FLOATS), _call
+
+
+def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in args[1:]])
+    builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
+    return context.get_dummy_value()
 
 
 @intrinsic
-def float_pointer(typingctx: Any, address: Any) -> Any:
-    """An address as a pointer to floats."""
-    return types.CPointer(types.float64)(types.intp), _cast(ir.DoubleType())
+def floats(typingctx: Any, address: Any) -> Any:
+    """An address as a pointer to floats, which is indexed like an array."""
+    return FLOATS(types.int64), _cast
 
 
 @intrinsic
-def integer_pointer(typingctx: Any, address: Any) -> Any:
+def integers(typingctx: Any, address: Any) -> Any:
     """An address as a pointer to 64-bit integers."""
-    return types.CPointer(types.int64)(types.intp), _cast(ir.IntType(64))
+    return INTEGERS(types.int64), _cast
 
 
-def _cast(kind: ir.Type) -> Callable[..., Any]:
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.inttoptr(args[0], kind.as_pointer())
-
-    return codegen
+def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
 
 
-@kernel
-def floats(array: Any) -> Any:
-    """The same array without its reference count: counting it up and down in every small function costs more than the work."""
-    return carray(float_pointer(array.ctypes.data), array.shape)
-
-
-@kernel
-def integers(array: Any) -> Any:
-    """As `floats`, for integers."""
-    return carray(integer_pointer(array.ctypes.data), array.shape)
-
-
-def _caller(kinds: str) -> Callable[..., Any]:
-    """Code that calls a C function through its address; `p` stands for an array's address, `f` for a float."""
+@intrinsic
+def ahead(typingctx: Any, pointer: Any, n: Any) -> Any:
+    """The pointer to the number n places further on."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        pointer = ir.IntType(8).as_pointer()
-        c_types = [ir.DoubleType() if kind == "f" else pointer for kind in kinds]
-        function = builder.inttoptr(args[0], ir.FunctionType(ir.VoidType(), c_types).as_pointer())
-        passed = [a if kind == "f" else builder.inttoptr(a, pointer) for a, kind in zip(args[1:], kinds, strict=True)]
-        builder.call(function, passed)
-        return context.get_dummy_value()
+        return builder.gep(args[0], [args[1]])
 
-    return codegen
+    return pointer(pointer, types.int64), codegen
+
+
+@intrinsic
+def bits_of(typingctx: Any, number: Any) -> Any:
+    """The 64 bits of a float as an integer."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.IntType(64))
+
+    return types.int64(types.float64), codegen
+
+
+@intrinsic
+def float_of(typingctx: Any, bits: Any) -> Any:
+    """The float with these 64 bits."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.DoubleType())
+
+    return types.float64(types.int64), codegen

@@ -1,4 +1,7 @@
-"""Polynomials on a piece of the history: coefficients ascending, in the piece's own variable, usually on [0, 1]."""
+"""Polynomials on a piece of the history: TERMS coefficients, ascending, in the piece's own variable, usually on [0, 1].
+
+Coefficients come as pointers (in the engine) or as arrays (in tables made from a history): both are indexed alike.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.evolution.compiled import kernel
+from stickslip.evolution.compiled import inlined, kernel, reduction
 from stickslip.evolution.layout import TERMS
 
 Floats = NDArray[np.float64]
@@ -28,24 +31,31 @@ LOW_BERNSTEIN = _bernstein(LOW)
 SMALLEST_INTERVAL = 1e-15
 
 
-@kernel
-def copy(source: Floats, target: Floats) -> None:
-    """Plain loop: for such short arrays it beats slice assignment, which checks shapes and overlap."""
-    for k in range(min(len(source), len(target))):
+@inlined
+def copy(source: Floats, target: Floats, n: int) -> None:
+    for k in range(n):
         target[k] = source[k]
 
 
-@kernel
+@inlined
 def fill(target: Floats, value: float) -> None:
-    for k in range(len(target)):
+    for k in range(TERMS):
         target[k] = value
+
+
+@inlined
+def powers_of(x: float, out: Floats) -> None:
+    """1, x, x^2, ...: each from two of half its order, so that none waits long."""
+    out[0], out[1] = 1.0, x
+    for k in range(2, TERMS):
+        out[k] = out[k >> 1] * out[(k + 1) >> 1]
 
 
 @kernel
 def evaluate(c: Floats, x: float) -> float:
     """p(x), by Horner's rule."""
-    value = c[-1]
-    for k in range(len(c) - 2, -1, -1):
+    value = c[TERMS - 1]
+    for k in range(TERMS - 2, -1, -1):
         value = value * x + c[k]
     return value
 
@@ -53,7 +63,7 @@ def evaluate(c: Floats, x: float) -> float:
 @kernel
 def degree(c: Floats) -> int:
     """Index of the last coefficient that is not zero."""
-    n = len(c) - 1
+    n = TERMS - 1
     while n > 0 and c[n] == 0.0:
         n -= 1
     return n
@@ -63,40 +73,73 @@ def degree(c: Floats) -> int:
 def restrict(c: Floats, start: float, width: float, out: Floats) -> None:
     """Coefficients of y -> p(start + width y) into `out`: exact but for rounding."""
     n = degree(c)
-    for k in range(len(c)):
+    for k in range(n + 1, TERMS):
+        out[k] = 0.0
+    restrict_low(c, n, start, width, out)
+
+
+@kernel
+def restrict_low(c: Floats, n: int, start: float, width: float, out: Floats) -> None:
+    """As `restrict`, for a polynomial of degree n; leaves the coefficients of `out` beyond as they are."""
+    for k in range(n + 1):
         out[k] = c[k]
     if start != 0.0:
         for j in range(n):
             for k in range(n - 1, j - 1, -1):
                 out[k] += start * out[k + 1]
-    scale(out, width)
+    power = width
+    for k in range(1, n + 1):
+        out[k] *= power
+        power *= width
 
 
 @kernel
 def scale(c: Floats, width: float) -> None:
     """Turn p(y) into p(width y), in place."""
     power = width
-    for k in range(1, len(c)):
+    for k in range(1, TERMS):
         c[k] *= power
         power *= width
 
 
-@kernel
-def _tail(c: Floats) -> float:
+@reduction
+def magnitude(c: Floats) -> float:
     """Sum of |c_k| for k >= 1: how far p can be from c_0 on [-1, 1]."""
-    total = 0.0
-    for k in range(1, len(c)):
-        total += abs(c[k])
-    return total
+    value = 0.0
+    for k in range(1, TERMS):
+        value += abs(c[k])
+    return value
 
 
-@kernel
-def _slope_tail(c: Floats) -> float:
+@reduction
+def slope_magnitude(c: Floats) -> float:
     """Sum of k |c_k| for k >= 2: how far the slope can be from c_1 on [-1, 1]."""
-    total = 0.0
-    for k in range(2, len(c)):
-        total += k * abs(c[k])
-    return total
+    value = 0.0
+    for k in range(2, TERMS):
+        value += k * abs(c[k])
+    return value
+
+
+@reduction
+def total(c: Floats) -> float:
+    """p(1)."""
+    value = 0.0
+    for k in range(TERMS):
+        value += c[k]
+    return value
+
+
+@reduction
+def integral(c: Floats, end: float, shift: int) -> float:
+    """Integral of x^(shift - 1) p(x) from 0 to `end`, for a shift of 1 or 2."""
+    value = 0.0
+    if end == 1.0:
+        for k in range(TERMS):
+            value += RECIPROCAL[k + shift] * c[k]
+        return value
+    for k in range(TERMS - 1, -1, -1):
+        value = value * end + RECIPROCAL[k + shift] * c[k]
+    return value * end if shift == 1 else value * end * end
 
 
 @kernel
@@ -104,8 +147,8 @@ def _falling_root(c: Floats) -> float:
     """The root in [-1, 1] of a polynomial that falls there through zero: Newton's method kept inside its bracket."""
     low, high, x = -1.0, 1.0, 0.0
     for _ in range(100):
-        value, slope = c[-1], 0.0
-        for k in range(len(c) - 2, -1, -1):
+        value, slope = c[TERMS - 1], 0.0
+        for k in range(TERMS - 2, -1, -1):
             slope = slope * x + value
             value = value * x + c[k]
         if value > 0.0:
@@ -139,11 +182,11 @@ def _clearly_positive(c: Floats) -> bool:
 
 
 @kernel
-def first_descent(c: Floats, scratch: Floats) -> float:
+def first_descent(c: Floats, spare: Floats) -> float:
     """First x in [0, 1] at which p, positive before, falls below zero; NONE if there is none; 0 if it starts by falling.
 
     A zero at x = 0 does not count where p rises from it: leading zero coefficients are divided out. Most calls end at a bound
-    on the coefficients or at the signs of the Bernstein coefficients (for which `scratch` is).
+    on the coefficients or at the signs of the Bernstein coefficients (for which `spare` is).
     """
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:
@@ -160,65 +203,67 @@ def first_descent(c: Floats, scratch: Floats) -> float:
     if lead == 0 and _clearly_positive(c):
         return NONE
     for j in range(TERMS):
-        scratch[j] = c[lead]
+        spare[j] = c[lead]
     for k in range(lead + 1, TERMS):
         for j in range(TERMS):
-            scratch[j] += BERNSTEIN[k - lead, j] * c[k]
-    lowest = scratch[0]
+            spare[j] += BERNSTEIN[k - lead, j] * c[k]
+    lowest = spare[0]
     for j in range(1, TERMS):
-        lowest = min(lowest, scratch[j])
+        lowest = min(lowest, spare[j])
     if lowest > 0.0:
         return NONE
-    return _isolate(c[lead:].copy())
+    q = np.zeros(TERMS)
+    for k in range(lead, TERMS):
+        q[k - lead] = c[k]
+    return _isolate(q)
+
+
+@kernel
+def _next_interval(start: float, width: float) -> tuple[float, float]:
+    """The next interval of a bisection of [0, 1] from left to right: the widest that starts where the last one ended."""
+    start += width
+    while start < 1.0 and math.floor(start / (2.0 * width)) * 2.0 * width == start:
+        width *= 2.0
+    return start, width
 
 
 @kernel
 def _isolate(q: Floats) -> float:
     """First descent through zero on [0, 1] of a polynomial that is positive at 0, by bisection of intervals left to right."""
-    starts, widths = np.empty(128), np.empty(128)
-    starts[0], widths[0], waiting = 0.0, 1.0, 1
-    part = np.empty_like(q)
-    while waiting > 0:
-        waiting -= 1
-        start, width = starts[waiting], widths[waiting]
+    part, start, width = np.empty(TERMS), 0.0, 1.0
+    while start < 1.0:
         restrict(q, start + 0.5 * width, 0.5 * width, part)
-        if part[0] > _tail(part):
-            continue
-        if -part[1] > _slope_tail(part):
-            if part.sum() > 0.0:
-                continue
-            return start + 0.5 * width * (1.0 + _falling_root(part))
-        if part[0] < -_tail(part) or (width < SMALLEST_INTERVAL and part[0] < 0.0):
+        tail, slope_tail = magnitude(part), slope_magnitude(part)
+        if part[0] < -tail or (width < SMALLEST_INTERVAL and part[0] < 0.0):
             return start
-        if part[1] > _slope_tail(part) and evaluate(part, -1.0) >= 0.0:
-            continue
-        if width >= SMALLEST_INTERVAL:
-            starts[waiting], widths[waiting] = start + 0.5 * width, 0.5 * width
-            starts[waiting + 1], widths[waiting + 1] = start, 0.5 * width
-            waiting += 2
+        if -part[1] > slope_tail and total(part) <= 0.0:
+            return start + 0.5 * width * (1.0 + _falling_root(part))
+        clear = part[0] > tail or -part[1] > slope_tail or (part[1] > slope_tail and evaluate(part, -1.0) >= 0.0)
+        if clear or width < SMALLEST_INTERVAL:
+            start, width = _next_interval(start, width)
+        else:
+            width *= 0.5
     return NONE
 
 
 @kernel
-def maximum(c: Floats) -> float:
-    """Largest value of p on [0, 1], to rounding, by branch and bound."""
-    best = max(c[0], c.sum())
+def maximum(c: Floats, sign: float = 1.0) -> float:
+    """Largest value of sign p on [0, 1], to rounding, by branch and bound."""
+    best = max(sign * c[0], sign * total(c))
     if degree(c) <= 1:
         return best
-    starts, widths = np.empty(128), np.empty(128)
-    starts[0], widths[0], waiting = 0.0, 1.0, 1
-    part = np.empty_like(c)
-    while waiting > 0:
-        waiting -= 1
-        start, width = starts[waiting], widths[waiting]
-        restrict(c, start + 0.5 * width, 0.5 * width, part)
+    q, part, start, width = np.empty(TERMS), np.empty(TERMS), 0.0, 1.0
+    for k in range(TERMS):
+        q[k] = sign * c[k]
+    while start < 1.0:
+        restrict(q, start + 0.5 * width, 0.5 * width, part)
         best = max(best, part[0])
-        if part[0] + _tail(part) <= best + 4e-16 * abs(best) or abs(part[1]) > _slope_tail(part) or width < SMALLEST_INTERVAL:
-            best = max(best, part.sum(), evaluate(part, -1.0))
-            continue
-        starts[waiting], widths[waiting] = start, 0.5 * width
-        starts[waiting + 1], widths[waiting + 1] = start + 0.5 * width, 0.5 * width
-        waiting += 2
+        below = part[0] + magnitude(part) <= best + 4e-16 * abs(best)
+        if below or abs(part[1]) > slope_magnitude(part) or width < SMALLEST_INTERVAL:
+            best = max(best, total(part), evaluate(part, -1.0))
+            start, width = _next_interval(start, width)
+        else:
+            width *= 0.5
     return best
 
 
@@ -229,34 +274,28 @@ def crossings(c: Floats, out: Floats) -> int:
     The sign is carried from interval to interval, so that a root on the border between two is found once.
     """
     found, sign = 0, 0.0
-    for k in range(len(c) - 1, -1, -1):
+    for k in range(TERMS - 1, -1, -1):
         sign = c[k] if c[k] != 0.0 else sign  # just right of 0 the lowest term decides
     if sign == 0.0:
         return 0
-    starts, widths = np.empty(128), np.empty(128)
-    starts[0], widths[0], waiting = 0.0, 1.0, 1
-    part = np.empty_like(c)
-    while waiting > 0 and found < len(out):
-        waiting -= 1
-        start, width = starts[waiting], widths[waiting]
+    part, start, width = np.empty(TERMS), 0.0, 1.0
+    while start < 1.0 and found < len(out):
         restrict(c, start + 0.5 * width, 0.5 * width, part)
-        definite = abs(part[0]) > _tail(part)
-        if not definite and abs(part[1]) <= _slope_tail(part) and width >= SMALLEST_INTERVAL:
-            starts[waiting], widths[waiting] = start + 0.5 * width, 0.5 * width
-            starts[waiting + 1], widths[waiting + 1] = start, 0.5 * width
-            waiting += 2
+        definite = abs(part[0]) > magnitude(part)
+        if not definite and abs(part[1]) <= slope_magnitude(part) and width >= SMALLEST_INTERVAL:
+            width *= 0.5
             continue
-        before, after = evaluate(part, -1.0), part.sum()
-        if math.copysign(1.0, after) != math.copysign(1.0, sign) and after != 0.0:
-            if definite or before == 0.0 or math.copysign(1.0, before) == math.copysign(1.0, after):
-                place = start
-            else:
+        before, after = evaluate(part, -1.0), total(part)
+        if after != 0.0 and math.copysign(1.0, after) != math.copysign(1.0, sign):
+            place = start
+            if not definite and before != 0.0 and math.copysign(1.0, before) != math.copysign(1.0, after):
                 if after > 0.0:
-                    for k in range(len(part)):
+                    for k in range(TERMS):
                         part[k] = -part[k]
                 place = start + 0.5 * width * (1.0 + _falling_root(part))
             if place > 0.0:
                 out[found] = place
                 found += 1
         sign = after if after != 0.0 else sign
+        start, width = _next_interval(start, width)
     return found

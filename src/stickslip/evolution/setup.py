@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Setup
+from stickslip.evolution.workspace import COUNTS, STATES
 from stickslip.problem import Problem
 
 
@@ -33,15 +35,29 @@ def is_algebraic(problem: Problem) -> bool:
     return not has_inertia(problem) and law.depends_on_rate and not law.depends_on_slip
 
 
-def prepare(problem: Problem, rtol: float) -> Setup:
-    """Everything that the engine needs to know of a problem; compiles the law's formulas if they are new."""
+def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integers]:
+    """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
+
+    Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
+    """
+    setup, state, count = _prepared(problem)
+    par = setup.par.copy()
+    par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, max(1e-10, 10.0 * rtol)
+    return setup._replace(par=par), state.copy(), count.copy()
+
+
+@lru_cache(maxsize=256)
+def _prepared(problem: Problem) -> tuple[Setup, at.Floats, at.Integers]:
     law = problem.friction
     if not has_inertia(problem) and law.depends_on_rate and law.depends_on_slip:
         raise InputError(f"{type(law).__name__} depends on slip and on rate: a slab carries it only with a contact_mass so far")
-    par = _parameters(problem, rtol)
+    par = _parameters(problem)
     branches, stick_to = _branches(problem)
     par[at.STICK_TO] = stick_to
-    return Setup(par, *_formulas(problem), branches, _first_load(problem))
+    setup = Setup(par, *_formulas(problem), branches, _first_load(problem))
+    for shared in setup:
+        shared.flags.writeable = False
+    return setup, *_start(problem)
 
 
 def _branches(problem: Problem) -> tuple[at.Floats, float]:
@@ -53,7 +69,7 @@ def _branches(problem: Problem) -> tuple[at.Floats, float]:
     return np.array([*ends[:2], table.keep_from, table.keep_to, *ends[2:]]), table.stick_to
 
 
-def _parameters(problem: Problem, rtol: float) -> at.Floats:
+def _parameters(problem: Problem) -> at.Floats:
     body, law = problem.body, problem.friction
     par = np.zeros(at.PARAMETERS)
     par[at.ROW_TIME] = row_time(problem)
@@ -61,8 +77,6 @@ def _parameters(problem: Problem, rtol: float) -> at.Floats:
     par[at.REFERENCE] = problem.strength
     par[at.COUNTS_NET] = 1.0 if law.counts == "net" else 0.0
     par[at.STATIC_EXCESS] = law.static_excess
-    par[at.TOLERANCE] = rtol * SAFETY
-    par[at.RELATIVE_JUMP] = max(1e-10, 10.0 * rtol)
     lowest, _ = law.range()
     par[at.LARGEST_DROP] = max(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):
@@ -144,9 +158,9 @@ def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at
     formula.prepare(values.ctypes.data_as(double), reference, row.ctypes.data_as(double))
 
 
-def start_state(problem: Problem) -> tuple[at.Floats, at.Integers]:
+def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     """State and counts at t = 0: at rest, the load not yet met."""
-    state, count = np.zeros(at.STATES), np.zeros(at.COUNTS, np.int64)
+    state, count = np.zeros(STATES), np.zeros(COUNTS, np.int64)
     state[at.LAST_STEP] = math.inf
     count[at.PIECE] = int(np.searchsorted(np.asarray(problem.friction.knots), problem.law_slip, side="right"))
     count[at.IS_BLOCK] = not isinstance(problem.body, ElasticSlab)

@@ -11,9 +11,10 @@ from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
-from stickslip.evolution.setup import prepare, row_time, start_state
+from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
+from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 
 STEPS_PER_CALL = 200_000
@@ -36,13 +37,13 @@ def simulate(
         raise InputError(f"simulate: duration must be a positive time in s, got {duration!r}")
     if not 1e-15 <= rtol <= 1e-2:
         raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
-    setup = prepare(problem, rtol)
-    state, count = start_state(problem)
-    scratch, store = np.zeros((at.WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
+    setup, state, count = prepare(problem, rtol)
+    scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
     last_row, last_theta = split_time(duration, row_time(problem))
+    table = lend(setup, state, count, scratch, store)
     try:
         while True:
-            code = advance(setup, state, count, scratch, store, last_row, last_theta, STEPS_PER_CALL)
+            code = advance(table, last_row, last_theta, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
             if progress is not None:
                 time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
@@ -52,6 +53,7 @@ def simulate(
                     code = FULL_HISTORY
                     break
                 store = at.resized(store, length, min(4 * len(store.whole), max_pieces + 16))
+                table = lend(setup, state, count, scratch, store)
             elif code != OUT_OF_BUDGET:
                 break
     except KeyboardInterrupt:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -11,23 +14,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.errors import InputError
 from stickslip.friction.expression import RATE, SLIP, Expression, Parameter, as_expression, depends_on
-from stickslip.quantities import check_quantities
+from stickslip.friction.fields import Series, check_fields, fields_of
+from stickslip.quantities import Quantity, quantities_of
 
-
-class _Symbols:
-    """Stands for a law when its formula is asked for as a tree: every attribute is the parameter of that name."""
-
-    def __getattr__(self, name: str) -> Expression:
-        return Parameter(name)
+Formula = Callable[[Any, Any, Any], Any]
+"""mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s)."""
 
 
 @dataclass(frozen=True)
 class FrictionLaw(ABC):
     """mu(u, v): the friction coefficient of a contact that slips, and its static value at rest.
 
-    A law declares its parameters as fields (`quantity`), its formula once (`formula`, or one for each stretch of slip in
-    `pieces` with the slips between them in `knots`), and the class attributes below. It is frozen and has no state.
-    The formula is written for a slip rate v >= 0; for slip backwards the traction changes sign and v is its magnitude.
+    A law declares its parameters as fields (`quantity`, or what `friction.fields` offers), its formula once (`formula`, or one
+    for each stretch of slip or slip rate in `pieces` with the knots between them), and the class attributes below. It is frozen
+    and has no state. The formula is written for a slip rate v >= 0; for slip backwards the traction changes sign and v is its
+    magnitude. Pieces may share a formula and differ in the values of its parameters: `piece_values`.
     """
 
     kind: ClassVar[str]
@@ -36,30 +37,43 @@ class FrictionLaw(ABC):
     """Paper and equation."""
     counts: ClassVar[Literal["net", "path"]] = "net"
     """What slip the law sees: "net" (u itself, forwards and backwards) or "path" (its length; initial_slip counts as walked)."""
+    knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
+    """What the knots between pieces are places of: slip (m) or slip rate (m/s)."""
+    example: ClassVar[Mapping[str, Any]] = {}
+    """Plausible values of the fields as a scenario file would give them: shown by `stickslip new`, used by tests."""
+    columns: ClassVar[Mapping[str, str]] = {}
+    """Columns of a data file, and the fields they fill: a law with columns may be given as `file` in a scenario."""
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        """mu at slip u (m) and slip rate v >= 0 (m/s), with ordinary operators and the functions of `expression`.
+
+        Every law has it, unless it says in `pieces` what it is made of.
+        """
+        raise NotImplementedError
 
     def __post_init__(self) -> None:
-        check_quantities(self)
+        check_fields(self)
+        self.check()
         low, _ = self.range()
         if low < 0:
             raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")
 
-    @staticmethod
-    @abstractmethod
-    def formula(law: Any, u: Any, v: Any) -> Any:
-        """mu at slip u (m) and slip rate v >= 0 (m/s), with ordinary operators and the functions of `expression`."""
+    def check(self) -> None:  # noqa: B027 - most laws have nothing to add
+        """What the fields must satisfy together. Raises InputError."""
 
     @abstractmethod
     def range(self) -> tuple[float, float]:
-        """Smallest and largest coefficient of friction while slipping."""
+        """Bounds of the coefficient of friction while slipping; the upper one is inf where it grows without bound."""
 
     @property
-    def pieces(self) -> tuple[Any, ...]:
-        """One formula for each stretch of slip; most laws have one."""
+    def pieces(self) -> tuple[Formula, ...]:
+        """One formula for each stretch of slip or slip rate; most laws have one."""
         return (type(self).formula,)
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Slip (m) at which one piece hands over to the next, ascending: one fewer than `pieces`."""
+        """Where one piece hands over to the next, ascending: one fewer than `pieces`. See `knot_variable`."""
         return ()
 
     @property
@@ -74,35 +88,89 @@ class FrictionLaw(ABC):
         """
         return None
 
+    # ---- parameters ---------------------------------------------------------------------------------------------------------
+
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the numbers in the formulas, in the order in which compiled code receives their values."""
+        return tuple(quantities_of(type(self)))
+
+    def piece_values(self, i: int) -> tuple[float, ...]:
+        """Values of `parameters` in piece i: the law's own, unless its pieces have different ones."""
+        return tuple(float(getattr(self, name)) for name in self.parameters())
+
+    def numbers(self, i: int = 0) -> dict[str, float]:
+        """Values of `parameters` in piece i, by name."""
+        return dict(zip(self.parameters(), self.piece_values(i), strict=True))
+
+    def literals(self) -> dict[str, float]:
+        """Parameters that stand in the tree as numbers, because the tree depends on them: whole exponents."""
+        return {name: getattr(self, name) for name, declared in quantities_of(type(self)).items() if declared.whole}
+
+    # ---- values -------------------------------------------------------------------------------------------------------------
+
+    def piece_at(self, u: ArrayLike, v: ArrayLike = 0.0) -> NDArray[np.intp]:
+        """Which piece holds at slip u (m) and slip rate v (m/s); at a knot the one above it. Broadcasts."""
+        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+        return np.asarray(np.searchsorted(np.asarray(self.knots), slip if self.knot_variable == "slip" else rate, side="right"))
+
+    def piece_coefficient(self, i: int, u: Any, v: Any) -> Any:
+        """mu by the formula of piece i, also outside its stretch. Complex slips and rates give complex values."""
+        return self.pieces[i](SimpleNamespace(**self.numbers(i)), u, v)
+
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0) -> NDArray[np.float64]:
         """mu at slip u (m) and slip rate of magnitude v (m/s, >= 0; 0 means the limit 0+). Broadcasts; no unit."""
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
-        piece = np.searchsorted(np.asarray(self.knots), slip, side="right")
+        piece = self.piece_at(slip, rate)
         values = np.empty(slip.shape)
-        for i, formula in enumerate(self.pieces):
-            chosen = piece == i
-            values[chosen] = formula(self, slip[chosen], rate[chosen])
+        with np.errstate(over="ignore", under="ignore"):  # exp(-v / 1e-9) is 0, exp(v / 1e-9) below a line is too
+            for i in np.unique(piece).tolist():
+                chosen = piece == i
+                values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen])
         return values
 
     def static_coefficient(self, u: ArrayLike) -> NDArray[np.float64]:
         """Static friction coefficient at slip u (m): the largest |traction| / normal stress while v = 0."""
         return self.coefficient(u) + self.static_excess
 
-    @classmethod
-    def parameters(cls) -> tuple[str, ...]:
-        """Names of the fields, in the order in which compiled code receives their values."""
-        return tuple(f.name for f in fields(cls) if "quantity" in f.metadata)
+    # ---- what follows from the formulas ---------------------------------------------------------------------------------------
 
     def trees(self) -> tuple[Expression, ...]:
         """The formulas of `pieces` as expression trees in SLIP, RATE and parameters."""
-        return tuple(as_expression(formula(_Symbols(), SLIP, RATE)) for formula in self.pieces)
+        symbols = SimpleNamespace(**({name: Parameter(name) for name in self.parameters()} | self.literals()))
+        pieces = self.pieces
+        made = {formula: as_expression(formula(symbols, SLIP, RATE)) for formula in dict.fromkeys(pieces)}
+        return tuple(made[formula] for formula in pieces)
 
     @property
     def depends_on_slip(self) -> bool:
         """Whether mu changes with slip."""
-        return len(self.pieces) > 1 or any(depends_on(tree, SLIP) for tree in self.trees())
+        return self._depends_on(SLIP)
 
     @property
     def depends_on_rate(self) -> bool:
         """Whether mu changes with slip rate, the step from static to sliding friction included."""
-        return self.static_excess != 0.0 or any(depends_on(tree, RATE) for tree in self.trees())
+        return self.static_excess != 0.0 or self._depends_on(RATE)
+
+    def _depends_on(self, variable: Expression) -> bool:
+        knotted = len(self.pieces) > 1 and self.knot_variable == variable.operation
+        return knotted or any(depends_on(tree, variable) for tree in set(self.trees()))
+
+    @property
+    def variation(self) -> float:
+        """How much friction changes, finite: high - low, or what it changes up to 1 m/s where it grows without bound."""
+        low, high = self.range()
+        if math.isfinite(high):
+            return high - low
+        return float(np.ptp(self.coefficient(0.0, np.linspace(0.0, 1.0, 101))))
+
+    @property
+    def rate_scales(self) -> tuple[float, ...]:
+        """Slip rates (m/s) at which something happens: parameters that are rates, or inverses of rates."""
+        scales: list[float] = []
+        for name, (declared, _) in fields_of(type(self)).items():
+            item = declared.item if isinstance(declared, Series) else declared
+            if isinstance(item, Quantity) and item.unit in ("m/s", "s/m"):
+                value = getattr(self, name) or ()
+                sizes = [abs(number) for number in (value if isinstance(value, tuple) else (value,)) if number]
+                scales += [size if item.unit == "m/s" else 1.0 / size for size in sizes]
+        return tuple(scales)

@@ -16,12 +16,12 @@ class Coulomb(FrictionLaw):
 
     kind: ClassVar[str] = "coulomb"
     source: ClassVar[str] = "Campillo et al. 1996, section 4 (limit of eq. 15)"
+    example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.5}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient in slip", at_least=0)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
+    def check(self) -> None:
         if self.static < self.dynamic:
             raise InputError(f"Coulomb: static must be at least dynamic, got static {self.static:g} < dynamic {self.dynamic:g}")
 

@@ -100,8 +100,10 @@ def _cos(a: _Node) -> _Node:
 
 
 def _exp(a: _Node) -> _Node:
-    end = np.exp(a.value)
-    return _Node(np.exp(a.reference), np.exp(a.reference) * np.expm1(a.step), end, end * a.slope)
+    start, end = np.exp(a.reference), np.exp(a.value)
+    near = np.abs(a.step) < 1.0  # farther off nothing is lost by subtracting, and expm1 may overflow where start underflows
+    step = np.where(near, start * np.expm1(np.where(near, a.step, 0.0)), end - start)
+    return _Node(start, step, end, end * a.slope)
 
 
 def _log(a: _Node) -> _Node:

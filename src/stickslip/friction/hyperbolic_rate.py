@@ -15,6 +15,7 @@ class HyperbolicRate(FrictionLaw):
 
     kind: ClassVar[str] = "hyperbolic-rate"
     source: ClassVar[str] = "Campillo et al. 1996, eq. (15)"
+    example: ClassVar[dict[str, Any]] = {"static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}
 
     static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient muD at high slip rate", at_least=0)

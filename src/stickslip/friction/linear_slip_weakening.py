@@ -16,6 +16,7 @@ class LinearSlipWeakening(FrictionLaw):
     kind: ClassVar[str] = "linear-slip-weakening"
     source: ClassVar[str] = "Ida 1972, J. Geophys. Res. 77, 3796; Andrews 1976, J. Geophys. Res. 81, 5679"
     counts: ClassVar[Literal["net", "path"]] = "path"
+    example: ClassVar[dict[str, Any]] = {"static": 0.677, "dynamic": 0.525, "distance": "0.4 m"}
 
     static: float = quantity("1", "friction coefficient before slip", at_least=0)
     dynamic: float = quantity("1", "friction coefficient after `distance` of slip", at_least=0)

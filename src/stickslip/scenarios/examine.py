@@ -11,7 +11,10 @@ import numpy as np
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.friction import FrictionLaw, SinusoidalSlip
+from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.problem import Problem
+from stickslip.quantities import Quantity
+from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
 
@@ -21,10 +24,10 @@ LARGE_STRAIN = 0.01
 
 @dataclass(frozen=True)
 class Fact:
-    """A number with its unit and what it is."""
+    """A number with its unit, or a word, and what it is."""
 
     name: str
-    value: float
+    value: float | str
     unit: str
     meaning: str
 
@@ -57,16 +60,15 @@ def examine(scenario: Scenario) -> Examination:
 
 def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     problem = scenario.problem
-    body, law = type(problem.body), type(problem.friction)
+    body = type(problem.body)
     initial = {f.name.removeprefix("initial_"): getattr(problem, f.name) for f in fields(problem) if f.name.startswith("initial_")}
     holders = {
         "body": (body, vars(problem.body)),
-        "friction": (law, vars(problem.friction)),
         "loading": (body, vars(problem)),
         "initial": (body, initial),
         "run": (body, {"duration": scenario.duration, "rtol": scenario.rtol}),
     }
-    return {
+    facts = {
         table: [
             Fact(name, values[name], declared.unit, declared.meaning)
             for name, (declared, _) in quantities_in(table, kind).items()
@@ -74,6 +76,26 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         ]
         for table, (kind, values) in holders.items()
     }
+    return {"body": facts.pop("body"), "friction": _of_law(problem.friction)} | facts
+
+
+def _of_law(law: FrictionLaw, prefix: str = "") -> list[Fact]:
+    """Everything that a law was given; of a series of points how many there are, and between which ends."""
+    facts: list[Fact] = []
+    for name, (declared, _) in fields_of(type(law)).items():
+        value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
+        if isinstance(declared, Quantity) and value is not None:
+            facts.append(Fact(place, value, declared.unit, declared.meaning))
+        elif isinstance(declared, Series) and value:
+            unit = "" if declared.item.unit == "1" else f" {declared.item.unit}"
+            facts.append(Fact(place, f"{len(value)} points", "", f"{declared.meaning}, from {value[0]:g} to {value[-1]:g}{unit}"))
+        elif isinstance(declared, NamedNumbers):
+            facts += [Fact(f"{place}.{one.name}", one.value, one.unit or "1", "") for one in value]
+        elif isinstance(declared, Part):
+            facts += [Fact(place, value.kind, "", declared.meaning), *_of_law(value, f"{place}.")]
+        elif isinstance(declared, Text | Choice):
+            facts.append(Fact(place, value, "", declared.meaning))
+    return facts
 
 
 def _derived(problem: Problem) -> list[Fact]:
@@ -148,10 +170,10 @@ def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, flo
 
     By a complex step, which loses no digits: a law's formula is analytic.
     """
-    piece = law.pieces[int(np.searchsorted(np.asarray(law.knots), slip, side="right"))]
+    piece = int(law.piece_at(slip, rate))
     step = 1e-100
-    by_slip = np.imag(piece(law, np.complex128(complex(slip, step)), np.complex128(rate)))
-    by_rate = np.imag(piece(law, np.complex128(slip), np.complex128(complex(rate, step))))
+    by_slip = np.imag(law.piece_coefficient(piece, np.complex128(complex(slip, step)), np.complex128(rate)))
+    by_rate = np.imag(law.piece_coefficient(piece, np.complex128(slip), np.complex128(complex(rate, step))))
     return float(by_slip) / step, float(by_rate) / step
 
 

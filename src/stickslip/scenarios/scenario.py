@@ -13,7 +13,8 @@ import tomli_w
 from stickslip.errors import InputError, nearest
 from stickslip.problem import Problem
 from stickslip.scenarios import library
-from stickslip.scenarios.schema import KINDS, check_rtol, read_document
+from stickslip.scenarios.entries import Source, to_table
+from stickslip.scenarios.schema import KINDS, build, check_rtol, read_document, without_owner
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Scenario:
         tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
         problem = self.problem
         for table, owner in (("body", problem.body), ("friction", problem.friction)):
-            tables[table] = {"kind": owner.kind} | _without_none({f.name: getattr(owner, f.name) for f in fields(owner)})
+            tables[table] = to_table(owner)
         given = _without_none({f.name: getattr(problem, f.name) for f in fields(problem) if f.name not in ("body", "friction")})
         selection = given.pop("selection")
         tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
@@ -68,18 +69,21 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
         return read_scenario(library.text(path_or_name), path_or_name)
     path = Path(path_or_name)
     file = _shown(path)
-    return read_scenario(_read_file(path, file), file, name=path.stem)
+    return read_scenario(_read_file(path, file), file, name=path.stem, folder=path.parent)
 
 
-def read_scenario(text: str, file: str, name: str | None = None) -> Scenario:
-    """A scenario from TOML text; `file` is what messages call it. Raises InputError like `load_scenario`."""
+def read_scenario(text: str, file: str, name: str | None = None, folder: Path | None = None) -> Scenario:
+    """A scenario from TOML text; `file` is what messages call it, `folder` is where its data files are.
+
+    Raises InputError like `load_scenario`.
+    """
     try:
         raw = tomllib.loads(text)
     except RecursionError:
         raise InputError(f"{file}: not a scenario: nested too deeply") from None
     except ValueError as error:  # tomllib.TOMLDecodeError, and whole numbers beyond what Python converts
         raise InputError(f"{file}: not TOML: {' '.join(str(error).split())}") from None
-    content = read_document(raw, file)
+    content = read_document(raw, Source(file, folder))
     problem = _problem(content, file)
     run = content["run"]
     check_rtol(run["rtol"], file, "[run] rtol")
@@ -92,30 +96,17 @@ def _problem(content: dict[str, Any], file: str) -> Problem:
     if ("load" in initial) == ("excess" in initial):
         found = "both" if "load" in initial else "neither"
         raise InputError(f"{file}: [initial] needs either load or excess (load minus static strength), got {found}")
-    body, friction = (_build(table, content[table], file) for table in KINDS)
+    body, friction = (build(table, content[table], file) for table in KINDS)
     start = {f"initial_{name}": value for name, value in initial.items()}
     try:
         return Problem(body, friction, **content["loading"], **start, selection=content["run"]["selection"])
     except InputError as error:
-        raise InputError(f"{file}: {_in_tables(_without_owner(error))}") from None
+        raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
 
 
 def _in_tables(message: str) -> str:
     """A message of `Problem` with its names as they stand in the file."""
     return f"[loading] {message}" if message.startswith("far_stress") else message.replace("initial_", "[initial] ")
-
-
-def _build(table: str, content: dict[str, Any], file: str) -> Any:
-    kind = KINDS[table][content["kind"]]
-    try:
-        return kind(**{name: value for name, value in content.items() if name != "kind"})
-    except InputError as error:
-        raise InputError(f"{file}: [{table}] {_without_owner(error)}") from None
-
-
-def _without_owner(error: InputError) -> str:
-    """The message behind "ElasticSlab: ": a reader of a file knows tables, not classes."""
-    return str(error).partition(": ")[2]
 
 
 def _read_file(path: Path, file: str) -> str:

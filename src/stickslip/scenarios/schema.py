@@ -15,9 +15,13 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from stickslip.bodies import BODIES
 from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS
+from stickslip.friction.fields import Field as LawField
+from stickslip.friction.fields import Part, fields_of
 from stickslip.problem import SELECTION_RULES, Problem
 from stickslip.quantities import Quantity, quantities_of
-from stickslip.scenarios.values import describe, read_quantity, show
+from stickslip.scenarios.entries import Source, describe, key_of, read_entry
+from stickslip.scenarios.points import read_points
+from stickslip.scenarios.values import read_quantity, show
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 TABLES = ("body", "friction", "loading", "initial", "run")
@@ -55,6 +59,13 @@ def quantities_in(table: str, kind: type) -> dict[str, tuple[Quantity, Any]]:
     return found | {"state": (STATE, None)} if table == "initial" else found
 
 
+def entries_in(table: str, kind: type) -> dict[str, tuple[Quantity | LawField, Any]]:
+    """Everything of a table by its key, with its default: the quantities, and what else a friction law is made of."""
+    if table not in KINDS:
+        return dict(quantities_in(table, kind))
+    return {key_of(name, entry): (entry, default) for name, (entry, default) in fields_of(kind).items()}
+
+
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
     return {f.name: (f.metadata["quantity"], f.default) for f in fields(kind) if "quantity" in f.metadata}
 
@@ -69,22 +80,47 @@ def _of_body(declared: Quantity, body: type) -> Quantity:
 @cache
 def table_model(table: str, kind: type) -> type[BaseModel]:
     """The pydantic model of one table."""
-    entries: dict[str, Any] = {"kind": (str, ...)} if table in KINDS else {}
-    for name, (declared, default) in quantities_in(table, kind).items():
-        read = Annotated[float, Field(allow_inf_nan=declared.infinite), BeforeValidator(_reader(f"[{table}] {name}", declared))]
-        about = Field(... if default is MISSING else default, description=describe(declared))
-        entries[name] = (read if default is not None else read | None, about)
+    root = table.partition(".")[0]
+    entries: dict[str, Any] = {"kind": (str, ...)} if root in KINDS else {}
+    for name, (declared, default) in entries_in(root, kind).items():
+        read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
+        entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
         entries["selection"] = (Annotated[str, BeforeValidator(_selection)], SELECTION_RULES[0])
     model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
     return model
 
 
-def _reader(name: str, declared: Quantity) -> Any:
-    def read(value: Any, info: ValidationInfo) -> float:
-        return read_quantity(value, declared, info.context["file"], name)  # type: ignore[index] # always given, in _validate
+def _reader(table: str, name: str, declared: Quantity | LawField) -> Any:
+    def read(value: Any, info: ValidationInfo) -> Any:
+        return read_entry(value, declared, info.context["source"], table, name, _nested)  # type: ignore[index] # always given, in _validate
 
     return read
+
+
+def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
+    """The law in a table such as [friction.slip]."""
+    kind = kind_of(table, raw, source.file)
+    if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
+        raise InputError(
+            f"{source.file}: [{table}] kind {show(raw['kind'])} is made of laws itself: it cannot be a part of another"
+        )
+    return build(table, read_table(table, kind, raw, source), source.file)
+
+
+def build(table: str, content: dict[str, Any], file: str) -> Any:
+    """The body or law of a table that was read. Raises InputError where its numbers do not go together."""
+    kind = kind_of(table, content, file)
+    names = {key_of(name, entry): name for name, (entry, _) in fields_of(kind).items()}
+    try:
+        return kind(**{names[key]: value for key, value in content.items() if key != "kind"})
+    except InputError as error:
+        raise InputError(f"{file}: [{table}] {without_owner(error)}") from None
+
+
+def without_owner(error: InputError) -> str:
+    """The message behind "ElasticSlab: ": a reader of a file knows tables, not classes."""
+    return str(error).partition(": ")[2]
 
 
 def read_duration(text: str, where: str, name: str = "duration") -> float:
@@ -106,26 +142,39 @@ def check_rtol(value: float, where: str, name: str = "rtol") -> float:
 def _selection(value: Any, info: ValidationInfo) -> str:
     if value not in SELECTION_RULES:
         hint = nearest(str(value), SELECTION_RULES)
-        raise InputError(f"{info.context['file']}: [run] selection {show(value)} is unknown; {hint}")  # type: ignore[index] # as above
+        raise InputError(f"{info.context['source'].file}: [run] selection {show(value)} is unknown; {hint}")  # type: ignore[index] # as above
     return str(value)
 
 
-def read_document(raw: Mapping[str, Any], file: str) -> dict[str, Any]:
+def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     """Check a parsed TOML document; return title, description and the five tables, every quantity a float in SI.
 
-    Raises InputError: one line that begins with `file` and says the place, what was found and what is allowed.
+    Raises InputError: one line that begins with the file and says the place, what was found and what is allowed.
     """
-    document = _validate(_Document, dict(raw), file)
-    kinds = {table: kind_of(table, document[table], file) for table in KINDS}
+    document = _validate(_Document, dict(raw), source)
+    kinds = {table: kind_of(table, document[table], source.file) for table in KINDS}
     for table in TABLES:
-        model = table_model(table, kinds.get(table, kinds["body"]))
-        document[table] = _validate(model, document[table], file, table)
+        document[table] = read_table(table, kinds.get(table, kinds["body"]), document[table], source)
     return document
+
+
+def read_table(table: str, kind: type, raw: dict[str, Any], source: Source) -> dict[str, Any]:
+    """One table, checked; the points of a law come from the file that it names, if it does. Raises InputError."""
+    columns: Mapping[str, str] = getattr(kind, "columns", {}) if table.partition(".")[0] in KINDS else {}
+    if columns and "file" in raw:
+        name = raw["file"]
+        both = next((key for key in columns.values() if key in raw), None)
+        if both or not isinstance(name, str):
+            got = f"and {both} exclude each other" if both else f"must be text in quotes, got {show(name)}"
+            raise InputError(f"{source.file}: [{table}] file {got}")
+        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file")
+        raw = {key: value for key, value in raw.items() if key != "file"} | points
+    return _validate(table_model(table, kind), raw, source, table)
 
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     """The class that `kind` names in a [body] or [friction] table."""
-    kind, registered = content.get("kind"), KINDS[table]
+    kind, registered = content.get("kind"), KINDS[table.partition(".")[0]]
     if "kind" not in content:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
     if not isinstance(kind, str) or kind not in registered:
@@ -133,11 +182,11 @@ def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     return registered[kind]
 
 
-def _validate(model: type[BaseModel], raw: dict[str, Any], file: str, table: str = "") -> dict[str, Any]:
+def _validate(model: type[BaseModel], raw: dict[str, Any], source: Source, table: str = "") -> dict[str, Any]:
     try:
-        return dict(model.model_validate(raw, context={"file": file}))
+        return dict(model.model_validate(raw, context={"source": source}))
     except ValidationError as error:
-        raise InputError(_one_line(error, model, file, table)) from None
+        raise InputError(_one_line(error, model, source.file, table)) from None
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}
@@ -164,6 +213,10 @@ def _belongs(name: str, table: str) -> str:
     """A hint where the key is right but stands in another table."""
     for body in KINDS["body"].values():
         for other in TABLES:
-            if other not in ("friction", table) and name in table_model(other, body).model_fields:
+            if (
+                other not in ("friction", table)
+                and not table.startswith("friction.")
+                and name in table_model(other, body).model_fields
+            ):
                 return f"it belongs into [{other}]"
     return ""

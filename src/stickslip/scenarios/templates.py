@@ -8,10 +8,12 @@ from dataclasses import MISSING
 from typing import Any
 
 from stickslip.errors import InputError, nearest
+from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.fields import NamedNumbers, Part, fields_of
 from stickslip.problem import SELECTION_RULES
 from stickslip.scenarios import library
-from stickslip.scenarios.schema import KINDS, TABLES, kind_of, quantities_in
-from stickslip.scenarios.values import describe
+from stickslip.scenarios.entries import describe, key_of
+from stickslip.scenarios.schema import KINDS, TABLES, entries_in, kind_of
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Generic starters, and the bundled scenario whose values they show."""
@@ -38,47 +40,65 @@ def template_names() -> list[str]:
     return [*STARTERS, *library.names()]
 
 
-def template(name: str) -> str:
-    """A commented scenario as TOML text. Raises InputError for a name that is not among `template_names()`."""
+def template(name: str, friction: str | None = None) -> str:
+    """A commented scenario as TOML text; `friction` puts another law, with plausible values, into a starter.
+
+    Raises InputError for a name that is not among `template_names()` and for an unknown law.
+    """
     if name in STARTERS:
-        return _starter(tomllib.loads(library.text(STARTERS[name])))
+        return _starter(tomllib.loads(library.text(STARTERS[name])), friction)
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+    if friction is not None:
+        raise InputError(f"new: a friction law is chosen for {' or '.join(STARTERS)}; {name} has its own")
     return library.text(name)
 
 
-def _starter(example: dict[str, Any]) -> str:
+def _starter(example: dict[str, Any], friction: str | None) -> str:
+    if friction is not None:
+        law = kind_of("friction", {"kind": friction}, "new")
+        example["friction"] = {"kind": friction} | _keyed(law)
     kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
     parts = [_HEADER, 'title = ""\n']
     for table in TABLES:
         kind = kinds.get(table, kinds["body"])
-        lines = [f"# {_ABOUT[table]}", f"[{table}]"]
-        if table in KINDS:
-            lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
-        lines += _keys(table, kind, example[table])
+        lines = [f"# {_ABOUT[table]}"]
+        if table == "friction":
+            lines += ["# Other laws, shown in full by `stickslip new slab --friction KIND`:", "#"]
+            lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
+        lines += _table(table, kind, example[table])
         if table == "run":
             lines.append(f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}')
-        if table == "friction":
-            lines += [line for other in KINDS[table].values() if other is not kind for line in ("#", *_other(other))]
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
 
 
-def _keys(table: str, kind: type, example: dict[str, Any]) -> list[str]:
-    lines = []
-    for name, (declared, default) in quantities_in(table, kind).items():
-        if name in example:
-            lines.append(f"{name} = {_toml(example[name])}  # {describe(declared)}")
+def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
+    """A law's example by the keys of a scenario."""
+    return {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
+
+
+def _table(table: str, kind: type, example: dict[str, Any]) -> list[str]:
+    """A table with its keys, and the tables in it."""
+    lines, inner = [f"[{table}]"], []
+    if table.partition(".")[0] in KINDS:
+        lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
+    for name, (entry, default) in entries_in(table.partition(".")[0], kind).items():
+        value = example.get(name)
+        if isinstance(entry, Part) and value:
+            inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value)]
+        elif isinstance(entry, NamedNumbers):
+            inner += ["", f"# {describe(entry)}", f"[{table}.{name}]"]
+            inner += [f"{parameter} = {_toml(number)}" for parameter, number in (value or {}).items()]
+        elif value is not None:
+            lines.append(f"{name} = {_toml(value)}  # {describe(entry)}")
         else:
             shown = "" if default is None or default is MISSING else _toml(default)
-            lines.append(f"# {name} = {shown}  # {describe(declared)}".replace("=   #", "=  #"))
-    return lines
-
-
-def _other(kind: type) -> list[str]:
-    """Another law, commented out: what to write instead."""
-    lines = [f"# kind = {json.dumps(kind.kind)}  # {_first_line(kind)}"]  # type: ignore[attr-defined] # registered
-    return lines + _keys("friction", kind, {})
+            lines.append(f"# {name} = {shown}  # {describe(entry)}".replace("=   #", "=  #"))
+    columns: dict[str, str] = getattr(kind, "columns", {})
+    if columns:
+        lines.append(f'# file = "points.csv"  # instead of lists: a header line, then columns {", ".join(columns)} in SI')
+    return lines + inner
 
 
 def _first_line(kind: type) -> str:
@@ -88,5 +108,7 @@ def _first_line(kind: type) -> str:
 def _toml(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, list):
+        return f"[{', '.join(_toml(one) for one in value)}]"
     short = f"{value:g}".replace("e+", "e")
     return short if isinstance(value, float) and ("e" in short or "inf" in short) and float(short) == value else repr(value)

@@ -7,7 +7,7 @@ from typing import Any
 
 from stickslip.errors import InputError
 from stickslip.quantities import Quantity
-from stickslip.scenarios.units import LONGEST, split_quantity, to_si
+from stickslip.units import LONGEST, split_quantity, to_si
 
 
 def read_quantity(value: Any, declared: Quantity, where: str, name: str) -> float:

@@ -1,0 +1,483 @@
+/* The engine's algorithm in C: one Taylor step after the other, cut at the first event.
+
+   It reads the same table of addresses as the engine (`stickslip.evolution.workspace.lend`) and writes the same history. `law.h`
+   (names of the layout, and the law's `value` and `jet` from the same recurrences) is written by `benchmarks.c_peer`.
+   Left out, since the benchmark's problems do not meet them: folds reached from a slipping branch, knots of a law, leaps. */
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+#include "law.h"
+
+#define NONE INFINITY
+#define TIE 1e-13
+#define LOW 9
+
+typedef struct {
+    const double *par, *c, *shift, *offset, *rate_from, *rate_to, *keep_from, *keep_to, *excess_from, *excess_to;
+    const double *first_theta, *first_load, *first_slope, *first_jump;
+    double *state, *real, *all_load, *all_rate;
+    int64_t *count, *whole, branches, loads, capacity;
+    double load[TERMS], local[TERMS], seen[TERMS], jet[TERMS], powers[TERMS], k[12], value[3];
+} Run;
+
+static double reciprocal[2 * TERMS], bernstein[TERMS][TERMS], low_bernstein[LOW][LOW];
+
+static double choose(int n, int k) { return round(exp(lgamma(n + 1.0) - lgamma(k + 1.0) - lgamma(n - k + 1.0))); }
+
+void prepare_tables(void) {
+    for (int k = 1; k < 2 * TERMS; k++) reciprocal[k] = 1.0 / k;
+    for (int k = 0; k < TERMS; k++)
+        for (int j = k; j < TERMS; j++) bernstein[k][j] = choose(j, k) / choose(TERMS - 1, k);
+    for (int k = 0; k < LOW; k++)
+        for (int j = k; j < LOW; j++) low_bernstein[k][j] = choose(j, k) / choose(LOW - 1, k);
+}
+
+/* ---- polynomials ---------------------------------------------------------------------------------------------------------- */
+
+static double evaluate(const double *c, double x) {
+    double value = c[TERMS - 1];
+    for (int k = TERMS - 2; k >= 0; k--) value = value * x + c[k];
+    return value;
+}
+
+static double total(const double *c) {
+    double even = 0.0, odd = 0.0;
+    for (int k = 0; k + 1 < TERMS; k += 2) even += c[k], odd += c[k + 1];
+    return even + odd + (TERMS % 2 ? c[TERMS - 1] : 0.0);
+}
+
+static double magnitude(const double *c) {
+    double even = 0.0, odd = 0.0;
+    for (int k = 1; k + 1 < TERMS; k += 2) even += fabs(c[k]), odd += fabs(c[k + 1]);
+    return even + odd + (TERMS % 2 ? 0.0 : fabs(c[TERMS - 1]));
+}
+
+static double slope_magnitude(const double *c) {
+    double sum = 0.0;
+    for (int k = 2; k < TERMS; k++) sum += k * fabs(c[k]);
+    return sum;
+}
+
+static double integral(const double *c, int shift) {
+    double even = 0.0, odd = 0.0;
+    for (int k = 0; k + 1 < TERMS; k += 2) even += reciprocal[k + shift] * c[k], odd += reciprocal[k + 1 + shift] * c[k + 1];
+    return even + odd + (TERMS % 2 ? reciprocal[TERMS - 1 + shift] * c[TERMS - 1] : 0.0);
+}
+
+static void powers_of(double x, double *out) {
+    out[0] = 1.0, out[1] = x;
+    for (int k = 2; k < TERMS; k++) out[k] = out[k >> 1] * out[(k + 1) >> 1];
+}
+
+static int degree(const double *c) {
+    int n = TERMS - 1;
+    while (n > 0 && c[n] == 0.0) n--;
+    return n;
+}
+
+static void restrict_low(const double *c, int n, double start, double width, double *out) {
+    memcpy(out, c, (n + 1) * sizeof(double));
+    if (start != 0.0)
+        for (int j = 0; j < n; j++)
+            for (int k = n - 1; k >= j; k--) out[k] += start * out[k + 1];
+    double power = width;
+    for (int k = 1; k <= n; k++, power *= width) out[k] *= power;
+}
+
+static void restrict_to(const double *c, double start, double width, double *out) {
+    int n = degree(c);
+    for (int k = n + 1; k < TERMS; k++) out[k] = 0.0;
+    restrict_low(c, n, start, width, out);
+}
+
+static double falling_root(const double *c) {
+    double low = -1.0, high = 1.0, x = 0.0;
+    for (int i = 0; i < 100; i++) {
+        double value = c[TERMS - 1], slope = 0.0;
+        for (int k = TERMS - 2; k >= 0; k--) slope = slope * x + value, value = value * x + c[k];
+        if (value > 0.0) low = x;
+        else if (value < 0.0) high = x;
+        else return x;
+        double step = slope < 0.0 ? x - value / slope : 0.5 * (low + high);
+        if (!(low < step && step < high)) step = 0.5 * (low + high);
+        if (step == x || high - low < 1e-17) return x;
+        x = step;
+    }
+    return x;
+}
+
+static double isolate(const double *q) {
+    double part[TERMS], start = 0.0, width = 1.0;
+    while (start < 1.0) {
+        restrict_to(q, start + 0.5 * width, 0.5 * width, part);
+        double tail = magnitude(part), slope_tail = slope_magnitude(part);
+        if (part[0] < -tail || (width < 1e-15 && part[0] < 0.0)) return start;
+        if (-part[1] > slope_tail && total(part) <= 0.0) return start + 0.5 * width * (1.0 + falling_root(part));
+        int clear = part[0] > tail || -part[1] > slope_tail || (part[1] > slope_tail && evaluate(part, -1.0) >= 0.0);
+        if (clear || width < 1e-15) {
+            start += width;
+            while (start < 1.0 && floor(start / (2.0 * width)) * 2.0 * width == start) width *= 2.0;
+        } else width *= 0.5;
+    }
+    return NONE;
+}
+
+static int clearly_positive(const double *c) {
+    double rest = 0.0;
+    for (int k = LOW; k < TERMS; k++) rest += fabs(c[k]);
+    for (int j = 1; j < LOW; j++) {
+        double coefficient = c[0];
+        for (int k = 1; k <= j; k++) coefficient += low_bernstein[k][j] * c[k];
+        if (coefficient <= rest) return 0;
+    }
+    return 1;
+}
+
+static double first_descent(const double *c) {
+    int lead = 0;
+    while (lead < TERMS - 1 && c[lead] == 0.0) lead++;
+    if (c[lead] < 0.0) return 0.0;
+    if (c[lead] == 0.0) return NONE;
+    double bound = 0.0, q[TERMS];
+    for (int k = lead + 1; k < TERMS; k++) bound += fabs(c[k]);
+    if (c[lead] > bound || (lead == 0 && clearly_positive(c))) return NONE;
+    for (int j = 0; j < TERMS; j++) q[j] = c[lead];
+    for (int k = lead + 1; k < TERMS; k++)
+        for (int j = 0; j < TERMS; j++) q[j] += bernstein[k - lead][j] * c[k];
+    double lowest = q[0];
+    for (int j = 1; j < TERMS; j++) lowest = fmin(lowest, q[j]);
+    if (lowest > 0.0) return NONE;
+    for (int k = 0; k < TERMS; k++) q[k] = k + lead < TERMS ? c[k + lead] : 0.0;
+    return isolate(q);
+}
+
+/* ---- the contact ---------------------------------------------------------------------------------------------------------- */
+
+static void friction_at(Run *r, double slip, double rate) {
+    value(r->c, slip + r->shift[0], rate, r->value);
+    r->value[0] = r->par[NORMAL] * (r->value[0] + r->offset[0]);
+    r->value[1] *= r->par[NORMAL];
+}
+
+static double rest_limit(Run *r) {
+    friction_at(r, r->state[LAW_SLIP], 0.0);
+    return r->value[0] + r->par[NORMAL] * r->par[STATIC_EXCESS] + r->par[STICK_TO];
+}
+
+static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par[REFERENCE]; }
+
+static double rate_on_branch(Run *r, double load, double guess) {
+    int64_t branch = r->count[BRANCH];
+    double low = r->rate_from[branch], high = r->rate_to[branch];
+    if (load <= r->excess_from[branch]) return low;
+    if (load >= r->excess_to[branch]) return high;
+    high = fmin(high, (load + r->par[LARGEST_DROP]) / r->par[IMPEDANCE] * (1.0 + 1e-12));
+    double s = low < guess && guess < high ? guess : 0.5 * (low + high);
+    for (int i = 0; i < 200; i++) {
+        friction_at(r, r->state[LAW_SLIP], s);
+        double error = r->par[IMPEDANCE] * s + r->value[0] - load, slope = r->par[IMPEDANCE] + r->value[1];
+        if (error > 0.0) high = s;
+        else if (error < 0.0) low = s;
+        else return s;
+        double step = slope > 0.0 ? s - error / slope : 0.5 * (low + high);
+        if (!(low < step && step < high)) step = 0.5 * (low + high);
+        if (fabs(step - s) <= 1e-16 * fabs(s) || step == low || step == high) return step;
+        s = step;
+    }
+    return s;
+}
+
+static void choose_branch(Run *r, double load) {
+    r->state[EXIT] = NAN;
+    for (int64_t branch = 0; branch < r->branches; branch++)
+        if (load <= r->keep_to[branch]) { r->count[BRANCH] = branch; return; }
+}
+
+static void leave_branch(Run *r, double load) {
+    int64_t branch = r->count[BRANCH];
+    r->state[EXIT] = NAN;
+    if (load >= r->keep_to[branch])
+        for (int64_t other = branch + 1; other < r->branches; other++)
+            if (load <= r->keep_to[other]) { r->count[BRANCH] = other; return; }
+    for (int64_t other = branch - 1; other >= 0; other--)
+        if (r->keep_from[other] <= load) { r->count[BRANCH] = other; return; }
+    r->count[MODE] = 0;
+}
+
+static void note_jump(Run *r, double rate, int64_t cause) {
+    double before = r->state[RATE_NOW], size = fabs(rate - before);
+    if (size > r->par[SMALLEST_JUMP] && size > r->par[RELATIVE_JUMP] * fmax(fabs(rate), fabs(before)))
+        r->count[CAUSE] = cause, r->count[JUMP] = 1;
+}
+
+static double branch_exit(Run *r) {
+    int64_t branch = r->count[BRANCH], mode = r->count[MODE];
+    double part[TERMS], xi = r->state[XI], first = NONE;
+    for (int upper = 0; upper < 2; upper++) {
+        double bound = upper ? r->keep_to[branch] : r->keep_from[branch], sign = upper ? -1.0 : 1.0;
+        if (isinf(bound)) continue;
+        restrict_to(r->load, xi, 1.0 - xi, part);
+        double start = sign * (towards(r, part[0], mode) - bound);
+        for (int k = 0; k < TERMS; k++) part[k] *= sign * mode;
+        part[0] = r->count[EDGE] != 0 && start < 0.0 ? 0.0 : start;
+        first = fmin(first, first_descent(part));
+    }
+    return first < 1.0 - TIE ? xi + first * (1.0 - xi) : NONE;
+}
+
+static void end_branch(Run *r) {
+    int64_t branch = r->count[BRANCH], direction = r->count[MODE];
+    double seen = towards(r, evaluate(r->load, r->state[XI]), direction);
+    int upper = fabs(seen - r->keep_to[branch]) < fabs(seen - r->keep_from[branch]);
+    leave_branch(r, upper ? r->keep_to[branch] : r->keep_from[branch]);
+    if (r->count[MODE] == 0) note_jump(r, 0.0, FOLD), r->state[RATE_NOW] = 0.0;
+    else r->count[EDGE] = direction;
+}
+
+static double theta_at(Run *r, double xi) {
+    return xi >= 1.0 ? r->state[THETA_TO] : r->state[THETA_FROM] + xi * (r->state[SPEED] + xi * r->state[BEND]);
+}
+
+static void record(Run *r, double xi_to) {
+    double xi = r->state[XI], width = xi_to - xi, theta_from = theta_at(r, xi), theta_to = theta_at(r, xi_to);
+    if (theta_to > theta_from) {
+        int64_t n = r->count[LENGTH], *whole = r->whole + WHOLE * n;
+        double *real = r->real + REAL * n;
+        whole[S_ROW] = r->count[ROW], whole[S_MODE] = r->count[MODE], whole[S_PIECE] = r->count[PIECE];
+        whole[S_JUMP] = r->count[JUMP], whole[S_CAUSE] = r->count[CAUSE];
+        real[S_THETA_FROM] = theta_from, real[S_THETA_TO] = theta_to;
+        real[S_SPEED] = (r->state[SPEED] + 2.0 * r->state[BEND] * xi) * width, real[S_BEND] = r->state[BEND] * width * width;
+        real[S_SLIP] = r->state[SLIP_NOW], real[S_LAW_SLIP] = r->state[LAW_SLIP];
+        r->count[LENGTH] = n + 1;
+        r->count[JUMP] = r->count[CAUSE] = r->count[STALLED] = 0;
+    } else r->count[STALLED]++;
+    r->state[XI] = xi_to;
+}
+
+static void arrive(Run *r) {
+    double load = r->load[0], limit = rest_limit(r);
+    int64_t mode = r->count[MODE];
+    if (mode != 0 && r->count[IS_ALGEBRAIC]) {
+        double seen = towards(r, load, mode);
+        int64_t branch = r->count[BRANCH];
+        if (!(r->keep_from[branch] <= seen && seen <= r->keep_to[branch])) leave_branch(r, seen);
+    } else if (mode != 0 && !r->count[HAS_INERTIA]) {
+        friction_at(r, r->state[LAW_SLIP], 0.0);
+        if (towards(r, load, mode) < r->value[0]) r->count[MODE] = 0;
+    }
+    if (r->count[MODE] == 0 && r->count[EDGE] == 0)
+        for (int direction = 1; direction >= -1; direction -= 2)
+            if (towards(r, load, direction) > limit) r->count[MODE] = direction, choose_branch(r, towards(r, load, direction));
+    if (r->count[MODE] == 0) note_jump(r, 0.0, r->count[ARRIVING]), r->state[RATE_NOW] = 0.0;
+}
+
+static void stick(Run *r, double xi_to) {
+    double width = xi_to - r->state[XI], limit = rest_limit(r), part[TERMS], onset = NONE;
+    double *load = r->all_load + TERMS * r->count[LENGTH], *rate = r->all_rate + TERMS * r->count[LENGTH];
+    int direction = 0;
+    restrict_to(r->load, r->state[XI], width, load);
+    for (int way = 1; way >= -1; way -= 2) {
+        for (int k = 0; k < TERMS; k++) part[k] = -way * load[k];
+        part[0] = r->count[EDGE] == way ? 0.0 : limit - towards(r, load[0], way);
+        double first = first_descent(part);
+        if (first < onset) onset = first, direction = way;
+    }
+    int slips = onset <= 1.0 - TIE;
+    if (slips) {
+        double power = onset;
+        for (int k = 1; k < TERMS; k++, power *= onset) load[k] *= power;
+    }
+    memset(rate, 0, TERMS * sizeof(double));
+    record(r, slips ? r->state[XI] + onset * width : xi_to);
+    r->count[EDGE] = 0;
+    if (slips) r->count[MODE] = r->count[EDGE] = direction, choose_branch(r, limit);
+}
+
+static void come_to_rest(Run *r) {
+    int64_t before = r->count[MODE];
+    r->state[RATE_NOW] = 0.0, r->count[MODE] = 0;
+    if (!r->count[HAS_INERTIA]) { r->count[EDGE] = before; return; }
+    double load = evaluate(r->load, r->state[XI]), limit = rest_limit(r);
+    for (int direction = 1; direction >= -1; direction -= 2)
+        if (towards(r, load, direction) > limit) r->count[MODE] = direction;
+}
+
+/* ---- one Taylor step ------------------------------------------------------------------------------------------------------ */
+
+static double quick_log2(double x) {
+    int64_t bits;
+    x = fabs(x);
+    memcpy(&bits, &x, sizeof bits);
+    return bits / 4503599627370496.0 - 1023.0;
+}
+
+static double quick_exp2(double x) {
+    x = fmin(fmax(x, -1000.0), 1000.0);
+    double whole = floor(x), part = x - whole, power;
+    int64_t bits = ((int64_t)whole + 1023) << 52;
+    memcpy(&power, &bits, sizeof power);
+    return power * (1.0 + part * (0.6565 + 0.3435 * part));
+}
+
+static double usable_length(const double *jet, double tolerance) {
+    double size = fmax(fmax(fabs(jet[0]), 0.5 * fabs(jet[1])), fmax(0.25 * fabs(jet[2]), 0.125 * fabs(jet[3])));
+    int n = TERMS - 1;
+    if (jet[n] == 0.0 && jet[n - 1] == 0.0) return INFINITY;
+    double allowed = quick_log2(tolerance * size);
+    double last = allowed - quick_log2(jet[n]), before = allowed - quick_log2(jet[n - 1]);
+    return quick_exp2(fmin(last * (1.0 / n), before * (1.0 / (n - 1))));
+}
+
+static void series(Run *r, double guess) {
+    int64_t direction = r->count[MODE], n = r->count[DEGREE];
+    double *k = r->k, xi = r->state[XI];
+    if (n <= 1) r->local[0] = r->load[0] + xi * r->load[1], r->local[1] = guess * r->load[1], n = 1;
+    else restrict_low(r->load, n, xi, guess, r->local);
+    for (int i = 1; i <= n; i++) r->seen[i] = direction * r->local[i];
+    r->seen[0] = towards(r, r->local[0], direction);
+    int edge = r->count[EDGE] != 0;
+    k[K_IMPEDANCE] = r->par[IMPEDANCE], k[K_NORMAL] = r->par[NORMAL], k[K_INERTIA] = r->par[INERTIA];
+    k[K_STIFFNESS] = r->par[STIFFNESS];
+    k[K_CHI] = r->par[COUNTS_NET] == 1.0 ? direction : 1.0;
+    k[K_SPEED] = (r->state[SPEED] + 2.0 * r->state[BEND] * xi) * guess, k[K_BEND] = 2.0 * r->state[BEND] * guess * guess;
+    k[K_SLIP] = r->state[LAW_SLIP] + r->shift[0], k[K_OFFSET] = r->offset[0];
+    k[K_RATE] = fabs(r->state[RATE_NOW]), k[K_FREE] = edge ? 0.0 : 1.0;
+    k[K_FORCE] = edge ? r->par[NORMAL] * r->par[STATIC_EXCESS] : 0.0;
+    if (r->count[IS_ALGEBRAIC]) k[K_RATE] = rate_on_branch(r, r->seen[0], fabs(r->state[RATE_NOW]));
+    if (r->count[HAS_INERTIA]) motion_jet(r->c, k, r->seen, r->jet);
+    else rate_jet(r->c, k, r->seen, r->jet);
+}
+
+static void stretch(Run *r, double length, double *restrict rate) {
+    powers_of(length, r->powers);
+    for (int k = 0; k < TERMS; k++) rate[k] = r->jet[k] * r->powers[k];
+}
+
+static void keep_step(Run *r, double *restrict rate, double length, double to) {
+    double direction = r->count[MODE], speed = r->k[K_SPEED] * length, bend = r->k[K_BEND] * length * length;
+    double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->all_load + TERMS * r->count[LENGTH];
+    if (bend != 0.0) grown += bend * integral(rate, 2);
+    for (int k = 0; k < TERMS; k++) load[k] = r->local[k] * r->powers[k];
+    if (r->count[IS_BLOCK]) {
+        double straight = direction * r->par[STIFFNESS] * speed;
+        for (int k = 1; k < TERMS; k++) load[k] -= straight * reciprocal[k] * rate[k - 1];
+        r->load[0] -= r->par[STIFFNESS] * direction * grown;
+    }
+    r->state[LAST_STEP] = fabs(speed + 0.5 * bend);
+    if (direction < 0)
+        for (int k = 0; k < TERMS; k++) rate[k] = -rate[k];
+    record(r, to);
+    r->count[MOVED] = 1, r->count[EDGE] = 0;
+    r->state[SLIP_NOW] += direction * grown, r->state[LAW_SLIP] += r->k[K_CHI] * grown;
+    r->state[RATE_NOW] = direction * fmax(rate_end, 0.0);
+}
+
+static void slip(Run *r, double xi_to) {
+    double target = xi_to;
+    int leaves = 0;
+    if (r->count[IS_ALGEBRAIC]) {
+        if (isnan(r->state[EXIT])) r->state[EXIT] = branch_exit(r);
+        if (r->state[EXIT] < xi_to) {
+            if (r->state[EXIT] <= r->state[XI]) { end_branch(r); return; }
+            target = r->state[EXIT], leaves = 1;
+        }
+    }
+    double now = fabs(r->state[SPEED] + 2.0 * r->state[BEND] * r->state[XI]), left = target - r->state[XI];
+    double guess = now > 0.0 ? fmin(left, 2.0 * r->state[LAST_STEP] / now) : left;
+    series(r, guess);
+    while (!isfinite(r->jet[TERMS - 1]) && guess > 1e-300) guess *= 1e-3, series(r, guess);
+    if (r->state[XI] == 0.0 && r->count[ARRIVING] != NO_CAUSE) note_jump(r, r->count[MODE] * r->jet[0], r->count[ARRIVING]);
+    else if (r->count[EDGE] != 0 && !r->count[HAS_INERTIA]) note_jump(r, r->count[MODE] * r->jet[0], FOLD);
+
+    double limit = left / guess, length = usable_length(r->jet, r->par[TOLERANCE]), end = NONE;
+    int reached = length >= limit;
+    if (reached) length = limit;
+    else if (length > 0.5 * limit) length = 0.5 * limit;
+    double *rate = r->all_rate + TERMS * r->count[LENGTH];
+    stretch(r, length, rate);
+    if (!r->count[IS_ALGEBRAIC] && rate[0] <= magnitude(rate)) end = first_descent(rate);
+    int rests = end <= 1.0 - TIE;
+    if (!rests) end = 1.0;
+    double to = reached && end == 1.0 ? target : r->state[XI] + end * length * guess;
+    if (end < 1.0) length *= end, stretch(r, length, rate);
+    keep_step(r, rate, length, to);
+    if (rests) come_to_rest(r);
+    else if (leaves && (reached || target - r->state[XI] < TIE)) end_branch(r);
+}
+
+/* ---- the loop ------------------------------------------------------------------------------------------------------------- */
+
+static int next_piece(Run *r) {
+    double *state = r->state;
+    memset(r->load, 0, sizeof r->load);
+    if (r->count[IS_BLOCK] || r->count[ROW] == 0) {
+        int64_t source = r->count[SOURCE];
+        if (source >= r->loads - 1) return 0;
+        state[THETA_FROM] = r->first_theta[source], state[THETA_TO] = r->first_theta[source + 1];
+        state[SPEED] = state[THETA_TO] - state[THETA_FROM], state[BEND] = 0.0;
+        r->load[0] = r->count[IS_BLOCK] && r->count[ROW] > 0 ? state[LOAD_NOW] : r->first_load[source];
+        r->load[1] = r->first_slope[source] * state[SPEED];
+        r->count[ARRIVING] = r->count[ROW] == 0 && source == 0 ? START : NO_CAUSE;
+    } else {
+        int64_t source = r->count[PREVIOUS_FROM] + r->count[SOURCE];
+        if (source >= r->count[PREVIOUS_TO]) return 0;
+        double *real = r->real + REAL * source, *rate = r->all_rate + TERMS * source, *load = r->all_load + TERMS * source;
+        state[THETA_FROM] = real[S_THETA_FROM], state[THETA_TO] = real[S_THETA_TO];
+        state[SPEED] = real[S_SPEED], state[BEND] = real[S_BEND];
+        for (int k = 0; k < TERMS; k++) r->load[k] = r->par[REFLECTION] * (2.0 * r->par[IMPEDANCE] * rate[k] - load[k]);
+        r->load[0] += r->par[INFLOW];
+        r->count[ARRIVING] = r->whole[WHOLE * source + S_JUMP] && r->par[REFLECTION] != 0.0 ? ECHO : NO_CAUSE;
+    }
+    r->count[SOURCE]++;
+    state[XI] = 0.0, state[EXIT] = NAN;
+    r->count[DEGREE] = degree(r->load);
+    memset(r->local, 0, sizeof r->local), memset(r->seen, 0, sizeof r->seen);
+    if (r->count[ARRIVING] != NO_CAUSE) r->count[JUMP] = 1;
+    r->count[READY] = 1;
+    arrive(r);
+    return 1;
+}
+
+static void end_row(Run *r) {
+    if (r->count[IS_BLOCK]) r->state[LOAD_NOW] = total(r->all_load + TERMS * (r->count[LENGTH] - 1));
+    r->count[ROW]++;
+    r->count[PREVIOUS_FROM] = r->count[ROW_FROM], r->count[PREVIOUS_TO] = r->count[ROW_FROM] = r->count[LENGTH];
+    r->count[SOURCE] = r->count[MOVED] = 0;
+}
+
+int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64_t budget) {
+    Run run, *r = &run;
+    int64_t pieces = table[13], branches = table[15], loads = table[16];
+    const double *law = (const double *)table[3], *branch = (const double *)table[4], *first = (const double *)table[5];
+    run.par = (const double *)table[0], run.c = (const double *)table[2];
+    run.shift = law, run.offset = law + pieces;
+    run.rate_from = branch, run.rate_to = branch + branches, run.keep_from = branch + 2 * branches;
+    run.keep_to = branch + 3 * branches, run.excess_from = branch + 4 * branches, run.excess_to = branch + 5 * branches;
+    run.first_theta = first, run.first_load = first + loads, run.first_slope = first + 2 * loads, run.first_jump = first + 3 * loads;
+    run.state = (double *)table[6], run.count = (int64_t *)table[7], run.whole = (int64_t *)table[9];
+    run.real = (double *)table[10], run.all_load = (double *)table[11], run.all_rate = (double *)table[12];
+    run.branches = branches, run.loads = loads, run.capacity = table[17];
+    while (1) {
+        if (run.count[LENGTH] + 8 > run.capacity) return FULL;
+        if (run.count[STALLED] > 200) return STORM;
+        if (--budget < 0) return -1;
+        if (!run.count[READY]) {
+            if (run.count[ROW] > last_row) return FINISHED;
+            if (!next_piece(r)) { end_row(r); continue; }
+        }
+        double *state = run.state, xi_to = 1.0;
+        int is_last = run.count[ROW] == last_row && state[THETA_TO] >= last_theta;
+        if (is_last && state[THETA_TO] > last_theta) {
+            double rest = last_theta - state[THETA_FROM];
+            double root = sqrt(fmax(state[SPEED] * state[SPEED] + 4.0 * state[BEND] * rest, 0.0));
+            xi_to = fmin(2.0 * rest / (state[SPEED] + root), 1.0);
+        }
+        if (state[XI] < xi_to) {
+            if (run.count[MODE] == 0) stick(r, xi_to);
+            else slip(r, xi_to);
+            if (!isfinite(state[RATE_NOW])) return FAILED;
+        } else if (is_last) return FINISHED;
+        else run.count[READY] = 0;
+    }
+}

@@ -1,0 +1,73 @@
+"""The engine's algorithm in C (c_kernel/taylor.c), with the law's recurrences from the same formula: `cc -O3 -march=native`."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks import ours
+from benchmarks.problems import Case
+from benchmarks.runner import Runner, Unavailable
+from stickslip.evolution import layout, workspace
+from stickslip.evolution.generate import SIGNATURES, FormulaWriter
+from stickslip.friction.expression import Expression
+
+SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
+FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno")
+
+
+def c_function(writer: FormulaWriter, part: str) -> str:
+    """The straight-line statements of a formula's function as C: what is missing is declarations and semicolons."""
+    arguments = ", ".join(f"double *restrict {name[:-2]}" if name.endswith("[]") else f"double {name}" for name in SIGNATURES[part])
+    declared: set[str] = set()
+    lines = []
+    for statement in writer.statements(part):
+        target, _, _ = statement.partition(" ")
+        new = "[" not in target and target not in declared
+        declared.add(target)
+        lines.append(f"    {'double ' if new else ''}{statement};")
+    return f"static void {part}(const {arguments}) {{\n" + "\n".join(lines) + "\n}\n"
+
+
+def header(writer: FormulaWriter) -> str:
+    """law.h: the layout's names as numbers, and the law."""
+    names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
+    defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
+    return "\n".join(defines) + "\n\n" + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+
+
+@cache
+def library(formula: Expression, parameters: tuple[str, ...]) -> ctypes.CDLL:
+    """Compile the C kernel for a law."""
+    compiler = shutil.which("cc") or shutil.which("gcc")
+    if compiler is None:
+        raise Unavailable("no C compiler")
+    folder = Path(tempfile.mkdtemp(prefix="stickslip-c-"))
+    (folder / "law.h").write_text(header(FormulaWriter(formula, parameters)))
+    target = folder / "taylor.so"
+    subprocess.run([compiler, *FLAGS, f"-I{folder}", str(SOURCE), "-o", str(target), "-lm"], check=True)
+    loaded = ctypes.CDLL(str(target))
+    loaded.prepare_tables()
+    loaded.advance.argtypes = (ctypes.c_void_p, ctypes.c_int64, ctypes.c_double, ctypes.c_int64)
+    loaded.advance.restype = ctypes.c_int64
+    return loaded
+
+
+def runner(case: Case, tolerance: float) -> Runner:
+    """The C kernel on the engine's own table and history."""
+    law = case.problem.friction
+    (formula,) = law.trees()
+    function = library(formula, law.parameters()).advance
+    addresses: dict[int, int] = {}
+
+    def kernel(table: np.ndarray, last_row: int, last_theta: float, budget: int) -> int:
+        address = addresses.get(id(table)) or addresses.setdefault(id(table), table.ctypes.data)
+        return int(function(address, last_row, last_theta, budget))
+
+    return ours.runner(case, tolerance, kernel)

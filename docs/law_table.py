@@ -1,0 +1,58 @@
+"""Write the table of friction laws in laws-and-bodies.md from the registry; with --check, only compare.
+
+python docs/law_table.py
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import fields
+from pathlib import Path
+
+from stickslip.friction import LAWS, FrictionLaw
+
+PAGE = Path(__file__).with_name("laws-and-bodies.md")
+HEADING, NEXT = "## The laws\n", "\n## "
+
+
+def table() -> str:
+    rows = [row(law) for law in LAWS.values()]
+    heading = "| `kind` in a scenario, class in Python | friction | slip | parameters | source |"
+    return "\n".join([heading, "| --- " * 5 + "|", *rows])
+
+
+def row(law: type[FrictionLaw]) -> str:
+    about = (law.__doc__ or "").strip().split("\n\n")[0]
+    text = " ".join(about.split()).replace("|", "\\|")
+    given = ", ".join(f"`{f.name}`{unit(f.metadata)}" for f in fields(law))
+    counts = law.counts if isinstance(law.counts, str) else "of its parts"
+    counts = "either" if "counts" in {f.name for f in fields(law)} else counts
+    return f"| `{law.kind}`, `{law.__name__}` | {text} | {counts} | {given} | {law.source} |"
+
+
+def unit(metadata: object) -> str:
+    declared = getattr(metadata, "get", lambda _: None)("quantity")
+    return "" if declared is None or declared.unit == "1" else f" ({declared.unit})"
+
+
+def with_table(text: str) -> str:
+    """The page with the table as the first thing under its heading."""
+    before, _, rest = text.partition(HEADING)
+    _, _, after = rest.partition(NEXT)
+    intro = "One row a law, written from the registry by `python docs/law_table.py`."
+    return f"{before}{HEADING}\n{intro}\n\n{table()}\n{NEXT}{after}"
+
+
+def main() -> int:
+    old = PAGE.read_text(encoding="utf-8")
+    new = with_table(old)
+    if "--check" in sys.argv:
+        if old != new:
+            sys.stdout.write("the table of laws is not the registry's: run `python docs/law_table.py`\n")
+        return int(old != new)
+    PAGE.write_text(new, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,138 @@
+"""The contact equation at one load: friction, static strength, and the branch of slip rates that the selection rule keeps."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.compiled import ahead, call_value, inlined
+from stickslip.evolution.layout import Floats
+from stickslip.evolution.polynomial import NONE, evaluate, first_descent, restrict
+from stickslip.evolution.record import note_jump
+from stickslip.evolution.workspace import EXIT, Run
+
+TIE = 1e-13
+"""Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
+
+
+@inlined
+def constants_of(run: Run, piece: int) -> Floats:
+    """Pointer to the constants of a piece of the law."""
+    return ahead(run.constants, piece * run.size)
+
+
+@inlined
+def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
+    """out: S (mu - mu_reference), its derivatives with respect to rate and slip times S, and mu - mu_reference."""
+    piece = run.counts[at.PIECE]
+    call_value(run.value_at[piece], constants_of(run, piece), law_slip + run.slip_shift[piece], rate, out)
+    out[3] = out[0] + run.offset[piece]
+    out[0] = run.par[at.NORMAL] * out[3]
+    out[1] *= run.par[at.NORMAL]
+    out[2] *= run.par[at.NORMAL]
+
+
+@inlined
+def rest_limit(run: Run) -> float:
+    """Load (minus the reference) at which the selection rule leaves rest forwards: the static strength, or below it."""
+    friction_at(run, run.state[at.LAW_SLIP], 0.0, run.value)
+    # the step to static friction is added to the coefficient: where the two cancel they must do so exactly, before any product
+    coefficient = run.value[3] + run.par[at.STATIC_EXCESS]
+    return run.par[at.NORMAL] * coefficient + run.par[at.STICK_TO]
+
+
+@inlined
+def towards(run: Run, load: float, direction: int) -> float:
+    """The load as seen in the direction of slip, minus the reference."""
+    return load if direction > 0 else -load - 2.0 * run.par[at.REFERENCE]
+
+
+@inlined
+def rate_on_branch(run: Run, load: float, guess: float) -> float:
+    """The slip rate on the current branch that solves g(s) = load: Newton's method kept inside the branch."""
+    branch = run.counts[at.BRANCH]
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    if load <= run.excess_from[branch]:
+        return low
+    if load >= run.excess_to[branch]:
+        return high
+    high = min(high, (load + run.par[at.LARGEST_DROP]) / run.par[at.IMPEDANCE] * (1.0 + 1e-12))
+    s = guess if low < guess < high else 0.5 * (low + high)
+    for _ in range(200):
+        friction_at(run, run.state[at.LAW_SLIP], s, run.value)
+        error = run.par[at.IMPEDANCE] * s + run.value[0] - load
+        if error > 0.0:
+            high = s
+        elif error < 0.0:
+            low = s
+        else:
+            return s
+        slope = run.par[at.IMPEDANCE] + run.value[1]
+        step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
+        if not low < step < high:
+            step = 0.5 * (low + high)
+        if abs(step - s) <= 1e-16 * abs(s) or step in (low, high):
+            return step
+        s = step
+    return s
+
+
+@inlined
+def choose_branch(run: Run, load: float) -> None:
+    """Leave rest: the first branch that the rule allows at this load."""
+    run.state[EXIT] = math.nan
+    for branch in range(run.branches):
+        if load <= run.keep_to[branch]:
+            run.counts[at.BRANCH] = branch
+            return
+
+
+@inlined
+def leave_branch(run: Run, load: float) -> None:
+    """The branch ends at this load: go to the nearest allowed one in the direction of the load, or to rest."""
+    branch = run.counts[at.BRANCH]
+    run.state[EXIT] = math.nan
+    if load >= run.keep_to[branch]:
+        for other in range(branch + 1, run.branches):
+            if load <= run.keep_to[other]:
+                run.counts[at.BRANCH] = other
+                return
+    for other in range(branch - 1, -1, -1):
+        if run.keep_from[other] <= load:
+            run.counts[at.BRANCH] = other
+            return
+    run.counts[at.MODE] = 0
+
+
+@inlined
+def branch_exit(run: Run) -> float:
+    """The xi, from the present one, at which the load leaves what the rule keeps the branch for; inf if not on this piece."""
+    branch, mode, part, xi = run.counts[at.BRANCH], run.counts[at.MODE], run.part, run.state[at.XI]
+    first = NONE
+    for upper in (0, 1):
+        bound = run.keep_to[branch] if upper == 1 else run.keep_from[branch]
+        if math.isinf(bound):
+            continue
+        sign = -1.0 if upper == 1 else 1.0
+        restrict(run.load, xi, 1.0 - xi, part)
+        start = sign * (towards(run, part[0], mode) - bound)
+        for k in range(at.TERMS):
+            part[k] *= sign * mode
+        part[0] = 0.0 if run.counts[at.EDGE] != 0 and start < 0.0 else start
+        first = min(first, first_descent(part, run.spare))
+    return xi + first * (1.0 - xi) if first < 1.0 - TIE else NONE
+
+
+@inlined
+def end_branch(run: Run) -> None:
+    """The load has left the interval in which the rule keeps the branch."""
+    branch, direction = run.counts[at.BRANCH], run.counts[at.MODE]
+    seen = towards(run, evaluate(run.load, run.state[at.XI]), direction)
+    upper = abs(seen - run.keep_to[branch]) < abs(seen - run.keep_from[branch])
+    level = run.keep_to[branch] if upper else run.keep_from[branch]
+    leave_branch(run, level)
+    if run.counts[at.MODE] == 0:
+        note_jump(run, 0.0, at.FOLD)
+        run.state[at.RATE_NOW] = 0.0
+    else:
+        run.counts[at.EDGE] = direction

@@ -1,0 +1,202 @@
+"""The contact in slip: one Taylor step, cut at the first event in it.
+
+The step goes straight into the next free row of the history: series, length, events, and only then is the row kept.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, rate_on_branch, towards
+from stickslip.evolution.compiled import ahead, call_jet, inlined
+from stickslip.evolution.fold import SHORTEST_FOLD, approach_fold, ends_at_fold
+from stickslip.evolution.layout import Floats
+from stickslip.evolution.polynomial import NONE, RECIPROCAL, first_descent, integral, magnitude, powers_of, restrict_low, total
+from stickslip.evolution.record import note_jump, record
+from stickslip.evolution.step_size import usable_length
+from stickslip.evolution.stick import come_to_rest
+from stickslip.evolution.workspace import DEGREE, EXIT, Run
+
+LONGEST_GUESS = 2.0
+
+
+@inlined
+def first_guess(run: Run, left: float) -> float:
+    """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
+    speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
+    return min(left, LONGEST_GUESS * run.state[at.LAST_STEP] / speed) if speed > 0.0 else left
+
+
+@inlined
+def load_ahead(run: Run, guess: float) -> None:
+    """Series of the load from the present place, in units of `guess`: as it is, and as seen in the direction of slip."""
+    load, local, seen, direction, n = run.load, run.local, run.seen, run.counts[at.MODE], run.counts[DEGREE]
+    if n <= 1:
+        local[0] = load[0] + run.state[at.XI] * load[1]
+        local[1] = guess * load[1]
+        seen[1] = direction * local[1]
+    else:
+        restrict_low(load, n, run.state[at.XI], guess, local)
+        for k in range(1, n + 1):
+            seen[k] = direction * local[k]
+    seen[0] = towards(run, local[0], direction)
+
+
+@inlined
+def series(run: Run, guess: float) -> None:
+    """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
+    direction, piece, par, k = run.counts[at.MODE], run.counts[at.PIECE], run.par, run.k
+    load_ahead(run, guess)
+    edge = run.counts[at.EDGE] != 0
+    k[at.K_CHI] = direction if par[at.COUNTS_NET] == 1.0 else 1.0
+    k[at.K_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI]) * guess
+    k[at.K_BEND] = 2.0 * run.state[at.BEND] * guess * guess
+    k[at.K_SLIP], k[at.K_OFFSET] = run.state[at.LAW_SLIP] + run.slip_shift[piece], run.offset[piece]
+    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
+    k[at.K_FREE] = 0.0 if edge else 1.0
+    k[at.K_FORCE] = par[at.NORMAL] * par[at.STATIC_EXCESS] if edge else 0.0
+    if run.counts[at.IS_ALGEBRAIC] == 1:
+        k[at.K_RATE] = rate_on_branch(run, run.seen[0], abs(run.state[at.RATE_NOW]))
+    call_jet(run.jet_at[piece], constants_of(run, piece), k, run.seen, run.jet)
+
+
+@inlined
+def stretch(run: Run, length: float, rate: Floats) -> None:
+    """The slip rate's magnitude over a step of so many guesses, on [0, 1]."""
+    powers_of(length, run.powers)
+    for k in range(at.TERMS):
+        rate[k] = run.jet[k] * run.powers[k]
+
+
+@inlined
+def growth(run: Run, rate: Floats, length: float, end: float) -> float:
+    """Slip over the step up to `end` on [0, 1]: the integral of the rate over dtheta = (A + B eta) d eta."""
+    straight = run.k[at.K_SPEED] * length * integral(rate, end, 1)
+    if run.k[at.K_BEND] == 0.0:
+        return straight
+    return straight + run.k[at.K_BEND] * length * length * integral(rate, end, 2)
+
+
+@inlined
+def knot_crossing(run: Run, rate: Floats, length: float) -> float:
+    """Where on [0, 1] the slip reaches the next knot of the law; NONE if it does not. Slip is monotone within a step."""
+    grown = run.k[at.K_CHI] * growth(run, rate, length, 1.0)
+    next_knot = run.counts[at.PIECE] if grown > 0.0 else run.counts[at.PIECE] - 1
+    if next_knot < 0 or next_knot >= run.pieces - 1:
+        return NONE
+    distance = abs(run.knot[next_knot] - run.state[at.LAW_SLIP])
+    if distance >= abs(grown):
+        return NONE
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if abs(growth(run, rate, length, middle)) < distance:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@inlined
+def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
+    """An algebraic contact may leave its branch: how far to go, whether the branch ends there, whether it did so just now."""
+    if math.isnan(run.state[EXIT]):
+        run.state[EXIT] = branch_exit(run)
+    way = run.state[EXIT] - run.state[at.XI]
+    if run.state[EXIT] >= xi_to:
+        return xi_to, False, False
+    if way <= 0.0:
+        end_branch(run)
+        return xi_to, False, True
+    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
+        first = approach_fold(run, way)
+        return run.state[at.XI] + first, False, first == 0.0
+    return run.state[EXIT], True, False
+
+
+@inlined
+def slip(run: Run, xi_to: float) -> None:
+    """Slip for one Taylor step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
+    target, leaves, done = xi_to, False, False
+    if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
+        target, leaves, done = end_of_branch(run, xi_to)
+    if done:
+        return
+    guess = first_guess(run, target - run.state[at.XI])
+    series(run, guess)
+    while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
+        guess *= 1e-3
+        series(run, guess)
+    if run.state[at.XI] == 0.0 and run.counts[at.ARRIVING] != at.NO_CAUSE:
+        note_jump(run, run.counts[at.MODE] * run.jet[0], run.counts[at.ARRIVING])
+    elif run.counts[at.EDGE] != 0 and run.counts[at.HAS_INERTIA] == 0:
+        note_jump(run, run.counts[at.MODE] * run.jet[0], at.FOLD)
+    take_step(run, target, guess, leaves)
+
+
+@inlined
+def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
+    """Choose the length of the step, cut it at the first event, record it, and do what the event asks for."""
+    limit = (target - run.state[at.XI]) / guess
+    length = usable_length(run.jet, run.par[at.TOLERANCE])
+    # as the tolerance would have it: what events and ends of pieces cut off says nothing of the next step's length
+    run.state[at.LAST_STEP] = length * abs(run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * min(length, 1.0))
+    reached = length >= limit
+    if reached:
+        length = limit
+    elif length > 0.5 * limit:
+        length = 0.5 * limit
+    rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
+    stretch(run, length, rate)
+    arrest = NONE
+    if run.counts[at.IS_ALGEBRAIC] == 0 and rate[0] <= magnitude(rate):
+        arrest = first_descent(rate, run.spare)
+    knot = knot_crossing(run, rate, length) if run.pieces > 1 else NONE
+    end = min(arrest, knot)
+    if end > 1.0 - TIE:
+        arrest, knot, end = NONE, NONE, 1.0
+    to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
+    if end < 1.0:
+        length *= end
+        stretch(run, length, rate)
+    keep_step(run, rate, length, to)
+    if arrest == end:
+        come_to_rest(run)
+    elif knot == end:
+        run.counts[at.PIECE] += 1 if run.k[at.K_CHI] > 0.0 else -1
+    elif leaves and (reached or target - run.state[at.XI] < TIE):
+        end_branch(run)
+
+
+@inlined
+def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
+    """Record the step, which ends at xi = to, and move the state there."""
+    direction = run.counts[at.MODE]
+    grown = growth(run, rate, length, 1.0)
+    rate_end = total(rate)
+    load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
+    for k in range(at.TERMS):
+        load[k] = run.local[k] * run.powers[k]
+    speed, bend = run.k[at.K_SPEED] * length, run.k[at.K_BEND] * length * length
+    if run.counts[at.IS_BLOCK] == 1:
+        unload_spring(direction * run.par[at.STIFFNESS] * speed, direction * run.par[at.STIFFNESS] * bend, rate, load)
+        run.load[0] -= run.par[at.STIFFNESS] * direction * grown
+    if direction < 0:
+        for k in range(at.TERMS):
+            rate[k] = -rate[k]
+    record(run, to)
+    run.counts[at.MOVED], run.counts[at.EDGE] = 1, 0
+    run.state[at.SLIP_NOW] += direction * grown
+    run.state[at.LAW_SLIP] += run.k[at.K_CHI] * grown
+    run.state[at.RATE_NOW] = direction * max(rate_end, 0.0)
+
+
+@inlined
+def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> None:
+    """The block unloads its spring as it slips: take stiffness times slip from the outer load."""
+    for k in range(1, at.TERMS):
+        load[k] -= straight * RECIPROCAL[k] * rate[k - 1]
+    if bent != 0.0:
+        for k in range(2, at.TERMS):
+            load[k] -= bent * RECIPROCAL[k] * rate[k - 2]

@@ -1,0 +1,38 @@
+"""How long a Taylor step may be."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.evolution.compiled import bits_of, float_of, inlined
+from stickslip.evolution.layout import TERMS, Floats
+
+UNITS = 2.0**52
+BIAS = 1023.0
+
+
+@inlined
+def quick_log2(x: float) -> float:
+    """log2 |x| to 0.09, straight from the bits; -1023 for zero. A step's length needs an 18th of that."""
+    return (bits_of(abs(x))) / UNITS - BIAS
+
+
+@inlined
+def quick_exp2(x: float) -> float:
+    """2^x to 0.3 %, between 2^-1000 and 2^1000."""
+    x = min(max(x, -1000.0), 1000.0)
+    whole = math.floor(x)
+    part = x - whole
+    return float_of((int(whole) + 1023) << 52) * (1.0 + part * (0.6565 + 0.3435 * part))
+
+
+@inlined
+def usable_length(jet: Floats, tolerance: float) -> float:
+    """Longest step (in units of the guess) whose last two terms stay below the tolerance, relative to the rate over the step."""
+    size = max(abs(jet[0]), 0.5 * abs(jet[1]), 0.25 * abs(jet[2]), 0.125 * abs(jet[3]))
+    n = TERMS - 1
+    if jet[n] == 0.0 and jet[n - 1] == 0.0:
+        return math.inf
+    allowed = quick_log2(tolerance * size)
+    last, before = allowed - quick_log2(jet[n]), allowed - quick_log2(jet[n - 1])
+    return quick_exp2(min(last * (1.0 / n), before * (1.0 / (n - 1))))

@@ -1,0 +1,39 @@
+"""Exponential cohesive zone: friction first rises with slip, then falls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+from stickslip.friction.contract import FrictionLaw
+from stickslip.friction.expression import exp
+from stickslip.quantities import quantity
+
+
+@dataclass(frozen=True)
+class ExponentialCohesiveZone(FrictionLaw):
+    """mu(d) = dynamic + (static - dynamic) y exp(1 - y), y = (d + offset) / distance (d2). d is the path walked, both ways.
+
+    Friction reaches `static` at y = 1; offset (d1) below distance leaves a stretch d < distance - offset on which it rises.
+    """
+
+    kind: ClassVar[str] = "exponential-cohesive-zone"
+    source: ClassVar[str] = (
+        "Bolotskaya, Hager & Ampuero, Effects of failure parameterization on pre- and co-seismic earthquake rupture "
+        "(exponential cohesive zone); shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397"
+    )
+    counts: ClassVar[Literal["net", "path"]] = "path"
+    example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "distance": "0.2 m", "offset": "0.1 m"}
+
+    static: float = quantity("1", "largest friction coefficient, at y = 1", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient after much slip", at_least=0)
+    distance: float = quantity("m", "slip d2, counted from -offset, at which friction is largest", above=0)
+    offset: float = quantity("m", "slip d1 by which the curve is shifted back", at_least=0, default=0.0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        y = (u + law.offset) / law.distance
+        return law.dynamic + (law.static - law.dynamic) * y * exp(1.0 - y)
+
+    def range(self) -> tuple[float, float]:
+        return min(self.static, self.dynamic), max(self.static, self.dynamic)

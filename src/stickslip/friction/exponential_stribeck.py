@@ -1,0 +1,40 @@
+"""Exponential Stribeck curve: friction falls with slip rate, and may rise again by a viscous term."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.friction.contract import FrictionLaw
+from stickslip.friction.expression import exp
+from stickslip.quantities import quantity
+
+
+@dataclass(frozen=True)
+class ExponentialStribeck(FrictionLaw):
+    """mu(v) = dynamic + (static - dynamic) exp(-(v / rate)^exponent) + viscosity v.
+
+    The exponent is whole: with any other the curve has no derivatives at v = 0, where every slip begins.
+    """
+
+    kind: ClassVar[str] = "exponential-stribeck"
+    source: ClassVar[str] = (
+        "Tustin 1947, J. Inst. Electr. Eng. 94, 143 (exponent 1); Bo & Pavelescu 1982, Wear 82, 277; "
+        "Armstrong-Helouvry, Dupont & Canudas de Wit 1994, Automatica 30, 1083"
+    )
+    example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 1}
+
+    static: float = quantity("1", "friction coefficient at rest", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient at high slip rate, viscosity apart", at_least=0)
+    rate: float = quantity("m/s", "slip rate v_s over which friction falls", above=0)
+    exponent: float = quantity("1", "exponent of v / rate: 1 exponential, 2 Gaussian; whole", at_least=1, whole=True, default=1.0)
+    viscosity: float = quantity("s/m", "friction gained per slip rate", at_least=0, default=0.0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** law.exponent)) + law.viscosity * v
+
+    def range(self) -> tuple[float, float]:
+        high = math.inf if self.viscosity > 0.0 else max(self.static, self.dynamic)
+        return min(self.static, self.dynamic), high

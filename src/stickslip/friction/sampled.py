@@ -1,0 +1,58 @@
+"""A formula tried at many slips and slip rates: finite, not negative, and with derivatives where slip begins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.errors import InputError
+from stickslip.friction.expression import RATE, SLIP, Expression, depends_on, evaluate, nodes_of
+from stickslip.friction.text import to_text
+
+LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
+"""m and m/s: how far a formula is tried; no earthquake and no machine goes much farther."""
+TOLERANCE = 1e-12
+
+
+def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool) -> None:
+    """Raise InputError, with the place, where the formula is negative, not a number, or has no derivative."""
+    slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
+    if backwards:
+        slip = np.concatenate((-slip[:0:-1], slip))
+    rate = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
+    u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
+    with np.errstate(all="ignore"):
+        values = np.broadcast_to(evaluate(tree, numbers, u, v), u.shape)
+        _refuse(~np.isfinite(values), u, v, "is not a finite number")
+        negative = np.where(values < -TOLERANCE, values, 0.0)
+        lowest = int(np.argmin(negative))
+        _refuse(np.arange(len(u)) == lowest if negative[lowest] < 0.0 else np.zeros(len(u), bool), u, v, f"is {values[lowest]:.3g}")
+        for node in nodes_of(tree):
+            if node.operation in ("sqrt", "log", "pow") and (depends_on(node, SLIP) or depends_on(node, RATE)):
+                _check_argument(node, numbers, u, v)
+
+
+def samples(largest: float) -> NDArray[np.float64]:
+    """0 and numbers up to `largest`: evenly spaced, and in geometric progression below."""
+    return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 91), np.linspace(0.0, largest, 101))))
+
+
+def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float64], what: str) -> None:
+    if bad.any():
+        i = int(np.argmax(bad))
+        raise InputError(f"friction must be a number >= 0, but at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it {what}")
+
+
+def _check_argument(node: Expression, numbers: Mapping[str, float], u: Any, v: Any) -> None:
+    values = np.broadcast_to(evaluate(node.arguments[0], numbers, u, v), u.shape)
+    bad = ~(values > 0.0)
+    if bad.any():
+        i = int(np.argmax(bad))
+        where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
+        what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
+        part = to_text(node.arguments[0])
+        shown = part if len(part) <= 60 else f"{part[:57]}..."
+        raise InputError(f"{what}, '{shown}', must stay above 0 to have derivatives, but {where}; add a small number to it")

@@ -1,0 +1,91 @@
+"""How each kind of field of a friction law is read from a scenario, described, and written back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from stickslip.errors import InputError
+from stickslip.friction.fields import Choice, Field, Named, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.friction.from_expression import named_value
+from stickslip.quantities import Quantity
+from stickslip.scenarios.values import describe as describe_quantity
+from stickslip.scenarios.values import read_quantity, show
+
+
+class Source(NamedTuple):
+    """Where a document comes from: what messages call it, and the folder of its files if it has one."""
+
+    file: str
+    folder: Path | None = None
+
+
+def key_of(name: str, entry: Quantity | Field) -> str:
+    """What a scenario calls a field."""
+    return entry.key if isinstance(entry, NamedNumbers) else name
+
+
+def read_entry(value: Any, entry: Quantity | Field, source: Source, table: str, key: str, law: Callable[..., Any]) -> Any:
+    """A value of a scenario as its field wants it; `law` reads a nested law. Raises InputError with the place."""
+    place = f"[{table}] {key}"
+    if isinstance(entry, Quantity):
+        return read_quantity(value, entry, source.file, place)
+    if isinstance(entry, Series):
+        return _series(value, entry, source.file, place)
+    if isinstance(entry, NamedNumbers):
+        return _named(value, source.file, f"[{table}.{key}]", place)
+    if isinstance(entry, Part):
+        if not isinstance(value, dict):
+            raise InputError(f"{source.file}: [{table}.{key}] must be a table, got {show(value)}")
+        return law(value, source, f"{table}.{key}")
+    return entry.check(source.file, place, value)
+
+
+def _series(value: Any, entry: Series, file: str, place: str) -> tuple[float, ...]:
+    if not isinstance(value, list):
+        raise InputError(
+            f"{file}: {place} must be a list of numbers in {entry.item.label} or of texts with units, got {show(value)}"
+        )
+    numbers = [read_quantity(one, entry.item, file, f"{place}[{i}]") for i, one in enumerate(value)]
+    return entry.check(file, place, numbers)
+
+
+def _named(value: Any, file: str, table: str, place: str) -> tuple[Named, ...]:
+    if not isinstance(value, dict):
+        raise InputError(f"{file}: {table} must be a table of names and values, got {show(value)}")
+    for name, one in value.items():
+        if isinstance(one, bool) or not isinstance(one, int | float | str):
+            raise InputError(f"{file}: {table} {show(name)} must be a number or a text with a unit, got {show(one)}")
+        if isinstance(one, int) and abs(one) > 10**300:
+            raise InputError(f"{file}: {table} {show(name)} must be a number, got a whole number beyond 1e300")
+    return tuple(named_value(name, one, f"{file}: {place}") for name, one in value.items())
+
+
+def describe(entry: Quantity | Field) -> str:
+    """Meaning, unit and range of a field, for people."""
+    if isinstance(entry, Quantity):
+        return describe_quantity(entry)
+    if isinstance(entry, Series):
+        return f"{describe_quantity(entry.item)}, a list" + (", ascending" if entry.ascending else "")
+    if isinstance(entry, Choice):
+        return f"{entry.meaning}: {' or '.join(entry.allowed)}"
+    if isinstance(entry, Text):
+        return entry.meaning
+    return f"{entry.meaning}, a table"
+
+
+def to_table(owner: Any) -> dict[str, Any]:
+    """A body or a law as a table of a scenario, in SI, read back to the last digit."""
+    table: dict[str, Any] = {"kind": owner.kind}
+    for name, (entry, _) in fields_of(type(owner)).items():
+        value = getattr(owner, name)
+        if value is not None and value != ():
+            table[key_of(name, entry)] = _written(value, entry)
+    return table
+
+
+def _written(value: Any, entry: Quantity | Field) -> Any:
+    if isinstance(entry, NamedNumbers):
+        return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
+    return to_table(value) if isinstance(entry, Part) else value

@@ -1,0 +1,102 @@
+"""A data file of a friction law: CSV with a header, read line by line, so that a mistake has a place."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from stickslip.errors import InputError, nearest
+from stickslip.friction.fields import LARGEST_SERIES
+from stickslip.scenarios.values import show
+
+LARGEST = 5_000_000
+"""Bytes of the largest data file that is read."""
+
+
+def read_points(name: str, folder: Path | None, columns: Mapping[str, str], where: str) -> dict[str, list[float]]:
+    """Numbers (SI) of a law's fields from the CSV file `name` in the scenario's folder; `columns` maps headings to fields.
+
+    Blank lines and lines that begin with # are left out; other columns are ignored. Raises InputError: one line with file and
+    line.
+    """
+    lines = _rows(_text(name, folder, where), f"{where}: {show(name)}")
+    number, header = next(lines, (1, []))
+    place = f"{where}: {show(name)}, line {number}"
+    heading = _wanted([cell.strip() for cell in header], columns, place)
+    found: dict[str, list[float]] = {column: [] for column in heading}
+    for number, row in lines:
+        place = f"{where}: {show(name)}, line {number}"
+        for column, i in heading.items():
+            found[column].append(_number(row, i, column, place))
+        _check_row(found, place)
+    if len(found["friction"]) < 2:
+        raise InputError(f"{place}: at least two rows of numbers are needed, got {len(found['friction'])}")
+    return {columns[column]: numbers for column, numbers in found.items()}
+
+
+def _text(name: str, folder: Path | None, where: str) -> str:
+    if folder is None:
+        raise InputError(f"{where} {show(name)}: only a scenario in a file can name another file; write the points as lists")
+    if Path(name).is_absolute() or not name.isprintable():
+        raise InputError(f"{where} {show(name)}: the path must be relative to the scenario")
+    path = folder / name
+    try:
+        if not path.is_file():
+            raise InputError(f"{where} {show(name)}: no such file beside the scenario")
+        if path.stat().st_size > LARGEST:
+            raise InputError(f"{where} {show(name)}: larger than {LARGEST} bytes")
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{where} {show(name)}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{where} {show(name)}: not a text file in UTF-8") from None
+
+
+def _rows(text: str, place: str) -> Iterator[tuple[int, list[str]]]:
+    lines = csv.reader(text.splitlines())
+    try:
+        for row in lines:
+            if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#"):
+                yield lines.line_num, row
+    except csv.Error as error:
+        raise InputError(f"{place}, line {lines.line_num}: {error}") from None
+
+
+def _wanted(header: list[str], columns: Mapping[str, str], place: str) -> dict[str, int]:
+    """Index of each wanted column. There must be friction and exactly one other."""
+    heading = {column: header.index(column) for column in columns if column in header}
+    others = [column for column in columns if column != "friction"]
+    if "friction" not in heading:
+        raise InputError(f"{place}: no column 'friction' in the header {show(','.join(header))}; {_close('friction', header)}")
+    if len(heading) != 2:
+        found = "both" if len(heading) > 2 else "none"
+        raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {found}; {_close(others[0], header)}")
+    return heading
+
+
+def _close(column: str, header: list[str]) -> str:
+    hint = nearest(column, [cell for cell in header if cell])
+    return f"rename {show(hint[14:-2])}?" if hint.startswith("did") and hint[14:-2] != column else "values are in SI"
+
+
+def _number(row: list[str], i: int, column: str, place: str) -> float:
+    text = row[i].strip() if i < len(row) else ""
+    try:
+        value = float(text)
+    except ValueError:
+        raise InputError(f"{place}: {column} must be a number, got {show(text)}") from None
+    if not math.isfinite(value):
+        raise InputError(f"{place}: {column} must be finite, got {show(text)}")
+    if value < 0.0 and column != "slip":
+        raise InputError(f"{place}: {column} must not be negative, got {value:g}")
+    return value
+
+
+def _check_row(found: Mapping[str, list[float]], place: str) -> None:
+    for column, numbers in found.items():
+        if len(numbers) > LARGEST_SERIES:
+            raise InputError(f"{place}: more than {LARGEST_SERIES} rows")
+        if column != "friction" and len(numbers) > 1 and not numbers[-2] < numbers[-1]:
+            raise InputError(f"{place}: {column} must ascend, but {numbers[-1]:g} follows {numbers[-2]:g}")

@@ -1,0 +1,97 @@
+"""Markdown pages as lists of fenced blocks, and how each kind of block is run.
+
+Conventions of the pages (README.md and docs/*.md):
+
+- ```python blocks of a page run in order in one namespace, in an empty folder. A ```text block right behind one is what it prints.
+- ```toml blocks that begin with `# NAME.toml` are put into that folder under this name.
+- ```console blocks: lines `$ stickslip ...` are run; the lines shown below one appear in what it says, in this order ("..." stands
+  for anything). A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import shlex
+from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+
+from stickslip.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, its text, the number of the line it starts on, and what a ```text block behind it shows."""
+
+    language: str
+    text: str
+    line: int
+    shown: str | None = None
+
+
+@dataclass(frozen=True)
+class Command:
+    """A line `$ stickslip ...` and the lines shown below it."""
+
+    arguments: list[str]
+    into: str | None
+    shown: list[str]
+
+    @property
+    def code(self) -> int:
+        return 2 if any(line.startswith("stickslip: ") for line in self.shown) else 0
+
+
+def blocks_of(page: Path) -> list[Block]:
+    """The fenced blocks of a page, in order."""
+    text = page.read_text(encoding="utf-8")
+    found, previous_end = [], -1
+    for match in _FENCE.finditer(text):
+        language, content = match.groups()
+        if language == "text" and found and found[-1].language == "python" and not text[previous_end : match.start()].strip():
+            last = found.pop()
+            found.append(Block(last.language, last.text, last.line, content))
+        else:
+            found.append(Block(language, content, text.count("\n", 0, match.start()) + 2))
+        previous_end = match.end()
+    return found
+
+
+def commands_of(block: Block) -> Iterator[Command]:
+    """The commands of a ```console block that call stickslip."""
+    for part in re.split(r"^\$ ", block.text, flags=re.MULTILINE)[1:]:
+        typed, *shown = part.splitlines()
+        words = shlex.split(typed)
+        if words[0] != "stickslip":
+            continue
+        into = None
+        if ">" in words:
+            into = words[words.index(">") + 1]
+            words = words[: words.index(">")]
+        yield Command(words[1:], into, [line.strip() for line in shown if line.strip()])
+
+
+def run_command(command: Command) -> tuple[int, str]:
+    """Exit code and everything that is said, on either stream."""
+    out, err = io.StringIO(), io.StringIO()
+    code = 0
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            main(command.arguments)
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+    if command.into is not None:
+        Path(command.into).write_text(out.getvalue(), encoding="utf-8")
+    return code, out.getvalue() + err.getvalue()
+
+
+def missing_lines(shown: list[str], said: str) -> list[str]:
+    """The shown lines that do not appear, in order, in what was said; blanks count once."""
+    rest = iter([" ".join(line.split()) for line in said.splitlines()])
+    return [line for line in shown if line != "..." and not any(" ".join(line.split()) == other for other in rest)]

@@ -1,0 +1,137 @@
+"""Everything that the pages show is run: examples, commands, messages, numbers, links."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+import types
+import warnings
+from contextlib import redirect_stdout
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+
+import stickslip
+from stickslip.scenarios.library import names
+from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, missing_lines, run_command
+
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def page_name(page: Path) -> str:
+    return page.stem
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_examples(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    mpl.use("agg")
+    module = types.ModuleType(f"page_{page.stem.replace('-', '_')}")
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    for block in blocks_of(page):
+        where = f"{page.name}, line {block.line}"
+        if block.language == "python":
+            said = run_python(block, module, where)
+            if block.shown is not None:
+                assert lines(said) == lines(block.shown), where
+        elif block.language == "toml":
+            name = re.match(r"# (\S+\.toml)\n", block.text)
+            if name:
+                Path(name[1]).write_text(block.text, encoding="utf-8")
+        elif block.language == "console":
+            run_console(block, where)
+
+
+def run_python(block: Block, module: types.ModuleType, where: str) -> str:
+    said = io.StringIO()
+    with warnings.catch_warnings(), redirect_stdout(said):
+        warnings.simplefilter("error")
+        exec(compile(block.text, where, "exec"), module.__dict__)
+    return said.getvalue()
+
+
+def run_console(block: Block, where: str) -> None:
+    for command in commands_of(block):
+        code, said = run_command(command)
+        assert code == command.code, f"{where}: {command.arguments}: {said}"
+        assert missing_lines(command.shown, said) == [], f"{where}: {command.arguments}: {said}"
+
+
+def lines(text: str) -> list[str]:
+    return [line.rstrip() for line in text.rstrip().splitlines()]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_links(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for target in LINK.findall(text):
+        if re.match(r"[a-z]+://|mailto:", target):
+            continue
+        path, _, anchor = target.partition("#")
+        aim = (page.parent / path).resolve() if path else page
+        assert aim.exists(), f"{page.name}: {target}"
+        if anchor:
+            assert anchor in headings(aim), f"{page.name}: {target}"
+
+
+def headings(page: Path) -> list[str]:
+    """Anchors of a page's headings, as GitHub and most renderers make them."""
+    found = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return [re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found]
+
+
+def test_no_page_is_lost() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    for page in PAGES[1:]:
+        assert page.stem == "index" or f"({page.name})" in index
+
+
+def test_no_html() -> None:
+    for page in PAGES[1:]:
+        prose = re.sub(r"^```.*?^```$|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        assert not re.search(r"</?[a-zA-Z][^>]*>|<!--", prose), page.name
+
+
+def test_the_table_of_laws_is_the_registry() -> None:
+    made = subprocess.run(
+        [sys.executable, str(ROOT / "docs" / "law_table.py"), "--check"], capture_output=True, text=True, check=False
+    )
+    assert made.returncode == 0, made.stdout + made.stderr
+
+
+def test_every_bundled_scenario_is_described() -> None:
+    text = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
+    assert [name for name in names() if f"`{name}`" not in text] == []
+
+
+def test_a_law_is_one_file_and_one_line(tmp_path: Path) -> None:
+    """The worked example of adding-a-law.md, in a copy of the package: file, registry line, and the scenario that uses it."""
+    page = ROOT / "docs" / "adding-a-law.md"
+    package = tmp_path / "stickslip"
+    shutil.copytree(Path(stickslip.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+    blocks = [block for block in blocks_of(page) if block.language in ("python", "toml")]
+    law = next(block.text for block in blocks if "class PowerSlipWeakening" in block.text)
+    scenario = next(block.text for block in blocks if block.language == "toml")
+    (package / "friction" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
+    registry = package / "friction" / "registry.py"
+    text = registry.read_text(encoding="utf-8").replace(
+        "LAWS: dict", "from stickslip.friction.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
+    )
+    registry.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        PowerSlipWeakening,\n", text), encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(scenario, encoding="utf-8")
+    for arguments, expected in ((["check", "mine.toml"], "PowerSlipWeakening: regular"), (["new", "slab"], "power-slip-weakening")):
+        done = subprocess.run(
+            [sys.executable, "-c", "import sys; from stickslip.cli.main import main; main(sys.argv[1:])", *arguments],
+            cwd=tmp_path,
+            env=os.environ | {"PYTHONPATH": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        assert expected in done.stdout

@@ -1,0 +1,257 @@
+"""Expressions from scenarios and from Python: what is read, and one line for everything that is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from stickslip import InputError
+from stickslip.friction import FromExpression, HyperbolicRate
+from stickslip.friction.expression import FUNCTIONS, OPERATIONS, RATE, SLIP, Expression, Parameter, as_expression
+from stickslip.friction.parse import parse
+from stickslip.friction.text import to_text
+
+HYPERBOLIC = "mu_d + (mu_s - mu_d)/(1 + alpha*v)"
+
+
+def test_an_expression_is_the_built_in_law_to_the_last_digit() -> None:
+    law, built_in = FromExpression(HYPERBOLIC, {"mu_s": 0.8, "mu_d": 0.3, "alpha": 1.7}), HyperbolicRate(0.8, 0.3, 1.7)
+    rate = np.geomspace(1e-9, 1e3, 50)
+    assert (law.coefficient(0.0, rate) == built_in.coefficient(0.0, rate)).all()
+    assert law.range() == built_in.range()
+    assert law.variation == built_in.variation
+    assert law.depends_on_rate
+    assert not law.depends_on_slip
+
+
+@pytest.mark.parametrize(
+    ("text", "u", "v", "value"),
+    [
+        ("0.5", 0, 0, 0.5),
+        ("  0.5 ", 0, 0, 0.5),
+        ("1 - 2 - 3 + 9", 0, 0, 5.0),
+        ("-2**2 + 5", 0, 0, 1.0),
+        ("2**-1", 0, 0, 0.5),
+        ("+v + -(-u)", 2, 3, 5.0),
+        ("8/4/2 * 3e-1", 0, 0, 0.3),
+        ("sin(pi/2) + cos(0) + exp(0) + log(1) + sqrt(4) + tanh(0) + arcsinh(0)", 0, 0, 5.0),
+        ("(1 + u)**0.5", 3, 0, 2.0),
+        ("v**3 / v", 0, 2, 4.0),
+        ("1_000.5", 0, 0, 1000.5),
+        ("0x10", 0, 0, 16.0),
+    ],
+)
+def test_reading(text: str, u: float, v: float, value: float) -> None:
+    from stickslip.friction.expression import evaluate
+
+    assert float(evaluate(parse(text, ()), {}, np.float64(u), np.float64(v))) == pytest.approx(value, rel=1e-15)
+
+
+ALLOWED = "allowed are numbers, u, v, pi, declared parameters, + - * / ** and sin, cos, exp, log, sqrt, tanh, arcsinh"
+HOSTILE = [
+    ("", "is not an expression"),
+    ("   ", "is not an expression"),
+    ("mu_d +", "is not an expression: mistake at character"),
+    ("__import__('os')", "the function '__import__' is unknown; allowed: arcsinh,"),
+    ("__import__('os').system('x')", "is not allowed; allowed are numbers"),
+    ("().__class__.__bases__", "'().__class__.__bases__' is not allowed"),
+    ("v.real", "'v.real' is not allowed"),
+    ("mu_d[0]", "'mu_d[0]' is not allowed"),
+    ("[v]", "'[v]' is not allowed"),
+    ("(v, u)", "is not allowed"),
+    ("{v: 1}", "is not allowed"),
+    ("{v}", "is not allowed"),
+    ("[x for x in (1,)]", "is not allowed"),
+    ("lambda: 1", "'lambda: 1' is not allowed"),
+    ("(w := 1)", "is not allowed"),
+    ("v if v else 1", "'v if v else 1' is not allowed"),
+    ("v > 1", "'v > 1' is not allowed"),
+    ("v and 1", "is not allowed"),
+    ("not v", "is not allowed"),
+    ("~v", "is not allowed"),
+    ("v // 2", "the operator in 'v // 2' is not allowed"),
+    ("v % 2", "the operator in 'v % 2' is not allowed"),
+    ("v @ v", "the operator in 'v @ v' is not allowed"),
+    ("v << 2", "the operator in 'v << 2' is not allowed"),
+    ("v ^ 2", "a power is written **"),
+    ("'text'", "is not allowed"),
+    ("f'{v}'", "is not allowed"),
+    ("b'x'", "is not allowed"),
+    ("True", "'True' is not allowed"),
+    ("None", "'None' is not allowed"),
+    ("...", "'...' is not allowed"),
+    ("2j", "'2j' is not allowed"),
+    ("1e999", "the number '1e999' is too large"),
+    ("9" * 400, "is too large"),
+    ("mu_dd", "'mu_dd' is neither u, v, pi nor a declared parameter; did you mean 'mu_d'?"),
+    ("inf", "'inf' is neither"),
+    ("nan", "'nan' is neither"),
+    ("e", "'e' is neither"),
+    ("sin", "'sin' is a function: write sin(...)"),
+    ("sinn(v)", "the function 'sinn' is unknown; did you mean 'sin'?"),
+    ("eval(v)", "the function 'eval' is unknown"),
+    ("v(1)", "the function 'v' is unknown"),
+    ("sin()", "sin takes one number"),
+    ("sin(v, u)", "sin takes one number"),
+    ("sin(x=v)", "sin takes one number"),
+    ("sin(*v)", "sin takes one number"),
+    ("sin(**v)", "sin takes one number"),
+    ("v**u", "the exponent of 'v**u' must not contain u or v"),
+    ("2**v", "the exponent of '2**v' must not contain u or v"),
+    ("v**1000", "the exponent of 'v**1000' must be within 100"),
+    ("(((v+1)**16)**16)**16 + ((v+1)**16)**16", "operations"),
+    ("1\n+1", "the character '\\n' is not allowed"),
+    ("v\x00", "the character '\\x00' is not allowed"),
+    ("µ", "the character '\\xb5' is not allowed"),
+    ("v\u2212 1", "the character '\\u2212' is not allowed"),
+    ("1; 2", "is not an expression"),
+    ("import os", "is not an expression"),
+    ("x = 1", "is not an expression"),
+    ("(" * 300 + "v" + ")" * 300, "is not an expression|nested too deeply"),
+    ("-" * 500 + "v", "nested"),
+    ("+".join(["v"] * 300), "nested more than 100 deep"),
+    ("v" * 1001, "longer than 1000 characters"),
+    ("1 if", "is not an expression"),
+    ("1 is 1", "is not allowed"),
+    ("'\\d'", "is not allowed"),
+    ("*v", "is not"),
+    ("yield", "is not"),
+    ("await v", "is not"),
+    ("05", "is not an expression"),
+    ("$v", "is not an expression"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), HOSTILE)
+def test_everything_else_is_refused_in_one_line(text: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse(text, ("mu_s", "mu_d"))
+    said = str(caught.value)
+    assert said.isprintable()
+    assert len(said) < 300
+    assert any(part in said for part in message.split("|"))
+
+
+@given(st.text(max_size=60))
+def test_no_text_does_anything_but_give_a_tree_or_one_line(text: str) -> None:
+    try:
+        parse(text, ("a",))
+    except InputError as error:
+        assert str(error).isprintable()
+
+
+LEAVES = st.one_of(
+    st.sampled_from([SLIP, RATE, Parameter("a"), Parameter("mu_s")]),
+    st.floats(-1e6, 1e6, allow_nan=False).map(as_expression),
+)
+
+
+def _grown(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]:
+    pair = st.tuples(st.sampled_from(["add", "sub", "mul", "div"]), inner, inner).map(lambda x: OPERATIONS[x[0]](x[1], x[2]))
+    power = st.tuples(inner, st.floats(-5, 5).map(lambda x: round(x, 2))).map(lambda x: x[0] ** x[1])
+    function = st.tuples(st.sampled_from(FUNCTIONS), inner).map(lambda x: OPERATIONS[x[0]](x[1]))
+    return st.one_of(pair, power, function, inner.map(lambda x: -x), inner.map(lambda x: x ** Parameter("a")))
+
+
+@given(st.recursive(LEAVES, _grown, max_leaves=12))
+def test_a_tree_written_as_text_is_read_back(tree: Expression) -> None:
+    text = to_text(tree)
+    try:
+        again = parse(text, ("a", "mu_s"))
+    except InputError as error:
+        assert "operations" in str(error) or "longer" in str(error) or "exponent" in str(error) or "nested" in str(error)
+        return
+    assert again == tree
+    assert to_text(again) == text
+
+
+REFUSED = [
+    ("a", {}, "'a' is neither u, v, pi nor a declared parameter"),
+    ("0.5", {"a": 1.0}, "parameters: a does not occur in the expression; the expression has no parameters"),
+    ("mu_d", {"mu_d": 0.5, "mu_b": 1.0}, "parameters: mu_b does not occur in the expression; did you mean 'mu_d'?"),
+    ("sin(u)+1", {"sin": 1.0}, "parameters: the name sin is taken"),
+    ("u", {"u": 1.0}, "parameters: the name u is taken"),
+    ("0.5", {"a b": 1.0}, "parameters: 'a b' is not a name"),
+    ("0.5", {"1a": 1.0}, "parameters: '1a' is not a name"),
+    ("0.5", {"x" * 41: 1.0}, "is not a name"),
+    ("a", {"a": math.nan}, "parameters 'a' must be finite, got nan"),
+    ("a", {"a": True}, "parameters 'a' must be a number"),
+    ("a", {"a": "1 parsnip"}, "'parsnip' is not a unit"),
+    ("a", {"a": "1 K"}, "'K' is not made of whole powers of m, kg and s"),
+    ("a", {"a": "eval(1)"}, "is not a number with a unit"),
+    ("0.5 - 0.1*u", {}, "friction must be a number >= 0, but at u = 10 m, v = 0 m/s it is -0.5"),
+    ("0.5 + u", {}, "friction must be a number >= 0, but at u = -10 m, v = 0 m/s it is -9.5"),
+    ("1/v", {}, "at u = 0 m, v = 0 m/s it is not a finite number"),
+    ("log(v) + 99", {}, "it is not a finite number"),
+    ("sqrt(v) + 1", {}, "the argument of sqrt, 'v', must stay above 0 to have derivatives, but at u = 0 m, v = 0 m/s it is 0"),
+    ("v**1.5 + 1", {}, "the base of a power, 'v', must stay above 0"),
+    ("(1 + v)**n", {"n": 1e3}, "an exponent is 1000, it must be within 100"),
+    ("0.5 + 9**9**9**9", {}, "an exponent is"),
+    ("1/(u - 1)**2", {}, "it is not a finite number"),
+    ("exp(v * 1e6)", {}, "it is not a finite number"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "values", "message"), REFUSED)
+def test_laws_that_are_no_friction(text: str, values: dict[str, float | str], message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        FromExpression(text, values)
+    assert message in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+UNITS = [
+    ("0.3 + 0.5/(1 + alpha*v)", {"alpha": "1 s/m"}, None),
+    ("0.3 + 0.5/(1 + v/w)", {"w": "1 mm/s"}, None),
+    ("0.3 + 0.2*exp(-u/d) + 0.1*sqrt(1 + (v/w)**2)", {"w": "1 mm/s", "d": "2 cm"}, None),
+    ("0.3 + (1 + v/w)**n", {"w": "1 mm/s", "n": -0.5}, None),
+    ("0.3 + sqrt(v**2 + w**2)/w", {"w": "1 mm/s"}, None),
+    ("0.3 + 0.1*sin(k*u + phase)", {"k": "5 / m", "phase": "30 deg"}, None),
+    ("0.3 + (E/r)**0.5/c", {"E": "1 GPa", "r": "1000 kg/m^3", "c": "1 km/s"}, None),
+    ("0.3 + 0.5/(1 + alpha*v)", {"alpha": "1 s"}, "1.0 + alpha * v': a pure number and m cannot be added"),
+    ("0.3 + 0.2*exp(-u/d) + v/w", {"d": 1.0, "w": "1 m/s"}, "exp(-u / d)': its argument must be a pure number, but is in m"),
+    ("v/w + u", {"w": "1 m/s"}, "a pure number and m cannot be added"),
+    ("u*w", {"w": "1 m"}, "the friction coefficient must be a pure number, but 'u * w' is in m^2"),
+    ("0.3 + (1 + 0*v)**w", {"w": "1 m"}, "a pure number and m s^-1 cannot be added"),
+    ("0.3 + 2**w", {"w": "1 m"}, "its exponent must be a pure number"),
+    ("0.3 + (v + w)**n/w", {"w": "1 m/s", "n": 1.0}, "to a power that is a parameter has no fixed unit"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "values", "message"), UNITS)
+def test_units(text: str, values: dict[str, float | str], message: str | None) -> None:
+    counts = "path"
+    if message is None:
+        assert FromExpression(text, values, counts=counts).coefficient(0.0) >= 0
+        return
+    with pytest.raises(InputError) as caught:
+        FromExpression(text, values, counts=counts)
+    assert message in str(caught.value)
+
+
+def test_units_become_si() -> None:
+    law = FromExpression("0.3 + 0.5/(1 + v/w)", {"w": "1 mm/s"})
+    assert law.numbers() == {"w": 1e-3}
+    assert law.rate_scales == (1e-3,)
+
+
+def test_static_friction_at_rest() -> None:
+    law = FromExpression("0.4 + 0.1*v", static=0.6)
+    assert law.static_excess == pytest.approx(0.2, rel=1e-15)
+    assert float(law.static_coefficient(0.0)) == pytest.approx(0.6, rel=1e-15)
+    assert law.range() == (0.4, math.inf)
+    assert law.variation == pytest.approx(1.0, rel=1e-12)
+    with pytest.raises(InputError, match=r"static must be at least the expression at v = 0, got 0.3 < 0.4"):
+        FromExpression("0.4 + 0.1*v", static=0.3)
+    with pytest.raises(InputError, match="static needs an expression without u"):
+        FromExpression("0.4 + 0.1*sin(u)", static=0.6)
+
+
+def test_path_or_net() -> None:
+    assert FromExpression("0.5 + 0.01*u", counts="path").counts == "path"
+    with pytest.raises(InputError, match=r"counts 'nett' is unknown; did you mean 'net'\?"):
+        FromExpression("0.5", counts="nett")  # type: ignore[arg-type]
