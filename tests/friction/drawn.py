@@ -27,7 +27,11 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-PAIRS = [("linear-slip-weakening", "hyperbolic-rate"), ("sinusoidal-slip", "piecewise-linear-rate"), ("table", "exponential-stribeck")]
+PAIRS = [
+    ("linear-slip-weakening", "hyperbolic-rate"),
+    ("sinusoidal-slip", "piecewise-linear-rate"),
+    ("table", "exponential-stribeck"),
+]
 
 
 @st.composite

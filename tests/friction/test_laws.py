@@ -153,8 +153,13 @@ CLOSED: dict[str, tuple[dict[str, Any], float, float, float]] = {
         0.45 + 0.2 / math.e,
     ),
     "power-stribeck": ({"static": 0.6, "dynamic": 0.4, "rate": 0.1, "exponent": 3}, 0.0, 0.2, 0.4 + 0.2 / 9),
-    "velocity-strengthening": ({"static": 0.6, "a": 0.01, "rate": 1e-6, "viscosity": 2.0}, 0.0, 1e-6, 0.6 + 0.01 * math.log(2) + 2e-6),
-}  # fmt: skip
+    "velocity-strengthening": (
+        {"static": 0.6, "a": 0.01, "rate": 1e-6, "viscosity": 2.0},
+        0.0,
+        1e-6,
+        0.6 + 0.01 * math.log(2) + 2e-6,
+    ),
+}
 
 
 @pytest.mark.parametrize("kind", CLOSED)
@@ -167,7 +172,9 @@ def test_what_a_composite_is_made_of() -> None:
     slip = LAWS["linear-slip-weakening"](0.7, 0.5, 0.4)
     rate = LAWS["hyperbolic-rate"](1.0, 0.5, 1.0)
     product, total = LAWS["product"](slip, rate), LAWS["sum"](slip, Coulomb(0.2, 0.1))
-    np.testing.assert_allclose(product.coefficient(SLIPS[:, None], RATES), slip.coefficient(SLIPS)[:, None] * rate.coefficient(0.0, RATES), rtol=1e-15)
+    np.testing.assert_allclose(
+        product.coefficient(SLIPS[:, None], RATES), slip.coefficient(SLIPS)[:, None] * rate.coefficient(0.0, RATES), rtol=1e-15
+    )
     assert float(total.static_coefficient(0.0)) == pytest.approx(0.9, rel=1e-15)
     assert float(total.coefficient(1.0, 2.0)) == pytest.approx(0.6, rel=1e-15)
     assert (product.counts, product.knots, product.knot_variable) == ("path", (0.4,), "slip")
@@ -175,11 +182,19 @@ def test_what_a_composite_is_made_of() -> None:
 
 
 BAD = [
-    ("sum", {"slip": "sinusoidal-slip", "rate": "sinusoidal-slip"}, "rate must be a law of rate only, but sinusoidal-slip depends on slip"),
-    ("sum", {"slip": "hyperbolic-rate", "rate": "hyperbolic-rate"}, "slip must be a law of slip only, but hyperbolic-rate depends on rate"),
+    (
+        "sum",
+        {"slip": "sinusoidal-slip", "rate": "sinusoidal-slip"},
+        "rate must be a law of rate only, but sinusoidal-slip depends on slip",
+    ),
+    (
+        "sum",
+        {"slip": "hyperbolic-rate", "rate": "hyperbolic-rate"},
+        "slip must be a law of slip only, but hyperbolic-rate depends on rate",
+    ),
     ("product", {"slip": "sinusoidal-slip", "rate": "coulomb"}, "coulomb steps from static to sliding friction"),
     ("sum", {"slip": "table", "rate": "piecewise-linear-rate"}, "only one part may be piecewise"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("kind", "parts", "message"), BAD)

@@ -20,7 +20,9 @@ points = st.lists(st.tuples(st.floats(0.01, 2.0), st.floats(0.0, 1.5)), min_size
 
 
 @given(points, st.booleans())
-def test_the_cubic_is_that_of_scipy_exact_at_points_and_monotone_between(drawn: list[tuple[float, float]], along_slip: bool) -> None:
+def test_the_cubic_is_that_of_scipy_exact_at_points_and_monotone_between(
+    drawn: list[tuple[float, float]], along_slip: bool
+) -> None:
     places = np.round(np.cumsum([step for step, _ in drawn]), 6)
     values = np.array([round(value, 6) for _, value in drawn])
     law = FromTable(**{"slip" if along_slip else "rate": places.tolist()}, friction=values.tolist())
@@ -45,7 +47,7 @@ BAD_POINTS: list[tuple[dict[str, Any], str]] = [
     ({"slip": [0, 1], "rate": [0, 1], "friction": [0.5, 0.4]}, "give either slip or rate, got both"),
     ({"slip": [0, 1, 2], "friction": [0.5, 0.4]}, "3 places but 2 friction coefficients"),
     ({"slip": [0], "friction": [0.5]}, "must have 2 to 10000 numbers, got 1"),
-    ({"slip": [0, 0], "friction": [0.5, 0.4]}, r"slip must ascend, but slip\[1\] = 0 follows 0"),
+    ({"slip": [0, 0], "friction": [0.5, 0.4]}, r"slip must ascend, but \[1\] = 0 follows 0"),
     ({"slip": [0, np.nan], "friction": [0.5, 0.4]}, r"slip\[1\] must be finite"),
     ({"slip": [-1, 1], "friction": [0.5, 0.4]}, r"slip\[0\] must be at least 0 where the path is counted"),
     ({"rate": [-1, 1], "friction": [0.5, 0.4]}, r"rate\[0\] must be at least 0"),

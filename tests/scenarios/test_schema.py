@@ -4,16 +4,19 @@ from dataclasses import MISSING, dataclass
 from typing import Any, ClassVar
 
 import pytest
+import tomli_w
 from hypothesis import given
 from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SpringBlock
 from stickslip.bodies import BODIES
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.fields import Part, fields_of
 from stickslip.quantities import quantities_of, quantity
 from stickslip.scenarios import templates
+from stickslip.scenarios.entries import describe, key_of
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.schema import quantities_in
+from stickslip.scenarios.schema import entries_in, quantities_in
 
 
 def values(kind: type) -> str:
@@ -21,10 +24,11 @@ def values(kind: type) -> str:
 
 
 def document(body: type, law: type) -> str:
-    return (
-        f'[body]\nkind = "{body.kind}"\n{values(body)}[friction]\nkind = "{law.kind}"\n{values(law)}'
-        "[initial]\nload = 1.0\n[run]\nduration = 2\n"
+    example = {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
+    friction = (
+        tomli_w.dumps({"friction": {"kind": law.kind} | example}) if example else f'[friction]\nkind = "{law.kind}"\n{values(law)}'
     )
+    return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n[run]\nduration = 2\n'
 
 
 @pytest.mark.parametrize("law", LAWS.values())
@@ -33,7 +37,7 @@ def test_every_body_with_every_law_is_read_and_written(body: type, law: type) ->
     scenario = read_scenario(document(body, law), "all")
     assert type(scenario.problem.body) is body
     assert type(scenario.problem.friction) is law
-    assert all(getattr(scenario.problem.friction, name) == 1.5 for name in quantities_of(law))
+    assert all(isinstance(getattr(scenario.problem.friction, name), float | None) for name in quantities_of(law))
     assert read_scenario(scenario.to_toml(), "again") == scenario
 
 
@@ -70,9 +74,25 @@ def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
     example = load_scenario(templates.STARTERS[name])
     assert scenario.problem == example.problem
     body = type(scenario.problem.body)
-    for table, kind in (("body", body), *(("friction", law) for law in LAWS.values()), ("loading", body), ("initial", body)):
+    for table, kind in (("body", body), ("friction", type(scenario.problem.friction)), ("loading", body), ("initial", body)):
         for key, (declared, _) in quantities_in(table, kind).items():
             assert any(line.lstrip("# ").startswith(f"{key} = ") and declared.meaning in line for line in text.splitlines())
+    assert all(f'kind = "{law}"' in text for law in LAWS)
+
+
+@pytest.mark.parametrize("name", templates.STARTERS)
+@pytest.mark.parametrize("law", LAWS.values())
+def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[FrictionLaw]) -> None:
+    text = templates.template(name, law.kind)
+    assert type(read_scenario(text, name).problem.friction) is law
+    for key, (declared, _) in entries_in("friction", law).items():
+        place = (f"{key} = ", f"[friction.{key}]")
+        assert any(line.lstrip("# ").startswith(place) for line in text.splitlines())
+        assert isinstance(declared, Part) or describe(declared) in text
+    with pytest.raises(InputError, match=r"^new: \[friction\] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'\?$"):
+        templates.template(name, "hyperbolic")
+    with pytest.raises(InputError, match=r"^new: a friction law is chosen for slab or block; fig6-slab has its own$"):
+        templates.template("fig6-slab", "coulomb")
 
 
 def test_bundled_templates_are_the_bundled_files() -> None:

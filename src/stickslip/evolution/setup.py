@@ -48,9 +48,7 @@ def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integer
 
 @lru_cache(maxsize=256)
 def _prepared(problem: Problem) -> tuple[Setup, at.Floats, at.Integers]:
-    law = problem.friction
-    if not has_inertia(problem) and law.depends_on_rate and law.depends_on_slip:
-        raise InputError(f"{type(law).__name__} depends on slip and on rate: a slab carries it only with a contact_mass so far")
+    check_carried(problem)
     par = _parameters(problem)
     branches, stick_to = _branches(problem)
     par[at.STICK_TO] = stick_to
@@ -58,6 +56,15 @@ def _prepared(problem: Problem) -> tuple[Setup, at.Floats, at.Integers]:
     for shared in setup:
         shared.flags.writeable = False
     return setup, *_start(problem)
+
+
+def check_carried(problem: Problem) -> None:
+    """Refuse what the engine cannot compute yet. Raises InputError."""
+    law, name = problem.friction, type(problem.friction).__name__
+    if not has_inertia(problem) and law.depends_on_rate and law.depends_on_slip:
+        raise InputError(f"{name} depends on slip and on slip rate: a slab carries it only with a contact_mass so far")
+    if len(law.pieces) > 1 and law.knot_variable == "rate":
+        raise InputError(f"{name} has kinks in slip rate, which no body carries so far: use a smooth law of the rate")
 
 
 def _branches(problem: Problem) -> tuple[at.Floats, float]:
@@ -136,16 +143,15 @@ def _pieces(theta: list[float], load: list[float], slope: list[float], jump: lis
 def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     """Addresses of the functions and constants of the law's pieces; shifts and offsets to their own references, and knots."""
     law, start = problem.friction, problem.law_slip
-    values = np.array([getattr(law, name) for name in law.parameters()])
     formulas = [compile_formula(tree, law.parameters()) for tree in law.trees()]
-    home = int(np.searchsorted(np.asarray(law.knots), start, side="right"))
+    home = int(law.piece_at(start))
     # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
     references = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
-    for row, formula, reference in zip(constants, formulas, references, strict=True):
-        _fill(formula, values, reference, row)
+    for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):
+        _fill(formula, np.array(law.piece_values(i)), references[i], row)
     static = float(law.static_coefficient(start))
-    at_reference = [float(piece(law, np.float64(x), np.float64(0.0))) for piece, x in zip(law.pieces, references, strict=True)]
+    at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
     jets = [formula.motion_jet if has_inertia(problem) else formula.rate_jet for formula in formulas]
     address = np.array([[formula.value for formula in formulas], jets], np.int64)

@@ -51,7 +51,7 @@ class Series:
         if self.ascending:
             for i, (one, following) in enumerate(pairwise(numbers)):
                 if not one < following:
-                    raise InputError(f"{owner}: {name} must ascend, but {name}[{i + 1}] = {following:g} follows {one:g}")
+                    raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}")
         return numbers
 
 

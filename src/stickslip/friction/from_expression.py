@@ -157,7 +157,7 @@ def FromExpression(  # noqa: N802 - reads as the law it makes
 
     Raises InputError: one line that says which part is wrong. Nothing is evaluated as Python.
     """
-    values = tuple(named_value(name, value, "ExpressionLaw") for name, value in (parameters or {}).items())
+    values = tuple(named_value(name, value, "ExpressionLaw:") for name, value in (parameters or {}).items())
     return ExpressionLaw(expression=expression, values=values, static=static, counts=counts)
 
 
@@ -168,4 +168,4 @@ def named_value(name: str, value: float | str, where: str) -> Named:
     try:
         return Named(name, *si_base(value))
     except InputError as error:
-        raise InputError(f"{where}: parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None
+        raise InputError(f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None

@@ -34,7 +34,7 @@ def read_entry(value: Any, entry: Quantity | Field, source: Source, table: str, 
     if isinstance(entry, Series):
         return _series(value, entry, source.file, place)
     if isinstance(entry, NamedNumbers):
-        return _named(value, source.file, f"[{table}.{key}]", place)
+        return _named(value, source.file, table, key)
     if isinstance(entry, Part):
         if not isinstance(value, dict):
             raise InputError(f"{source.file}: [{table}.{key}] must be a table, got {show(value)}")
@@ -51,7 +51,8 @@ def _series(value: Any, entry: Series, file: str, place: str) -> tuple[float, ..
     return entry.check(file, place, numbers)
 
 
-def _named(value: Any, file: str, table: str, place: str) -> tuple[Named, ...]:
+def _named(value: Any, file: str, owner: str, key: str) -> tuple[Named, ...]:
+    table = f"[{owner}.{key}]"
     if not isinstance(value, dict):
         raise InputError(f"{file}: {table} must be a table of names and values, got {show(value)}")
     for name, one in value.items():
@@ -59,7 +60,7 @@ def _named(value: Any, file: str, table: str, place: str) -> tuple[Named, ...]:
             raise InputError(f"{file}: {table} {show(name)} must be a number or a text with a unit, got {show(one)}")
         if isinstance(one, int) and abs(one) > 10**300:
             raise InputError(f"{file}: {table} {show(name)} must be a number, got a whole number beyond 1e300")
-    return tuple(named_value(name, one, f"{file}: {place}") for name, one in value.items())
+    return tuple(named_value(name, one, f"{file}: [{owner}]") for name, one in value.items())
 
 
 def describe(entry: Quantity | Field) -> str:

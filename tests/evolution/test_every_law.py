@@ -1,0 +1,52 @@
+"""Every registered law under every body that carries it, against scipy; what is not carried is refused in one line."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.evolution.setup import check_carried
+from stickslip.friction import LAWS, FrictionLaw
+from stickslip.reference.method_of_steps import method_of_steps
+from tests.friction.examples import example_law
+
+SLAB = ss.ElasticSlab(2800, 3500, 1e3, 1e8)
+BODIES: dict[str, Any] = {
+    "block": ss.SpringBlock(2.8e9, 3e10, 1e11),
+    "slab": SLAB,
+    "slab with mass": replace(SLAB, contact_mass=3e5),
+}
+
+
+@pytest.mark.parametrize("kind", LAWS)
+@pytest.mark.parametrize("body", BODIES)
+def test_law_under_body(kind: str, body: str) -> None:
+    law = example_law(kind)
+    problem = ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_excess=1e-4 * ss.Problem(BODIES[body], law, initial_excess=0.0).normal)
+    duration = 2.2 * (problem.body.period if body == "block" else SLAB.two_way_time)
+    try:
+        check_carried(problem)
+    except ss.InputError as refusal:
+        assert "\n" not in str(refusal)
+        with pytest.raises(ss.InputError):
+            ss.simulate(problem, duration)
+        return
+    run = ss.simulate(problem, duration, rtol=1e-11)
+    assert run.status.ok
+    energy = run.energy(np.linspace(0, duration, 23))
+    assert float(np.abs(energy.balance).max() / energy.heat[-1]) < 1e-8
+    if body == "slab" and law.depends_on_rate and kind not in ("coulomb", "hyperbolic-rate"):
+        return  # beyond the slow method; the balance has spoken
+    times = np.linspace(0.0, duration, 101)
+    theirs = method_of_steps(problem, duration, rtol=1e-10).slip(times)
+    assert np.ptp(theirs) > 0
+    assert run.slip(times) == pytest.approx(theirs, rel=0.0, abs=1e-6 * np.ptp(theirs))
+
+
+def test_laws_have_fields_to_read() -> None:
+    assert all(fields(law) for law in LAWS.values())
+    assert all(issubclass(law, FrictionLaw) for law in LAWS.values())
