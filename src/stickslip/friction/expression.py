@@ -209,6 +209,11 @@ _UFUNCS: dict[str, Callable[..., Any]] = (
 
 def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> Any:
     """The formula at slip u (m) and slip rate v (m/s), with the parameters' values by name: numbers, arrays or expressions."""
+    return evaluate_nodes(tree, numbers, u, v)[tree]
+
+
+def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> dict[Expression, Any]:
+    """As `evaluate`, with the values of all parts of the formula."""
     found: dict[Expression, Any] = {SLIP: u, RATE: v}
     for node in nodes_of(tree):
         if node.operation == "parameter":
@@ -217,7 +222,7 @@ def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> An
             found[node] = np.float64(node.value)
         elif node.arguments:
             found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
-    return found[tree]
+    return found
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:

@@ -73,7 +73,9 @@ class PiecewiseLaw(FrictionLaw):
         rows[:-1, 1:] = self.polynomials()
         flat = np.zeros_like(rows[:1])
         flat[0, :2] = places[0], values[0]
-        return np.concatenate((flat, rows)) if self._before else rows
+        rows = np.concatenate((flat, rows)) if self._before else rows
+        rows.flags.writeable = False
+        return rows
 
     @property
     def pieces(self) -> tuple[Formula, ...]:
