@@ -50,7 +50,7 @@ def _slab(case: Case, friction, tolerance: float) -> Runner:  # type: ignore[no-
         taylor.state[0] = problem.initial_slip
         return np.array(taylor.propagate_grid(times)[-1][:, 0] - problem.initial_slip)
 
-    return Runner(case, tolerance, run, slip, lambda: steps[0], lambda: math.nan)
+    return Runner(case, tolerance, run, slip, lambda: steps[0])
 
 
 def _block(case: Case, friction, tolerance: float) -> Runner:  # type: ignore[no-untyped-def]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.problems import Case, Floats
+from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.evolution import layout as at
 from stickslip.evolution.engine import advance
@@ -53,6 +53,6 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
         return solution().slip(times) - case.problem.initial_slip
 
     def arrest() -> float:
-        return float(solution().events.end.iloc[0]) if case.arrests else math.nan
+        return arrest_of(solution()) if case.arrests else math.nan
 
     return Runner(case, tolerance, run, slip, lambda: int(count[at.LENGTH]), arrest)

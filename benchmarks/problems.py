@@ -44,7 +44,7 @@ class Case:
     @cached_property
     def arrest(self) -> float:
         """Time (s) at which the slip ends, nan where that is no part of the task."""
-        return float(simulate(self.problem, self.duration, 1e-15).events.end.iloc[0]) if self.arrests else math.nan
+        return arrest_of(simulate(self.problem, self.duration, 1e-15)) if self.arrests else math.nan
 
     def error(self, slip: Floats, arrest: float = math.nan) -> float:
         """Largest error of the slip over time, relative to the total slip; or that of the arrest's time, if it is larger."""
@@ -53,6 +53,11 @@ class Case:
         if self.arrests:
             errors.append(abs(arrest / self.arrest - 1.0))
         return max(errors)
+
+
+def arrest_of(solution: ss.Solution) -> float:
+    """Time (s) at which the first slip ends: v = 0, whatever rate counts as an event."""
+    return float(solution.catalogue(event_rate=0.0).end.iloc[0])
 
 
 def _critical_slip(block: ss.SpringBlock, law: ss.friction.SinusoidalSlip) -> float:
