@@ -13,7 +13,7 @@ import numpy as np
 
 from benchmarks import ours
 from benchmarks.problems import Case
-from benchmarks.runner import Runner, Unavailable
+from benchmarks.runner import Runner, UnavailableError
 from stickslip.evolution import layout, workspace
 from stickslip.evolution.generate import SIGNATURES, FormulaWriter
 from stickslip.friction.expression import Expression
@@ -47,7 +47,7 @@ def library(formula: Expression, parameters: tuple[str, ...]) -> ctypes.CDLL:
     """Compile the C kernel for a law."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
-        raise Unavailable("no C compiler")
+        raise UnavailableError("no C compiler")
     folder = Path(tempfile.mkdtemp(prefix="stickslip-c-"))
     (folder / "law.h").write_text(header(FormulaWriter(formula, parameters)))
     target = folder / "taylor.so"

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from benchmarks.problems import ROUND, Case, Floats
-from benchmarks.runner import Runner, Unavailable
+from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
 from stickslip.friction import SinusoidalSlip
 
@@ -20,10 +20,10 @@ except ImportError:
 def runner(case: Case, tolerance: float) -> Runner:
     """The problem in heyoka. Its slip is evaluated in a second run, which is not timed."""
     if heyoka is None:
-        raise Unavailable("heyoka is not installed: pip install 'stickslip[bench]' (Linux only)")
+        raise UnavailableError("heyoka is not installed: pip install 'stickslip[bench]' (Linux only)")
     law = case.problem.friction
     if not isinstance(law, SinusoidalSlip):
-        raise Unavailable("heyoka_peer: slip laws only")
+        raise UnavailableError("slip laws only, here")
     friction = lambda u: law.mean + law.amplitude * heyoka.sin(law.wavenumber * u)  # noqa: E731 - heyoka's symbols, or numbers
     if isinstance(case.problem.body, ElasticSlab):
         return _slab(case, friction, tolerance)
@@ -33,7 +33,7 @@ def runner(case: Case, tolerance: float) -> Runner:
 def _slab(case: Case, friction, tolerance: float) -> Runner:  # type: ignore[no-untyped-def]
     problem, body = case.problem, case.problem.body
     if case.duration > ROUND or body.reflection != -1.0:
-        raise Unavailable("heyoka has no delays")
+        raise UnavailableError("heyoka has no delays")
     u = heyoka.make_vars("u")
     load = problem.load + body.impedance * problem.pull_rate / (0.5 * body.two_way_time) * heyoka.time
     motion = [(u, (load - body.normal_stress * friction(u)) / body.impedance)]

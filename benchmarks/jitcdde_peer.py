@@ -10,12 +10,11 @@ from __future__ import annotations
 import warnings
 from contextlib import chdir
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 
 from benchmarks.problems import Case, Floats
-from benchmarks.runner import Runner, Unavailable
+from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution.setup import inflow
 from stickslip.evolution.simulate import simulate
@@ -29,47 +28,46 @@ try:
 except ImportError:
     jitcdde = None
 
-ANCHORS = 3000
+ANCHORS = 3001
 """Points of the past: enough for its cubic pieces to be more exact than the steps that follow."""
 
 
 def runner(case: Case, tolerance: float) -> Runner:
     """The problem in JiTCDDE, from the end of the first round trip."""
     if jitcdde is None:
-        raise Unavailable("JiTCDDE is not installed: pip install 'stickslip[bench]'")
+        raise UnavailableError("JiTCDDE is not installed: pip install 'stickslip[bench]'")
     problem, body, law = case.problem, case.problem.body, case.problem.friction
     if not isinstance(body, ElasticSlab) or not isinstance(law, SinusoidalSlip) or case.start != body.two_way_time:
-        raise Unavailable("jitcdde_peer: slabs with a slip law that slide on beyond the first round trip")
+        raise UnavailableError("only slabs with a slip law that slide on beyond the first round trip")
     delay = body.two_way_time
     first_round = simulate(problem, delay, 1e-13)
-    past = np.linspace(0.0, delay, ANCHORS)
-    anchors = list(zip(past, first_round.slip(past), first_round.slip_rate(past, side="left"), strict=True))
-    solver = jitcdde.jitcdde([_slip_rate(case)], delays=[0.0, delay], max_delay=1.01 * delay, verbose=False)
+    past = np.sort([*np.linspace(0.0, delay, ANCHORS), 0.5 * delay * (1.0 - 1e-9)])  # the slip rate jumps at h/c
+    rates = np.append(first_round.slip_rate(past[:-1]), first_round.slip_rate(delay, side="left"))
+    anchors = list(zip(past, first_round.slip(past), rates, strict=True))
+    # max_delay: as long as the run, so that all of its history is kept for `slip`
+    solver = jitcdde.jitcdde([_slip_rate(case)], delays=[0.0, delay], max_delay=2.0 * case.duration, verbose=False)
     with TemporaryDirectory() as folder, chdir(folder):  # it runs setuptools, which would read our pyproject.toml
         solver.compile_C(extra_compile_args=["-O3", "-march=native", "-w"])
+        solver._tmpdir.cleanup()  # it is loaded by now; left to the end of the interpreter it warns
     ends = np.arange(2.0, 1.0 + round(case.duration / delay)) * delay
-    splines: list[Any] = []
 
     def before() -> None:
         solver.purge_past()
         for t, u, v in anchors:
             solver.add_past_point(t, [u], [v])
         solver.set_integration_parameters(rtol=tolerance, atol=tolerance, first_step=1e-3, max_step=1.0, min_step=1e-12)
+        solver.adjust_diff()
 
     def run() -> None:
-        splines.clear()
         for end in ends:
-            solver.adjust_diff()  # the slip rate jumps at every echo of the start
             solver.integrate(end)
-            splines.append(solver.get_state())
+            solver.adjust_diff()  # the slip rate jumps at every echo of the start
 
     def slip(times: Floats) -> Floats:
-        rounds = np.minimum(np.searchsorted(ends, times), len(ends) - 1)
-        values = np.array([splines[n].get_state(t)[0] for n, t in zip(rounds, times, strict=True)])
-        return np.asarray(values - problem.initial_slip)
+        return np.asarray(solver.get_state().get_state(times)[:, 0] - problem.initial_slip)
 
     def steps() -> int:
-        return sum(sum(anchor.time > end - delay for anchor in spline) for spline, end in zip(splines, ends, strict=True))
+        return sum(anchor.time > delay for anchor in solver.get_state())
 
     return Runner(case, tolerance, run, slip, steps, before=before)
 

@@ -33,7 +33,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     lent = (setup, state, count, scratch, store)  # the table holds their addresses only: they live as long as the runner
 
     def run() -> None:
-        setup, state, count, _, _ = lent
+        _, state, count, _, _ = lent
         state[:] = first_state
         count[:] = first_count
         code = kernel(table, last_row, last_theta, BUDGET)

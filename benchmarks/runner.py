@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from benchmarks.problems import Case, Floats
 
 
-class Unavailable(Exception):
+class UnavailableError(Exception):
     """The method cannot do this problem, or its package is not installed; the message says which."""
 
 
@@ -31,7 +31,6 @@ class Runner:
         self.before()
         self.run()
         return self.case.error(self.slip(self.case.times), self.arrest())
-
 
     def seconds(self) -> float:
         """Wall time of one run."""

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.problems import Case, Floats
-from benchmarks.runner import Runner, Unavailable
+from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution.setup import inflow
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
@@ -100,7 +100,7 @@ class Slab:
         law, S, Z = self.law, self.S, self.Z
         assert isinstance(law, HyperbolicRate)
         if start > 0.0:
-            raise Unavailable("scipy_peer: slip under a rate law after the first round trip")
+            raise UnavailableError("scipy_peer: slip under a rate law after the first round trip")
         slope, drop = (load(end) - load(start)) / (end - start), S * (law.static - law.dynamic)
         # from rest at beta = S muS the fast root of the contact equation is v = (q^2 - 1) / alpha
         v = (law.alpha * drop / Z - 1.0) / law.alpha

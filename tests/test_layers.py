@@ -48,9 +48,9 @@ def imports(path: Path) -> Iterator[str]:
                 yield from (alias.name for alias in node.names)
             elif isinstance(node, ast.ImportFrom) and node.module:
                 yield node.module
-            elif isinstance(node, ast.If) and "TYPE_CHECKING" not in ast.unparse(node.test):
-                yield from walk(node.body)
-            elif isinstance(node, ast.ClassDef | ast.Try | ast.With):
+            elif (isinstance(node, ast.If) and "TYPE_CHECKING" not in ast.unparse(node.test)) or isinstance(
+                node, ast.ClassDef | ast.Try | ast.With
+            ):
                 yield from walk(node.body)
 
     yield from walk(ast.parse(path.read_text()).body)

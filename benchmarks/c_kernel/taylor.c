@@ -18,7 +18,7 @@ typedef struct {
     const double *first_theta, *first_load, *first_slope, *first_jump;
     double *state, *real, *all_load, *all_rate;
     int64_t *count, *whole, branches, loads, capacity;
-    double load[TERMS], local[TERMS], seen[TERMS], jet[TERMS], powers[TERMS], k[12], value[3];
+    double load[TERMS], local[TERMS], seen[TERMS], jet[TERMS], powers[TERMS], k[12], value[4];
 } Run;
 
 static double reciprocal[2 * TERMS], bernstein[TERMS][TERMS], low_bernstein[LOW][LOW];
@@ -156,13 +156,14 @@ static double first_descent(const double *c) {
 
 static void friction_at(Run *r, double slip, double rate) {
     value(r->c, slip + r->shift[0], rate, r->value);
-    r->value[0] = r->par[NORMAL] * (r->value[0] + r->offset[0]);
+    r->value[3] = r->value[0] + r->offset[0];
+    r->value[0] = r->par[NORMAL] * r->value[3];
     r->value[1] *= r->par[NORMAL];
 }
 
 static double rest_limit(Run *r) {
     friction_at(r, r->state[LAW_SLIP], 0.0);
-    return r->value[0] + r->par[NORMAL] * r->par[STATIC_EXCESS] + r->par[STICK_TO];
+    return r->par[NORMAL] * (r->value[3] + r->par[STATIC_EXCESS]) + r->par[STICK_TO];
 }
 
 static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par[REFERENCE]; }
@@ -364,7 +365,6 @@ static void keep_step(Run *r, double *restrict rate, double length, double to) {
         for (int k = 1; k < TERMS; k++) load[k] -= straight * reciprocal[k] * rate[k - 1];
         r->load[0] -= r->par[STIFFNESS] * direction * grown;
     }
-    r->state[LAST_STEP] = fabs(speed + 0.5 * bend);
     if (direction < 0)
         for (int k = 0; k < TERMS; k++) rate[k] = -rate[k];
     record(r, to);
@@ -391,6 +391,7 @@ static void slip(Run *r, double xi_to) {
     else if (r->count[EDGE] != 0 && !r->count[HAS_INERTIA]) note_jump(r, r->count[MODE] * r->jet[0], FOLD);
 
     double limit = left / guess, length = usable_length(r->jet, r->par[TOLERANCE]), end = NONE;
+    r->state[LAST_STEP] = length * fabs(r->k[K_SPEED] + 0.5 * r->k[K_BEND] * fmin(length, 1.0));
     int reached = length >= limit;
     if (reached) length = limit;
     else if (length > 0.5 * limit) length = 0.5 * limit;

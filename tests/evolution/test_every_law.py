@@ -27,25 +27,44 @@ def example_law(kind: str) -> FrictionLaw:
     """The law as its own example has it, read the way a scenario is."""
     tables = {
         "body": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
-        "friction": {"kind": kind} | dict(LAWS[kind].example),
+        "friction": {"kind": kind} | {k.replace("values", "parameters"): v for k, v in LAWS[kind].example.items()},
         "initial": {"excess": 0.0},
         "run": {"duration": 1.0},
     }
     return read_scenario(tomli_w.dumps(tables), "example").problem.friction
 
 
+def carried(problem: ss.Problem) -> bool:
+    """Whether the engine takes the problem: not yet kinks in slip rate, nor slip and rate together on a massless slab."""
+    try:
+        check_carried(problem)
+    except ss.InputError:
+        return False
+    return True
+
+
+def test_most_laws_are_carried_everywhere() -> None:
+    refused = [
+        (kind, name)
+        for kind in LAWS
+        for name, body in BODIES.items()
+        if not carried(ss.Problem(body, example_law(kind), initial_excess=0.0))
+    ]
+    kinked = [("piecewise-linear-rate", name) for name in BODIES]
+    assert sorted(refused) == sorted([*kinked, ("sum", "slab"), ("product", "slab")])
+
+
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_law_under_body(kind: str, body: str) -> None:
     law = example_law(kind)
+    if isinstance(law, ss.friction.VelocityStrengthening):
+        law = replace(law, rate=0.1)  # with its own 1e-6 m/s a contact with mass is stiff, for which there is no method yet
     normal = 1e11 if body == "block" else 1e8
     problem = ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_excess=1e-4 * normal)
-    duration = 2.2 * (problem.body.period if body == "block" else SLAB.two_way_time)
-    try:
-        check_carried(problem)
-    except ss.InputError as refusal:
-        assert "\n" not in str(refusal)
-        with pytest.raises(ss.InputError):
+    duration = 2.2 * (problem.body.period if isinstance(problem.body, ss.SpringBlock) else SLAB.two_way_time)
+    if not carried(problem):
+        with pytest.raises(ss.InputError, match=r"^[^\n]*so far[^\n]*$"):
             ss.simulate(problem, duration)
         return
     run = ss.simulate(problem, duration, rtol=1e-11)

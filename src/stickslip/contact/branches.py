@@ -17,6 +17,7 @@ from stickslip.errors import InputError
 from stickslip.problem import Problem
 
 _POINTS_PER_DECADE = 64
+_EVEN_POINTS, _EVEN_REACH = 2001, 10.0
 _BELOW, _ABOVE = 1e-8, 1e4
 """How far the search for folds reaches beyond the slowest and the fastest scale of the contact."""
 
@@ -66,7 +67,8 @@ def _search_grid(g: Resistance) -> NDArray[np.float64]:
     """0 and slip rates in geometric progression over every scale, refined where g' nearly touches zero between two of them."""
     low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
-    rates = np.concatenate(([0.0], np.logspace(low, high, count)))
+    even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)  # a law that waves in v does so up to its fastest scale
+    rates = np.unique(np.concatenate((even, np.logspace(low, high, count))))
     for _ in range(3):
         slope = g.slope(rates)
         left, middle, right = slope[:-2], slope[1:-1], slope[2:]

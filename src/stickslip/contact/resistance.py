@@ -14,7 +14,6 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.difference import difference
 from stickslip.friction.expression import Expression
 from stickslip.problem import Problem
-from stickslip.quantities import quantities_of
 
 
 @dataclass(frozen=True)
@@ -29,16 +28,6 @@ class Resistance:
     impedance: float
     normal: float
     law_slip: float
-
-    @cached_property
-    def tree(self) -> Expression:
-        """The piece of the law's formula that holds at this slip."""
-        return self.law.trees()[int(np.searchsorted(np.asarray(self.law.knots), self.law_slip, side="right"))]
-
-    @cached_property
-    def parameters(self) -> dict[str, float]:
-        """The law's numbers by name."""
-        return {name: getattr(self.law, name) for name in self.law.parameters()}
 
     @property
     def strength(self) -> float:
@@ -56,8 +45,23 @@ class Resistance:
         Near-equal frictions are not subtracted: the excess keeps its digits down to s = 0.
         """
         rate = np.asarray(rate, float)
-        step, slope = difference(self.tree, self.parameters, self.law_slip, 0.0, rate)
+        step, slope = np.empty(rate.shape), np.empty(rate.shape)
+        piece = self.law.piece_at(self.law_slip, rate)
+        first = int(self.law.piece_at(self.law_slip))
+        for i in np.unique(piece).tolist():
+            chosen = piece == i
+            own_step, slope[chosen] = difference(self.trees[i], self.law.numbers(i), self.law_slip, 0.0, rate[chosen])
+            step[chosen] = own_step + (self._at_rest(i) - self._at_rest(first) if i != first else 0.0)
         return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+
+    @cached_property
+    def trees(self) -> tuple[Expression, ...]:
+        """The law's formulas."""
+        return self.law.trees()
+
+    def _at_rest(self, piece: int) -> float:
+        """What the formula of a piece gives at s = 0, even where the piece holds only at higher rates."""
+        return float(self.law.piece_coefficient(piece, self.law_slip, 0.0))
 
     def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
         """g(s) - S mu_static (Pa); see `excess_and_slope`."""
@@ -69,15 +73,8 @@ class Resistance:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Slip rates (m/s) at which things happen: S (range of mu)/Z, and the law's numbers that are rates or their inverses."""
-        low, high = self.law.range()
-        found = [self.normal * (high - low) / self.impedance]
-        for name, declared in quantities_of(type(self.law)).items():
-            size = abs(self.parameters[name])
-            if declared.unit == "m/s":
-                found.append(size)
-            elif declared.unit == "s/m" and size:
-                found.append(1.0 / size)
+        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own."""
+        found = (self.normal * self.law.variation / self.impedance, *self.law.rate_scales)
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 
     def fastest(self, excess: float) -> float:

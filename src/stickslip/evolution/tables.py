@@ -23,10 +23,9 @@ MAXIMA_PER_PIECE = 32
 
 def default_event_rate(problem: Problem) -> float:
     """1e-6 S (range of mu) / Z, m/s; for the block sqrt(K m) stands for Z."""
-    low, high = problem.friction.range()
     body = problem.body
     resistance = body.impedance if isinstance(body, ElasticSlab) else float(np.sqrt(body.stiffness * body.mass))
-    return 1e-6 * problem.normal * (max(high, problem.strength / problem.normal) - low) / resistance
+    return 1e-6 * problem.normal * problem.friction.variation / resistance
 
 
 @kernel

@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, ClassVar, Literal
 
@@ -19,6 +20,26 @@ from stickslip.quantities import Quantity, quantities_of
 
 Formula = Callable[[Any, Any, Any], Any]
 """mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s)."""
+
+
+@lru_cache(maxsize=256)
+def _trees(
+    pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: tuple[tuple[str, float], ...]
+) -> tuple[Expression, ...]:
+    """The formulas as trees: made once for all laws that differ in the values of their parameters only."""
+    symbols = SimpleNamespace(**({name: Parameter(name) for name in parameters} | dict(literals)))
+    made = {formula: as_expression(formula(symbols, SLIP, RATE)) for formula in dict.fromkeys(pieces)}
+    return tuple(made[formula] for formula in pieces)
+
+
+@lru_cache(maxsize=256)
+def _contain(
+    pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: tuple[tuple[str, float], ...], variable: str
+) -> bool:
+    """Whether one of the trees contains the variable, "slip" or "rate"."""
+    return any(
+        depends_on(tree, SLIP if variable == "slip" else RATE) for tree in dict.fromkeys(_trees(pieces, parameters, literals))
+    )
 
 
 @dataclass(frozen=True)
@@ -136,10 +157,7 @@ class FrictionLaw(ABC):
 
     def trees(self) -> tuple[Expression, ...]:
         """The formulas of `pieces` as expression trees in SLIP, RATE and parameters."""
-        symbols = SimpleNamespace(**({name: Parameter(name) for name in self.parameters()} | self.literals()))
-        pieces = self.pieces
-        made = {formula: as_expression(formula(symbols, SLIP, RATE)) for formula in dict.fromkeys(pieces)}
-        return tuple(made[formula] for formula in pieces)
+        return _trees(self.pieces, self.parameters(), tuple(self.literals().items()))
 
     @property
     def depends_on_slip(self) -> bool:
@@ -153,7 +171,7 @@ class FrictionLaw(ABC):
 
     def _depends_on(self, variable: Expression) -> bool:
         knotted = len(self.pieces) > 1 and self.knot_variable == variable.operation
-        return knotted or any(depends_on(tree, variable) for tree in set(self.trees()))
+        return knotted or _contain(self.pieces, self.parameters(), tuple(self.literals().items()), variable.operation)
 
     @property
     def variation(self) -> float:

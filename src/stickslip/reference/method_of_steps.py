@@ -96,23 +96,25 @@ class _Stepper:
         self.drag = body.impedance if isinstance(body, ElasticSlab) else body.damping
         self.mass = body.contact_mass if isinstance(body, ElasticSlab) else body.mass
         self.normal, self.strength = self.problem.normal, self.problem.strength
-        self.numbers = {name: getattr(law, name) for name in law.parameters()}
         self.trees, self.knots = law.trees(), law.knots
+        self.numbers = [law.numbers(i) for i in range(len(law.pieces))]
         self.hyperbolic = self.mass == 0.0 and law.kind == "hyperbolic-rate"
         if self.mass == 0.0 and law.depends_on_rate and law.kind not in ("hyperbolic-rate", "coulomb"):
             raise InputError(f"method_of_steps: cannot solve {type(law).__name__} on a contact without mass")
         self.path = law.counts == "path"
-        self.part = int(np.searchsorted(self.knots, self.problem.law_slip, side="right"))
-        self.offsets = [
-            float(f(law, self.problem.law_slip, 0.0)) - float(law.coefficient(self.problem.law_slip)) for f in law.pieces
-        ]
+        if len(law.pieces) > 1 and law.knot_variable == "rate":
+            raise InputError(f"method_of_steps: does not know kinks in slip rate, as {type(law).__name__} has them")
+        start = self.problem.law_slip
+        self.part = int(law.piece_at(start))
+        here = float(law.coefficient(start))
+        self.offsets = [float(law.piece_coefficient(i, start, 0.0)) - here for i in range(len(law.pieces))]
         self.offsets[self.part] = 0.0
 
     # ---- friction and forces: all as differences from the start ---------------------------------------------------------------
 
     def friction(self, walked: float, rate: float) -> float:
         """S [mu(law slip, rate) - mu(law slip at the start, 0)]."""
-        step, _ = difference(self.trees[self.part], self.numbers, self.problem.law_slip, walked, rate)
+        step, _ = difference(self.trees[self.part], self.numbers[self.part], self.problem.law_slip, walked, rate)
         return self.normal * (float(step) + self.offsets[self.part])
 
     def pull(self, sense: int, load: float) -> float:
