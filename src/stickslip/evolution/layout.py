@@ -117,24 +117,6 @@ class Store(NamedTuple):
         return self.real[:, S_LAW_SLIP]
 
 
-class Work(NamedTuple):
-    """Scratch space, and the piece of load being worked on: the rows of one array."""
-
-    load: Floats  # of the whole piece, in xi
-    local: Floats  # of the step at hand, in eta on [0, 1]
-    jet: Floats
-    rate: Floats
-    gap: Floats
-    k: Floats
-    value: Floats
-    bernstein: Floats
-    kept_load: Floats  # the piece that goes on behind a fold
-    kept: Floats
-
-
-WORK_ROWS = len(Work._fields)
-
-
 def new_store(capacity: int) -> Store:
     """An empty history with room for so many pieces."""
     return Store(
