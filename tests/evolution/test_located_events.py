@@ -40,7 +40,7 @@ def test_arrest_of_a_coulomb_block() -> None:
 
 
 def test_folds_of_the_dead_load_loop() -> None:
-    """The load rises by 2.6 Z per h/c... linear in time: it passes S muS on its way up and the lower fold on its way down."""
+    """The load rises and falls linearly in time: it passes S muS on its way up and the lower fold on its way down."""
     pull, slope = 2.6, IMPEDANCE * 2.6 / (ROUND / 2)
     slab = replace(SLAB, driver_impedance=0.0)
     run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=pull, initial_load=60e6), 6.0)
@@ -85,3 +85,14 @@ def test_echoes_come_back_at_the_same_phase() -> None:
     for row in range(1, int(store.row[-1])):
         here, before = (set(store.theta_from[store.row == n]) for n in (row, row - 1))
         assert before <= here
+
+
+@pytest.mark.parametrize("rtol", [1e-10, 1e-12, 1e-14])
+def test_micro_events_just_above_critical_end_at_their_fold_at_any_tolerance(rtol: float) -> None:
+    """The second generation at alpha_c + 1e-6 lasts 10 to 15 microseconds: steps towards its folds must not shrink for ever."""
+    law = replace(RATE_LAW, alpha=IMPEDANCE / (NORMAL * 0.5) + 1e-6)
+    run = ss.simulate(ss.Problem(SLAB, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0), 93_900.0, rtol=rtol)
+    assert run.status.name == "finished"
+    second = run.shocks.iloc[2:4]
+    assert list(second.cause) == ["echo", "fold"]
+    assert second.rate_before.iloc[1] == pytest.approx(1.30153e-5, rel=1e-5, abs=0.0)

@@ -19,6 +19,7 @@ from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.workspace import DEGREE, EXIT, Run
 
 LONGEST_GUESS = 2.0
+LAST_TO_FOLD = 1e-4
 
 
 @inlined
@@ -116,6 +117,20 @@ def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
 
 
 @inlined
+def straight_to_fold(run: Run) -> None:
+    """The last bit of the way to a fold, on which the rate is a straight line of the root of time: its series would be all rounding.
+
+    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
+    """
+    branch = run.counts[at.BRANCH]
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    fold = low if run.jet[0] - low < high - run.jet[0] else high
+    for k in range(2, at.TERMS):
+        run.jet[k] = 0.0
+    run.jet[1] = fold - run.jet[0]
+
+
+@inlined
 def slip(run: Run, xi_to: float) -> None:
     """Slip for one Taylor step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
@@ -124,7 +139,12 @@ def slip(run: Run, xi_to: float) -> None:
     if done:
         return
     guess = first_guess(run, target - run.state[at.XI])
+    at_last = run.counts[at.AT_FOLD] == 1 and target - run.state[at.XI] < LAST_TO_FOLD
+    if at_last:
+        guess = target - run.state[at.XI]
     series(run, guess)
+    if at_last:
+        straight_to_fold(run)
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)
