@@ -118,7 +118,7 @@ def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
 
 @inlined
 def straight_to_fold(run: Run) -> None:
-    """The last bit of the way to a fold, on which the rate is a straight line of the root of time: its series would be all rounding.
+    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
 
     What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
     """
