@@ -96,3 +96,20 @@ def test_micro_events_just_above_critical_end_at_their_fold_at_any_tolerance(rto
     second = run.shocks.iloc[2:4]
     assert list(second.cause) == ["echo", "fold"]
     assert second.rate_before.iloc[1] == pytest.approx(1.30153e-5, rel=1e-5, abs=0.0)
+
+
+def test_maximal_rule_takes_up_slip_at_the_fold_under_a_smooth_load() -> None:
+    """There g turns: v - v1 starts as the root of time. Contact equation and energy balance hold all the way."""
+    slab = replace(SLAB, driver_impedance=0.0)
+    problem = ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6, selection="maximal")
+    run = ss.simulate(problem, 12.0)
+    assert list(run.shocks.cause) == ["fold", "fold", "echo", "echo", "echo"]
+    q = math.sqrt(1.0 / (IMPEDANCE / (NORMAL * 0.5)))
+    onset = (30e6 + IMPEDANCE * (2 * q - 1) - 60e6) / (IMPEDANCE * 2.6 / (ROUND / 2))
+    assert run.shocks.time.iloc[0] == pytest.approx(onset, rel=1e-12, abs=0.0)
+    times = np.concatenate([np.linspace(0.0, 12.0, 2001), onset + 10.0 ** np.arange(-12, 0)])
+    rate = run.slip_rate(times)
+    assert np.all(rate[:-12] >= 0.0)
+    by_law = IMPEDANCE * rate + NORMAL * RATE_LAW.coefficient(0.0, rate)
+    assert by_law[rate > 0] == pytest.approx(run.load(times)[rate > 0], rel=1e-11, abs=0.0)
+    assert float(np.abs(run.energy([6.0, 12.0]).balance).max() / run.energy(12.0).heat[0]) < 1e-12

@@ -146,7 +146,8 @@ def xi_at(run: Run, theta: float) -> float:
     """Where in the present piece the offset theta lies."""
     rest = theta - run.state[at.THETA_FROM]
     root = math.sqrt(max(run.state[at.SPEED] * run.state[at.SPEED] + 4.0 * run.state[at.BEND] * rest, 0.0))
-    return 2.0 * rest / (run.state[at.SPEED] + root)
+    pace = run.state[at.SPEED] + root
+    return 2.0 * rest / pace if pace > 0.0 else 0.0
 
 
 @kernel
@@ -185,7 +186,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 slip(run, xi_to)
             if not math.isfinite(run.state[at.RATE_NOW]):
                 return at.FAILED
-        elif run.counts[at.AT_FOLD] == 1:
+        elif run.counts[at.AT_FOLD] != 0:
             leave_fold_piece(run)
         elif is_last:
             return at.LOCKED if locked else at.FINISHED

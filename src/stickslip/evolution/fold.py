@@ -12,6 +12,10 @@ from stickslip.evolution.workspace import Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
+APPROACHING, DEPARTING = 1, 2
+AT_THE_FOLD = 1e-14
+DEPARTURE = 1e-10
+"""Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
 
 
 @inlined
@@ -42,6 +46,14 @@ def share_described(c: Floats) -> float:
 
 
 @inlined
+def set_aside(run: Run, width: float) -> None:
+    """Keep the present piece of load, to be taken up again `width` further."""
+    copy(run.load, run.kept_load, at.TERMS)
+    copy(run.state, run.kept, at.STATES)
+    run.kept[at.XI] = run.state[at.XI] + width
+
+
+@inlined
 def approach_fold(run: Run, width: float) -> float:
     """Prepare the way to a fold at distance `width`: s goes as the square root of the time left, so that becomes the variable.
 
@@ -52,9 +64,7 @@ def approach_fold(run: Run, width: float) -> float:
     share = share_described(backwards)
     if share < 1.0:
         return (1.0 - share) * width
-    copy(run.load, run.kept_load, at.TERMS)
-    copy(run.state, run.kept, at.STATES)
-    run.kept[at.XI] = run.state[at.XI] + width
+    set_aside(run, width)
     theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
     fill(squared, 0.0)
     for k in range((at.TERMS + 1) // 2):
@@ -63,18 +73,51 @@ def approach_fold(run: Run, width: float) -> float:
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
     note_degree(run)
-    run.counts[at.AT_FOLD] = 1
+    run.counts[at.AT_FOLD] = APPROACHING
     return 0.0
 
 
 @inlined
+def starts_at_fold(run: Run) -> bool:
+    """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
+    branch = run.counts[at.BRANCH]
+    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or run.rate_from[branch] == 0.0:
+        return False
+    level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
+    return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
+
+
+@inlined
+def depart_from_fold(run: Run, left: float) -> None:
+    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
+    width, squared, forwards = DEPARTURE * left, run.spare, run.part
+    if run.state[at.XI] > 0.0:
+        run.counts[at.ARRIVING] = at.NO_CAUSE
+    restrict(run.load, run.state[at.XI], width, forwards)
+    set_aside(run, width)
+    fill(squared, 0.0)
+    for k in range((at.TERMS + 1) // 2):
+        squared[2 * k] = forwards[k]
+    copy(squared, run.load, at.TERMS)
+    theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
+    run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
+    run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 0.0, theta_to - theta_from, 0.0
+    note_degree(run)
+    run.counts[at.AT_FOLD] = DEPARTING
+
+
+@inlined
 def leave_fold_piece(run: Run) -> None:
-    """The fold is reached: take up the piece of load where it was left, and jump."""
+    """The piece next to a fold is done: take up the piece of load where it was left, and jump if the fold is reached."""
     state = run.state
+    if run.counts[at.AT_FOLD] == DEPARTING:  # the next series reaches about as far as the fold is away
+        state[at.LAST_STEP] = theta_at(run, 1.0) - theta_at(run, 0.0)
     rate, slipped, law_slip, last = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP]
     copy(run.kept, run.state, at.STATES)
     state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP] = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
     note_degree(run)
+    reached = run.counts[at.AT_FOLD] == APPROACHING
     run.counts[at.AT_FOLD] = 0
-    end_branch(run)
+    if reached:
+        end_branch(run)

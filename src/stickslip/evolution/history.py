@@ -94,7 +94,8 @@ class History:
         """Place in [0, 1] of a time `local` s after the start of a piece."""
         speed, bend = self.store.speed[piece], self.store.bend[piece]
         root = np.sqrt(np.maximum(speed * speed + 4.0 * bend * local, 0.0))
-        return np.clip(2.0 * local / (speed + root), 0.0, 1.0)
+        pace = speed + root  # zero where a piece starts at a fold, and only at its very start
+        return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
 
     # ---- values at moments --------------------------------------------------------------------------------------------------
 

@@ -10,9 +10,27 @@ import math
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, rate_on_branch, towards
 from stickslip.evolution.compiled import ahead, call_jet, inlined
-from stickslip.evolution.fold import SHORTEST_FOLD, approach_fold, ends_at_fold
+from stickslip.evolution.fold import (
+    APPROACHING,
+    DEPARTING,
+    SHORTEST_FOLD,
+    approach_fold,
+    depart_from_fold,
+    ends_at_fold,
+    starts_at_fold,
+)
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, RECIPROCAL, first_descent, integral, magnitude, powers_of, restrict_low, total
+from stickslip.evolution.polynomial import (
+    NONE,
+    RECIPROCAL,
+    fill,
+    first_descent,
+    integral,
+    magnitude,
+    powers_of,
+    restrict_low,
+    total,
+)
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
@@ -131,20 +149,34 @@ def straight_to_fold(run: Run) -> None:
 
 
 @inlined
+def straight_from_fold(run: Run) -> None:
+    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
+    fold = run.rate_from[run.counts[at.BRANCH]]
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]), fold)
+    fill(run.jet, 0.0)
+    run.jet[0], run.jet[1] = fold, reached - fold
+
+
+@inlined
 def slip(run: Run, xi_to: float) -> None:
     """Slip for one Taylor step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
     if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
         target, leaves, done = end_of_branch(run, xi_to)
+        if not done and starts_at_fold(run):
+            depart_from_fold(run, target - run.state[at.XI])
+            return
     if done:
         return
     guess = first_guess(run, target - run.state[at.XI])
-    at_last = run.counts[at.AT_FOLD] == 1 and target - run.state[at.XI] < LAST_TO_FOLD
+    at_last = run.counts[at.AT_FOLD] == APPROACHING and target - run.state[at.XI] < LAST_TO_FOLD
     if at_last:
         guess = target - run.state[at.XI]
     series(run, guess)
     if at_last:
         straight_to_fold(run)
+    elif run.counts[at.AT_FOLD] == DEPARTING:
+        straight_from_fold(run)
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)

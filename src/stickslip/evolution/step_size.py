@@ -9,6 +9,7 @@ from stickslip.evolution.layout import TERMS, Floats
 
 UNITS = 2.0**52
 BIAS = 1023.0
+FAR_FROM_GUESS = 0.2
 
 
 @inlined
@@ -28,8 +29,23 @@ def quick_exp2(x: float) -> float:
 
 @inlined
 def usable_length(jet: Floats, tolerance: float) -> float:
-    """Longest step (in units of the guess) whose last two terms stay below the tolerance, relative to the rate over the step."""
-    size = max(abs(jet[0]), 0.5 * abs(jet[1]), 0.25 * abs(jet[2]), 0.125 * abs(jet[3]))
+    """Longest step (in units of the guess) whose last two terms stay below the tolerance, relative to the rate over the step.
+
+    The guess is usually twice the step. Where it is much longer (a first step, the way from a fold) the rate's size over the
+    step is not that over the guess, which may be larger by orders of magnitude: then it is looked at again.
+    """
+    length = length_at(jet, tolerance, 0.5)
+    if length < FAR_FROM_GUESS:
+        for _ in range(3):
+            length = length_at(jet, tolerance, length)
+    return length
+
+
+@inlined
+def length_at(jet: Floats, tolerance: float, expected: float) -> float:
+    """The usable length if the rate is as large as it is over a step of the expected length."""
+    slow = max(abs(jet[0]), expected * abs(jet[1]))
+    size = max(slow, expected * expected * max(abs(jet[2]), expected * abs(jet[3])))
     n = TERMS - 1
     if jet[n] == 0.0 and jet[n - 1] == 0.0:
         return math.inf
