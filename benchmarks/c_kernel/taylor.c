@@ -321,13 +321,21 @@ static double quick_exp2(double x) {
     return power * (1.0 + part * (0.6565 + 0.3435 * part));
 }
 
-static double usable_length(const double *jet, double tolerance) {
-    double size = fmax(fmax(fabs(jet[0]), 0.5 * fabs(jet[1])), fmax(0.25 * fabs(jet[2]), 0.125 * fabs(jet[3])));
+static double length_at(const double *jet, double tolerance, double expected) {
+    double slow = fmax(fabs(jet[0]), expected * fabs(jet[1]));
+    double size = fmax(slow, expected * expected * fmax(fabs(jet[2]), expected * fabs(jet[3])));
     int n = TERMS - 1;
     if (jet[n] == 0.0 && jet[n - 1] == 0.0) return INFINITY;
     double allowed = quick_log2(tolerance * size);
     double last = allowed - quick_log2(jet[n]), before = allowed - quick_log2(jet[n - 1]);
     return quick_exp2(fmin(last * (1.0 / n), before * (1.0 / (n - 1))));
+}
+
+static double usable_length(const double *jet, double tolerance) {
+    double length = length_at(jet, tolerance, 0.5);
+    if (length < 0.2)
+        for (int i = 0; i < 3; i++) length = length_at(jet, tolerance, length);
+    return length;
 }
 
 static void series(Run *r, double guess) {
