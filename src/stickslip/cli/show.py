@@ -73,4 +73,12 @@ def progress_to(what: str) -> Iterator[Callable[..., Any]]:
         def report(*news: Any) -> None:
             bar.update(task, description=" ".join([what, *(clean(str(one)) for one in news)]))
 
+        if shown.is_terminal and not _is_compiled():
+            report("compiling the engine, which happens once and takes about half a minute")
         yield report
+
+
+def _is_compiled() -> bool:
+    from stickslip.evolution.compiled import CACHE  # with the compiler behind it, which is needed now anyway
+
+    return any(CACHE.glob("*/engine.advance*.nbi"))

@@ -71,7 +71,7 @@ class FrictionLaw(ABC):
 
         Every law has it, unless it says in `pieces` what it is made of.
         """
-        raise NotImplementedError
+        raise TypeError(f"{type(law).__name__} has neither a formula nor pieces")
 
     def __post_init__(self) -> None:
         check_fields(self)
