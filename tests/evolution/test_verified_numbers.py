@@ -192,3 +192,23 @@ def test_loop_of_figure_four_walked_by_a_dead_load() -> None:
 def test_second_event_by_rule(rule: str, years: str) -> None:
     run = ss.simulate(rate_law_slab(selection=rule), 480 * ss.YEAR)
     assert abs(run.events.start.iloc[1] / ss.YEAR - float(years)) < 0.005 + 1e-9
+
+
+def test_coulomb_slab_in_the_limit_of_no_pull() -> None:
+    """v = (muS - muD) S / Z for exactly R, then rest; slip 2 (muS - muD) S h / G; end stress S (2 muD - muS)."""
+    run = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), pull_rate=1e-14, initial_excess=0.0), 3 * ROUND)
+    event = run.catalogue(0.0).iloc[0]
+    assert event.end == ROUND
+    assert event.peak_rate == pytest.approx(0.5 * NORMAL / IMPEDANCE, rel=1e-12, abs=0.0)
+    assert event.slip == pytest.approx(2 * 0.5 * NORMAL * THICKNESS / MODULUS, rel=1e-12, abs=0.0)
+    assert float(run.traction(2.5 * ROUND)) == pytest.approx(NORMAL * (2 * 0.3 - 0.8), rel=1e-9, abs=0.0)
+
+
+def test_coulomb_block_in_the_limit_of_no_pull() -> None:
+    """Slip 2 (muS - muD) S / K in pi sqrt(m / K), at most at (muS - muD) S / sqrt(K m)."""
+    block = ss.SpringBlock(DENSITY * 1e9, MODULUS * 1e3, 1e14)
+    run = ss.simulate(ss.Problem(block, ss.friction.Coulomb(0.8, 0.3), pull_rate=1e-14, initial_excess=0.0), 20.0)
+    event = run.catalogue(0.0).iloc[0]
+    assert event.slip == pytest.approx(2 * 0.5 * 1e14 / block.stiffness, rel=1e-10, abs=0.0)
+    assert event.end - event.start == pytest.approx(math.pi * math.sqrt(block.mass / block.stiffness), rel=1e-10, abs=0.0)
+    assert event.peak_rate == pytest.approx(0.5 * 1e14 / math.sqrt(block.stiffness * block.mass), rel=1e-10, abs=0.0)
