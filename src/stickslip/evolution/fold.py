@@ -46,6 +46,14 @@ def share_described(c: Floats) -> float:
 
 
 @inlined
+def square_variable(c: Floats, out: Floats) -> None:
+    """p(y^2) from p, cut to the terms that there are."""
+    fill(out, 0.0)
+    for k in range((at.TERMS + 1) // 2):
+        out[2 * k] = c[k]
+
+
+@inlined
 def set_aside(run: Run, width: float) -> None:
     """Keep the present piece of load, to be taken up again `width` further."""
     copy(run.load, run.kept_load, at.TERMS)
@@ -66,9 +74,7 @@ def approach_fold(run: Run, width: float) -> float:
         return (1.0 - share) * width
     set_aside(run, width)
     theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
-    fill(squared, 0.0)
-    for k in range((at.TERMS + 1) // 2):
-        squared[2 * k] = backwards[k]
+    square_variable(backwards, squared)
     restrict(squared, 1.0, -1.0, run.load)
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
@@ -90,15 +96,12 @@ def starts_at_fold(run: Run) -> bool:
 @inlined
 def depart_from_fold(run: Run, left: float) -> None:
     """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
-    width, squared, forwards = DEPARTURE * left, run.spare, run.part
+    width, forwards = DEPARTURE * left, run.part
     if run.state[at.XI] > 0.0:
         run.counts[at.ARRIVING] = at.NO_CAUSE
     restrict(run.load, run.state[at.XI], width, forwards)
     set_aside(run, width)
-    fill(squared, 0.0)
-    for k in range((at.TERMS + 1) // 2):
-        squared[2 * k] = forwards[k]
-    copy(squared, run.load, at.TERMS)
+    square_variable(forwards, run.load)
     theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 0.0, theta_to - theta_from, 0.0

@@ -98,7 +98,7 @@ def _parameters(problem: Problem) -> at.Floats:
 
 
 SAFETY = 0.1
-"""Local tolerance per step as a share of rtol: leaves the error of a whole run near rtol (see tests/evolution/test_convergence)."""
+"""Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
 
 def inflow(problem: Problem) -> tuple[float, float]:

@@ -14,6 +14,8 @@ from stickslip.friction import FrictionLaw, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.problem import Problem
 from stickslip.quantities import Quantity
+from stickslip.reference.growth_rate import growth_rate
+from stickslip.reference.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
@@ -132,8 +134,8 @@ def _pulses(problem: Problem) -> list[Fact]:
     beyond, swing = problem.load - law.mean * problem.normal, abs(law.amplitude) * problem.normal
     if not (beyond > swing and law.wavenumber):
         return []
-    period = 2 * math.pi * body.impedance / (abs(law.wavenumber) * math.sqrt((beyond - swing) * (beyond + swing)))
-    return [Fact("pulse period", period, "s", "time between pulses of slip under the load of the start, until the first echo")]
+    train = PulseTrain(body.impedance, problem.load, problem.normal, law.mean, abs(law.amplitude), abs(law.wavenumber))
+    return [Fact("pulse period", train.period, "s", "time between pulses under the load of the start, until the first echo")]
 
 
 def loading_rate(problem: Problem) -> float:
@@ -190,16 +192,8 @@ def _stability(problem: Problem) -> str:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
         return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
-    return f"statically unstable: alpha_w h = {number:.6g} > 1{_slab_growth(number, body)}"
-
-
-def _slab_growth(number: float, body: ElasticSlab) -> str:
-    """Growth rate lambda: lambda coth(lambda h/c) = c alpha_w, by Newton's method on y coth y = alpha_w h."""
-    y = number
-    for _ in range(60):
-        coth = 1.0 / math.tanh(y)
-        y -= (y * coth - number) / (coth + y * (1.0 - coth * coth))
-    return f"; a small disturbance grows at {2.0 * y / body.two_way_time:.6g} /s"
+    rate = growth_rate(body.wave_speed, body.thickness, body.shear_modulus, problem.normal, -by_slip)
+    return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
 
 
 def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
