@@ -11,9 +11,14 @@ import numpy as np
 from stickslip.bodies import Body, ElasticSlab
 from stickslip.errors import InputError, nearest
 from stickslip.friction import FrictionLaw
-from stickslip.quantities import check_quantities, quantity
+from stickslip.quantities import Quantity, check_quantities, quantity
 
 SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
+
+
+def normal_load(body: Body) -> float:
+    """S: normal stress (Pa) of a slab, normal force (N) of a block."""
+    return body.normal_stress if isinstance(body, ElasticSlab) else body.normal_force
 
 
 @dataclass(frozen=True)
@@ -26,6 +31,9 @@ class Problem:
     also where the load is negative. An initial load beyond the strength slips at once; the left
     limit at t = 0 is then the initial state at rest.
 
+    A law that never sticks (rate-and-state) has strength 0: give its initial_load. initial_state is the state of a law that has
+    one, in the law's own unit; a law that sticks starts healed (0) by default.
+
     far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
     `selection` names the rule that picks one slip rate where several solve the contact equation.
     """
@@ -36,7 +44,7 @@ class Problem:
     initial_slip: float = quantity("m", "slip u0 at the start", default=0.0)
     initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
     initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
-    initial_state: float | None = field(default=None)
+    initial_state: float | None = field(default=None)  # its unit is the law's business
     far_stress: float | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
     far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
     selection: str = "perfect-delay"
@@ -50,11 +58,24 @@ class Problem:
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
-        if self.initial_state is not None:
-            raise InputError(f"Problem: initial_state: {type(self.friction).__name__} has no state variable")
+        self._check_state()
         if self.selection not in SELECTION_RULES:
             raise InputError(f"Problem: selection rule '{self.selection}' is unknown; {nearest(self.selection, SELECTION_RULES)}")
         self._check_far_side()
+
+    def _check_state(self) -> None:
+        law, name = self.friction, type(self.friction).__name__
+        if law.state is None:
+            if self.initial_state is not None:
+                raise InputError(f"Problem: initial_state: {name} has no state variable")
+            return
+        if not law.sticks and self.initial_excess is not None:
+            raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
+        declared = Quantity(law.state.unit, law.state.meaning, at_least=0.0, above=None if law.sticks else 0.0)
+        value = 0.0 if self.initial_state is None and law.sticks else self.initial_state
+        if value is None:
+            raise InputError(f"Problem: needs initial_state, the {law.state.meaning}, in {law.state.unit}")
+        object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
 
     def _check_far_side(self) -> None:
         free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
@@ -64,7 +85,7 @@ class Problem:
     @property
     def normal(self) -> float:
         """S: normal stress (Pa) of the slab, normal force (N) of the block."""
-        return self.body.normal_stress if isinstance(self.body, ElasticSlab) else self.body.normal_force
+        return normal_load(self.body)
 
     @property
     def load_unit(self) -> str:
@@ -76,9 +97,17 @@ class Problem:
         """The slip (m) that the friction law sees at the start: u0, or its magnitude where the law counts the path."""
         return abs(self.initial_slip) if self.friction.counts == "path" else self.initial_slip
 
+    @property
+    def state(self) -> float:
+        """The state at the start as the law's formulas see it (`FrictionLaw.inner_state`); 0 for a law without one."""
+        return 0.0 if self.initial_state is None else self.friction.inner_state(self.initial_state)
+
     @cached_property
     def strength(self) -> float:
-        """Static strength S mu_static(u0) at the start (Pa or N): the reference from which loads are kept as differences."""
+        """Static strength S mu_static(u0) at the start (Pa or N): the reference from which loads are kept as differences.
+
+        That of the state 0 (healed) for a law that sticks and has a state; 0 for a law that never sticks.
+        """
         return self.normal * float(self.friction.static_coefficient(self.law_slip))
 
     @cached_property

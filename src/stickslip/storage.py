@@ -14,7 +14,7 @@ import stickslip
 from stickslip.errors import InputError
 from stickslip.evolution.history import History
 from stickslip.evolution.layout import Store
-from stickslip.evolution.solution import CURVES, Curve, Solution
+from stickslip.evolution.solution import Curve, Solution
 from stickslip.evolution.status import Status
 from stickslip.files import write_atomically
 from stickslip.scenarios import Scenario, read_scenario
@@ -29,6 +29,7 @@ LONG_NAMES = {
     "slip_rate": "slip rate of the contact, v",
     "traction": "friction on the contact, tau",
     "load": "load on the contact, beta",
+    "state": "state of the friction law",
 }
 
 PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
@@ -36,8 +37,8 @@ PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96,
 
 def units(solution: Solution) -> dict[str, str]:
     """Unit of each curve of a solution."""
-    load = solution.problem.load_unit
-    return {"slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
+    load, state = solution.problem.load_unit, solution.problem.friction.state
+    return {"slip": "m", "slip_rate": "m s-1", "traction": load, "load": load} | ({"state": state.unit} if state else {})
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
@@ -61,7 +62,7 @@ def provenance(solution: Solution) -> dict[str, Any]:
 
 def solution_dataset(solution: Solution, t: NDArray[np.float64]) -> xr.Dataset:
     """Slip, slip rate, traction and load at times t (s), right limits, with units and provenance."""
-    values = {name: getattr(solution, name)(t) for name in CURVES}
+    values = {name: getattr(solution, name)(t) for name in solution.curves}
     return _curves(solution, t, values).assign_attrs(provenance(solution))
 
 
@@ -103,6 +104,9 @@ def _history(solution: Solution) -> xr.Dataset:
             "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
         }
     )
+    if solution.problem.friction.state is not None:
+        about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
+        dataset["history_state"] = (("piece", "term"), store.state, about)
     dataset.history_whole.attrs = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
     dataset.history_real.attrs = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
     dataset.history_load.attrs = {"long_name": "load minus reference, Taylor coefficients", "units": solution.problem.load_unit}
@@ -113,7 +117,7 @@ def _history(solution: Solution) -> xr.Dataset:
 def _drawing(solution: Solution) -> xr.Dataset:
     end = float(solution.breaks[-1])
     time, _ = solution.curve("slip_rate", 0.0, end, DRAWN_POINTS)
-    return _curves(solution, time, {name: solution.curve(name, 0.0, end, DRAWN_POINTS)[1] for name in CURVES})
+    return _curves(solution, time, {name: solution.curve(name, 0.0, end, DRAWN_POINTS)[1] for name in solution.curves})
 
 
 def _tables(solution: Solution) -> xr.Dataset:
@@ -142,7 +146,9 @@ def load(path: str | Path) -> Solution:
     attributes = dataset.attrs
     problem = read_scenario(attributes["scenario"], str(path)).problem
     names = ("history_whole", "history_real", "history_load", "history_rate")
-    store = Store(*(np.ascontiguousarray(dataset[name].to_numpy()) for name in names))
+    columns = [np.ascontiguousarray(dataset[name].to_numpy()) for name in names]
+    state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, columns[-1].shape[1]))
+    store = Store(*columns, np.ascontiguousarray(state))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
     history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))

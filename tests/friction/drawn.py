@@ -18,7 +18,7 @@ from stickslip.friction.expression import Expression
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.quantities import Quantity
 
-SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0)}
+SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0), "s": (1e-3, 1.0)}
 """Plausible values by unit."""
 
 EXPRESSIONS: dict[str, dict[str, float | str]] = {
@@ -40,7 +40,9 @@ def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     given = {name: draw(_field(entry)) for name, (entry, default) in fields_of(LAWS[kind]).items() if _wanted(name, kind, default)}
     if kind == "expression":
         return FromExpression(given["expression"], EXPRESSIONS[given["expression"]], counts=given["counts"])
-    if any(isinstance(entry, Part) for entry, _ in fields_of(LAWS[kind]).values()):
+    if kind == "lagged":
+        given["rate"] = draw(laws(draw(st.sampled_from(["hyperbolic-rate", "exponential-stribeck"]))))
+    elif any(isinstance(entry, Part) for entry, _ in fields_of(LAWS[kind]).values()):
         slip, rate = draw(st.sampled_from(PAIRS))
         given = {"slip": draw(laws(slip)), "rate": draw(laws(rate))}
     lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
@@ -78,21 +80,22 @@ def _number(declared: Quantity) -> st.SearchStrategy[float]:
 
 
 def compiled_value(law: FrictionLaw, i: int, reference: float, slip: float, rate: float) -> NDArray[np.float64]:
-    """mu(slip, rate) - mu(reference, 0) by the compiled piece i, and its slopes by rate and slip."""
-    prepare, value, size = _compiled(law.trees()[i], law.parameters())
+    """mu(slip, rate) - mu(reference, 0) by the compiled piece i, and its slopes by rate and slip; with the state 0."""
+    prepare, value, size = _compiled(law.trees()[i], law.parameters(), law.state_tree() if law.state else None)
     double = ctypes.POINTER(ctypes.c_double)
-    numbers, constants, out = np.array(law.piece_values(i)), np.zeros(size), np.zeros(3)
+    numbers, constants, out = np.array(law.piece_values(i)), np.zeros(size), np.zeros(8 if law.state else 3)
     pointers = [array.ctypes.data_as(double) for array in (numbers, constants, out)]
     prepare(pointers[0], reference, pointers[1])
-    value(pointers[1], slip - reference, rate, pointers[2])
-    return out
+    value(pointers[1], slip - reference, rate, *((0.0,) if law.state else ()), pointers[2])
+    return out[:3]
 
 
 @cache
-def _compiled(tree: Expression, parameters: tuple[str, ...]) -> tuple[Any, Any, int]:
+def _compiled(tree: Expression, parameters: tuple[str, ...], change: Expression | None) -> tuple[Any, Any, int]:
     """`prepare` and `value` as the engine compiles them, without the series, which take seconds each."""
-    writer = FormulaWriter(tree, parameters)
+    writer = FormulaWriter(tree, parameters, state_rate=change)
+    value = "value" if change is None else "state_value"
     scope: dict[str, Any] = {}
-    for part in ("prepare", "value"):
+    for part in ("prepare", value):
         exec(writer.module(part).replace("cache=True, ", ""), scope)
-    return scope["prepare"].ctypes, scope["value"].ctypes, writer.size
+    return scope["prepare"].ctypes, scope[value].ctypes, writer.size

@@ -28,7 +28,8 @@ def document(body: type, law: type) -> str:
     friction = (
         tomli_w.dumps({"friction": {"kind": law.kind} | example}) if example else f'[friction]\nkind = "{law.kind}"\n{values(law)}'
     )
-    return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n[run]\nduration = 2\n'
+    state = f'state = "{law.start["state"]}"\n' if law.start else ""
+    return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n{state}[run]\nduration = 2\n'
 
 
 @pytest.mark.parametrize("law", LAWS.values())

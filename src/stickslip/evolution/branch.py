@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, call_value, inlined
+from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, evaluate, first_descent, restrict
+from stickslip.evolution.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.evolution.record import note_jump
-from stickslip.evolution.workspace import EXIT, Run
+from stickslip.evolution.workspace import DEGREE, EXIT, Run
 
 TIE = 1e-13
 """Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
@@ -25,7 +25,11 @@ def constants_of(run: Run, piece: int) -> Floats:
 def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
     """out: S (mu - mu_reference), its derivatives with respect to rate and slip times S, and mu - mu_reference."""
     piece = run.counts[at.PIECE]
-    call_value(run.value_at[piece], constants_of(run, piece), law_slip + run.slip_shift[piece], rate, out)
+    slip = law_slip + run.slip_shift[piece]
+    if run.counts[at.HAS_STATE] == 1:
+        call_state_value(run.state_at[piece], constants_of(run, piece), slip, rate, run.state[at.STATE_NOW], out)
+    else:
+        call_value(run.value_at[piece], constants_of(run, piece), slip, rate, out)
     out[3] = out[0] + run.offset[piece]
     out[0] = run.par[at.NORMAL] * out[3]
     out[1] *= run.par[at.NORMAL]
@@ -45,6 +49,21 @@ def rest_limit(run: Run) -> float:
 def towards(run: Run, load: float, direction: int) -> float:
     """The load as seen in the direction of slip, minus the reference."""
     return load if direction > 0 else -load - 2.0 * run.par[at.REFERENCE]
+
+
+@inlined
+def load_ahead(run: Run, guess: float) -> None:
+    """Series of the load from the present place, in units of `guess`: as it is, and as seen in the direction of slip."""
+    load, local, seen, direction, n = run.load, run.local, run.seen, run.counts[at.MODE], run.counts[DEGREE]
+    if n <= 1:
+        local[0] = load[0] + run.state[at.XI] * load[1]
+        local[1] = guess * load[1]
+        seen[1] = direction * local[1]
+    else:
+        restrict_low(load, n, run.state[at.XI], guess, local)
+        for k in range(1, n + 1):
+            seen[k] = direction * local[k]
+    seen[0] = towards(run, local[0], direction)
 
 
 @inlined

@@ -92,8 +92,8 @@ class CompiledFormula:
     Each is written, compiled and loaded when it is first asked for; what was compiled before comes from the disk.
     """
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...]) -> None:
-        self._writer = FormulaWriter(formula, parameters, ORDER)
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
+        self._writer = FormulaWriter(formula, parameters, ORDER, state_rate)
         self.size = self._writer.size
 
     def _function(self, part: str) -> Any:
@@ -125,6 +125,11 @@ class CompiledFormula:
         return int(self._function("value").address)
 
     @cached_property
+    def state_value(self) -> int:
+        """Address of state_value(c, dx, s, w, out)."""
+        return int(self._function("state_value").address)
+
+    @cached_property
     def rate_jet(self) -> int:
         """Address of rate_jet(c, k, L, s)."""
         return int(self._function("rate_jet").address)
@@ -136,9 +141,9 @@ class CompiledFormula:
 
 
 @cache
-def compile_formula(formula: Expression, parameters: tuple[str, ...]) -> CompiledFormula:
-    """The compiled functions of a formula, the same ones for every problem."""
-    return CompiledFormula(formula, parameters)
+def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> CompiledFormula:
+    """The compiled functions of a formula (and of how its state changes), the same ones for every problem."""
+    return CompiledFormula(formula, parameters, state_rate)
 
 
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
@@ -148,6 +153,12 @@ FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) -> Any:
     """value(c, dx, s, out) of the formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS), _call
+
+
+@intrinsic
+def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
+    """state_value(c, dx, s, w, out) of the formula at `address`."""
+    return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
 
 
 @intrinsic

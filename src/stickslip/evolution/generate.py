@@ -1,9 +1,10 @@
 """Write the compiled form of a friction formula: its value and the Taylor series of the contact that slips under it.
 
-Each formula becomes straight-line code, in four C functions that are each compiled when they are first wanted:
+Each formula becomes straight-line code, in C functions that are each compiled when they are first wanted:
 
 prepare    fills `c` with the formula's constants and its nodes at the reference point (slip x_ref, rate 0)
 value      mu(x, s) - mu(x_ref, 0) with its derivatives with respect to s and x
+state_value  mu(x, s, w) - mu(x_ref, 0, 0) with its derivatives with respect to s, x and the state w, and the same of dw/dt
 rate_jet   massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
 motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
 
@@ -20,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from stickslip.evolution.recurrences import Recurrences
-from stickslip.friction.expression import RATE, SLIP, Expression
+from stickslip.friction.expression import RATE, SLIP, STATE, Expression
 
 ORDER = 18
 """Order of the Taylor series, and so of the history's polynomials."""
@@ -28,10 +29,11 @@ ORDER = 18
 SIGNATURES = {
     "prepare": ("p[]", "x_ref", "c[]"),
     "value": ("c[]", "dx", "s", "out[]"),
+    "state_value": ("c[]", "dx", "s", "w", "out[]"),
     "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jet": ("c[]", "k[]", "L[]", "s[]"),
 }
-"""Arguments of the four functions: arrays where marked, else numbers."""
+"""Arguments of the functions: arrays where marked, else numbers."""
 
 MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
 
@@ -48,6 +50,12 @@ def power_difference(base, step, exponent):
     if base > 0.0 and step > -base:
         return base**exponent * expm1(exponent * log1p(step / base))
     return (base + step) ** exponent - base**exponent
+
+
+@njit(error_model="numpy")
+def exp_value(reference, difference, step, argument):
+    """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
+    return reference + difference if abs(step) < 1.0 else exp(argument)
 
 
 @njit(error_model="numpy")
@@ -72,8 +80,10 @@ def describe(node: Expression) -> str:
 class FormulaWriter(Recurrences):
     """Turns one formula into source text; see the module's docstring for what is written."""
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER) -> None:
-        super().__init__(formula, parameters)
+    def __init__(
+        self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER, state_rate: Expression | None = None
+    ) -> None:
+        super().__init__(formula, parameters, state_rate)
         self.limit = order
 
     def prepare(self) -> list[str]:
@@ -88,6 +98,19 @@ class FormulaWriter(Recurrences):
             f"out[1] = {self.slope(self.formula, RATE, 'd') or '0.0'}",
             f"out[2] = {self.slope(self.formula, SLIP, 'f') or '0.0'}",
         ]
+        return body
+
+    def state_value(self) -> list[str]:
+        """state_value(c, dx, s, w, out)"""
+        assert self.state_rate is not None
+        variables = ((RATE, "d"), (SLIP, "f"), (STATE, "y"))
+        body = ["s_0 = s", *self.order_zero()]
+        for variable, tag in variables:
+            body += self.slopes(variable, tag)
+        for i, tree in enumerate((self.formula, self.state_rate)):
+            level = self.difference(tree) if tree is self.formula else self.coefficient(tree, 0)
+            slopes = [self.slope(tree, variable, tag) for variable, tag in variables]
+            body += [f"out[{4 * i + j}] = {text or '0.0'}" for j, text in enumerate((level, *slopes))]
         return body
 
     def rate_jet(self) -> list[str]:
@@ -133,11 +156,17 @@ class FormulaWriter(Recurrences):
 
     def statements(self, part: str) -> list[str]:
         """The body of one of SIGNATURES: assignments that are nearly C, too (the benchmarks make C of them)."""
-        write: dict[str, Callable[[], list[str]]] = {"prepare": self.prepare, "value": self.value, "rate_jet": self.rate_jet}
-        return write.get(part, self.motion_jet)()
+        write: dict[str, Callable[[], list[str]]] = {
+            "prepare": self.prepare,
+            "value": self.value,
+            "state_value": self.state_value,
+            "rate_jet": self.rate_jet,
+            "motion_jet": self.motion_jet,
+        }
+        return write[part]()
 
     def module(self, part: str) -> str:
-        """Source of a module with one of the four functions."""
+        """Source of a module with one of the functions."""
         arguments = SIGNATURES[part]
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
         head = f"@cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"

@@ -120,6 +120,12 @@ class History:
         """Slip since the start of the run, m."""
         return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
 
+    def state(self, at: Moments) -> Floats:
+        """State of the friction law as its formulas see it; 0 for a law without one."""
+        if self.problem.friction.state is None:
+            return np.zeros(len(at.xi))
+        return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
+
     def friction(self, at: Moments) -> Floats:
         """Friction traction minus the reference strength, signed with the load."""
         excess, rate = self.excess(at), self.rate(at)
@@ -130,5 +136,5 @@ class History:
         grown = self.grown(at)
         walked = mode * grown if law.counts == "path" else grown
         law_slip = self.problem.law_slip + self.store.law_slip[at.piece] + walked
-        by_law = mode * self.problem.normal * law.coefficient(law_slip, np.abs(rate)) - self.problem.strength
+        by_law = mode * self.problem.normal * law.coefficient(law_slip, np.abs(rate), self.state(at)) - self.problem.strength
         return np.where((mode == 0) | at.before, excess, by_law)

@@ -21,17 +21,20 @@ TERMS = ORDER + 1
 # ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-PARAMETERS = 17
+STATE_SCALE, RATE_FLOOR = 17, 18
+PARAMETERS = 19
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
 THETA_FROM, THETA_TO, SPEED, BEND = range(6, 10)  # theta = THETA_FROM + SPEED xi + BEND xi^2, xi from 0 to 1
-STATES = 10
+STATE_NOW = 10  # of the friction law, as its formulas see it
+STATES = 11
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
 MOVED, READY, JUMP, CAUSE, LEAP, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
-COUNTS = 22
+HAS_STATE, STICKS, STIFF, STEPS = range(22, 26)
+COUNTS = 26
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -42,7 +45,7 @@ FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED = range(6)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
-VALUE_AT, JET_AT = range(2)
+VALUE_AT, JET_AT, STATE_AT = range(3)
 SLIP_SHIFT, OFFSET, KNOT = range(3)
 RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
 FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
@@ -56,7 +59,7 @@ class Setup(NamedTuple):
     """A problem as the engine sees it; nothing here changes during a run."""
 
     par: Floats
-    address: Integers  # (2, pieces of the law): of the functions `value` and `rate_jet` or `motion_jet`
+    address: Integers  # (3, pieces of the law): of the functions `value`, `rate_jet` or `motion_jet`, and `state_value`
     constants: Floats  # (pieces, size): what `prepare` filled for them
     law: Floats  # (3, pieces): slip shift and offset to the piece's own reference, law slip (minus the initial one) where it ends
     branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
@@ -64,12 +67,16 @@ class Setup(NamedTuple):
 
 
 class Store(NamedTuple):
-    """The history, one row a piece: load and slip rate as polynomials in xi on [0, 1]. The properties name the columns."""
+    """The history, one row a piece: load, slip rate and the law's state, if it has one, as polynomials in xi on [0, 1].
+
+    The properties name the columns.
+    """
 
     whole: Integers
     real: Floats
     load: Floats  # (n, TERMS), minus the reference strength
     rate: Floats  # (n, TERMS)
+    state: Floats  # (n, TERMS), as the law's formulas see it; (0, TERMS) for a law without one
 
     @property
     def row(self) -> Integers:
@@ -117,16 +124,15 @@ class Store(NamedTuple):
         return self.real[:, S_LAW_SLIP]
 
 
-def new_store(capacity: int) -> Store:
+def new_store(capacity: int, has_state: bool = False) -> Store:
     """An empty history with room for so many pieces."""
-    return Store(
-        np.empty((capacity, 5), np.int64), np.empty((capacity, 6)), np.empty((capacity, TERMS)), np.empty((capacity, TERMS))
-    )
+    load, rate, state = (np.empty((rows, TERMS)) for rows in (capacity, capacity, capacity if has_state else 0))
+    return Store(np.empty((capacity, 5), np.int64), np.empty((capacity, 6)), load, rate, state)
 
 
 def resized(store: Store, length: int, capacity: int) -> Store:
     """The first `length` pieces in a history with room for `capacity`."""
-    larger = new_store(capacity)
+    larger = new_store(capacity, len(store.state) > 0)
     for old, new in zip(store, larger, strict=True):
         new[:length] = old[:length]
     return larger
@@ -134,4 +140,4 @@ def resized(store: Store, length: int, capacity: int) -> Store:
 
 def trimmed(store: Store, length: int) -> Store:
     """The history without its spare room (views, not copies)."""
-    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length])
+    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length], store.state[:length])

@@ -6,7 +6,7 @@ and s_k those of slip and slip rate, w_i_k k times the coefficient.
 
 from __future__ import annotations
 
-from stickslip.friction.expression import RATE, SLIP, Expression, depends_on, nodes_of
+from stickslip.friction.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
 FRESH = 4
 """Terms of a sum that wait for the newest coefficients (see `sum_of`)."""
@@ -35,16 +35,27 @@ def _balanced(terms: list[str]) -> str:
     return f"({_balanced(terms[:half])} + {_balanced(terms[half:])})"
 
 
+def _vanishes(node: Expression) -> bool:
+    """Whether a node is 0 at the reference point, where slip rate and state are 0, whatever the parameters."""
+    if node in (RATE, STATE):
+        return True
+    if node.operation == "mul":
+        return any(_vanishes(argument) for argument in node.arguments)
+    return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
+
+
 class Recurrences:
     """What is known of a formula's nodes, and the statements that compute them."""
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...]) -> None:
-        self.formula, self.parameters = formula, parameters
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
+        self.formula, self.parameters, self.state_rate = formula, parameters, state_rate
         self.nodes = self._with_companions(formula)
+        if state_rate is not None:
+            self.nodes = list(dict.fromkeys((*self.nodes, *self._with_companions(state_rate), STATE)))
         self.index = {node: i for i, node in enumerate(self.nodes)}
-        self.varies = {node: depends_on(node, SLIP) or depends_on(node, RATE) for node in self.nodes}
+        self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
-        self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE)]
+        self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 
@@ -74,6 +85,8 @@ class Recurrences:
         """Name of the k-th Taylor coefficient of a node, or None where it is identically zero."""
         if not self.varies[node]:
             return self.reference(node) if k == 0 else None
+        if node == STATE:
+            return "w"
         if node == RATE:
             return None if k == self.pending_rate else f"s_{k}"
         return f"x_{k}" if node == SLIP else f"n{self.index[node]}_{k}"
@@ -81,7 +94,7 @@ class Recurrences:
     def difference(self, node: Expression) -> str | None:
         if not self.varies[node]:
             return None
-        return {SLIP: "dx", RATE: "s_0"}.get(node, f"e{self.index[node]}")
+        return {SLIP: "dx", RATE: "s_0", STATE: "w"}.get(node, f"e{self.index[node]}")
 
     def slope(self, node: Expression, variable: Expression, tag: str) -> str | None:
         if not depends_on(node, variable):
@@ -104,7 +117,7 @@ class Recurrences:
             return f"{'asinh' if node.operation == 'arcsinh' else node.operation}({arguments[0]})"
         if node.operation == "parameter":
             return f"p[{self.parameters.index(node.name)}]"
-        return {"slip": "x_ref", "rate": "0.0"}.get(node.operation, repr(node.value))
+        return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
 
     def order_zero(self) -> list[str]:
         """Differences from the reference and values of every node at dx, s_0."""
@@ -124,6 +137,9 @@ class Recurrences:
     def _value_rule(self, node: Expression) -> str:
         """The node's value: from its arguments where that is cheap; reference plus difference loses digits of small values."""
         sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
+        if node.operation == "exp":
+            a = node.arguments[0]
+            return f"exp_value({self.reference(node)}, e{self.index[node]}, {self.difference(a)}, {self.coefficient(a, 0)})"
         if sign is None:
             return f"{self.reference(node)} + e{self.index[node]}"
         left, right = (self.coefficient(argument, 0) for argument in node.arguments)
@@ -139,6 +155,8 @@ class Recurrences:
                 return " + ".join(e for e in (ea, eb) if e)
             if node.operation == "sub":
                 return f"{ea or ''}{f' - {eb}' if eb else ''}"
+            if node.operation == "mul" and ea and eb and (_vanishes(a) or _vanishes(b)):
+                return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # as it is: there is nothing to take it from
             if node.operation == "mul":
                 return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"({ra}{f' + {ea}' if ea else ''}) * {eb}") if t)
             numerator = f"{ea or ''}{f' - {r} * {eb}' if eb else ''}"
@@ -157,7 +175,7 @@ class Recurrences:
         }[node.operation]
 
     def slopes(self, variable: Expression, tag: str) -> list[str]:
-        """First derivatives of the nodes with respect to SLIP or RATE."""
+        """First derivatives of the nodes with respect to SLIP, RATE or STATE."""
         lines = []
         for node in self.dynamic:
             if not depends_on(node, variable):

@@ -19,9 +19,14 @@ from stickslip.problem import Problem
 
 
 def row_time(problem: Problem) -> float:
-    """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation."""
+    """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation.
+
+    A day, if that is longer, for a block that never sticks: it creeps for years, over which no row can leap.
+    """
     body = problem.body
-    return body.two_way_time if isinstance(body, ElasticSlab) else body.period
+    if isinstance(body, ElasticSlab):
+        return body.two_way_time
+    return body.period if problem.friction.sticks else max(body.period, DAY)
 
 
 def has_inertia(problem: Problem) -> bool:
@@ -32,7 +37,7 @@ def has_inertia(problem: Problem) -> bool:
 def is_algebraic(problem: Problem) -> bool:
     """Whether the slip rate follows from the load alone: a massless contact under a law of rate only."""
     law = problem.friction
-    return not has_inertia(problem) and law.depends_on_rate and not law.depends_on_slip
+    return not has_inertia(problem) and law.depends_on_rate and not law.depends_on_slip and law.state is None
 
 
 def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integers]:
@@ -84,6 +89,8 @@ def _parameters(problem: Problem) -> at.Floats:
     par[at.REFERENCE] = problem.strength
     par[at.COUNTS_NET] = 1.0 if law.counts == "net" else 0.0
     par[at.STATIC_EXCESS] = law.static_excess
+    par[at.STATE_SCALE] = law.state.scale if law.state else 0.0
+    par[at.RATE_FLOOR] = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
     lowest, _ = law.range()
     par[at.LARGEST_DROP] = max(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):
@@ -93,10 +100,14 @@ def _parameters(problem: Problem) -> at.Floats:
         par[at.RAMP] = par[at.INFLOW] if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
     else:
         par[at.IMPEDANCE], par[at.INERTIA], par[at.STIFFNESS] = body.damping, body.mass, body.stiffness
-        par[at.RAMP] = body.stiffness * problem.pull_rate * body.period
+        par[at.RAMP] = body.stiffness * problem.pull_rate * row_time(problem)
     return par
 
 
+DAY = 86_400.0
+SMALLEST, SLOWEST = 1e-300, 1e-12
+"""Slip rates that are resolved to the last digit: down to nothing where slip begins from rest, to a share of the law's own scale
+where friction has no rest."""
 SAFETY = 0.1
 """Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
@@ -121,7 +132,7 @@ def _first_load(problem: Problem) -> at.Floats:
     """The load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.pull_rate
     if not isinstance(body, ElasticSlab):
-        return _pieces([0.0, body.period], [excess], [body.stiffness * pull])
+        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
     slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
     if body.reflection == -1.0:
         return _pieces([0.0, body.two_way_time], [excess], [slope])
@@ -143,7 +154,8 @@ def _pieces(theta: list[float], load: list[float], slope: list[float], jump: lis
 def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     """Addresses of the functions and constants of the law's pieces; shifts and offsets to their own references, and knots."""
     law, start = problem.friction, problem.law_slip
-    formulas = [compile_formula(tree, law.parameters()) for tree in law.trees()]
+    change = law.state_tree() if law.state else None
+    formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
     home = int(law.piece_at(start))
     # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
     references = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
@@ -153,10 +165,16 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     static = float(law.static_coefficient(start))
     at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    jets = [formula.motion_jet if has_inertia(problem) else formula.rate_jet for formula in formulas]
-    address = np.array([[formula.value for formula in formulas], jets], np.int64)
+    address = np.array([_addresses(formula, problem) for formula in formulas], np.int64).T.copy()
     knots = [*(knot - start for knot in law.knots), math.inf]
     return address, constants, np.array([[start - reference for reference in references], offsets, knots])
+
+
+def _addresses(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int]:
+    """Of what is compiled of a formula: a law with a state is only ever stepped implicitly."""
+    if problem.friction.state:
+        return 0, 0, formula.state_value
+    return formula.value, formula.motion_jet if has_inertia(problem) else formula.rate_jet, 0
 
 
 def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at.Floats) -> None:
@@ -172,4 +190,8 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     count[at.IS_BLOCK] = not isinstance(problem.body, ElasticSlab)
     count[at.HAS_INERTIA] = has_inertia(problem)
     count[at.IS_ALGEBRAIC] = is_algebraic(problem)
+    count[at.HAS_STATE], count[at.STICKS] = problem.friction.state is not None, problem.friction.sticks
+    state[at.STATE_NOW] = problem.state
+    if not problem.friction.sticks:
+        count[at.MODE] = 1 if problem.load >= 0.0 else -1
     return state, count

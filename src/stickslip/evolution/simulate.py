@@ -38,7 +38,7 @@ def simulate(
     if not 1e-15 <= rtol <= 1e-2:
         raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
     setup, state, count = prepare(problem, rtol)
-    scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
+    scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
     last_row, last_theta = split_time(duration, row_time(problem))
     table = lend(setup, state, count, scratch, store)
     try:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, rate_on_branch, towards
-from stickslip.evolution.compiled import ahead, call_jet, inlined
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, load_ahead, rate_on_branch, towards
+from stickslip.evolution.compiled import ahead, call_jet, inlined, kernel
 from stickslip.evolution.fold import (
     APPROACHING,
     DEPARTING,
@@ -19,6 +19,7 @@ from stickslip.evolution.fold import (
     ends_at_fold,
     starts_at_fold,
 )
+from stickslip.evolution.implicit import NOT_STIFF, collocate, is_implicit, judge_stiffness, keep_state, settling_rate
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
@@ -28,13 +29,12 @@ from stickslip.evolution.polynomial import (
     integral,
     magnitude,
     powers_of,
-    restrict_low,
     total,
 )
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
-from stickslip.evolution.workspace import DEGREE, EXIT, Run
+from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
 LAST_TO_FOLD = 1e-4
@@ -45,21 +45,6 @@ def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
     speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
     return min(left, LONGEST_GUESS * run.state[at.LAST_STEP] / speed) if speed > 0.0 else left
-
-
-@inlined
-def load_ahead(run: Run, guess: float) -> None:
-    """Series of the load from the present place, in units of `guess`: as it is, and as seen in the direction of slip."""
-    load, local, seen, direction, n = run.load, run.local, run.seen, run.counts[at.MODE], run.counts[DEGREE]
-    if n <= 1:
-        local[0] = load[0] + run.state[at.XI] * load[1]
-        local[1] = guess * load[1]
-        seen[1] = direction * local[1]
-    else:
-        restrict_low(load, n, run.state[at.XI], guess, local)
-        for k in range(1, n + 1):
-            seen[k] = direction * local[k]
-    seen[0] = towards(run, local[0], direction)
 
 
 @inlined
@@ -159,7 +144,10 @@ def straight_from_fold(run: Run) -> None:
 
 @inlined
 def slip(run: Run, xi_to: float) -> None:
-    """Slip for one Taylor step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
+    """Slip for one step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
+    if is_implicit(run):
+        slip_implicitly(run, xi_to)
+        return
     target, leaves, done = xi_to, False, False
     if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
         target, leaves, done = end_of_branch(run, xi_to)
@@ -180,16 +168,37 @@ def slip(run: Run, xi_to: float) -> None:
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)
+    note_shock(run)
+    take_step(run, target, guess, leaves)
+    if run.counts[at.HAS_INERTIA] == 1:
+        judge_stiffness(run)
+
+
+@inlined
+def note_shock(run: Run) -> None:
+    """Note the jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
     if run.state[at.XI] == 0.0 and run.counts[at.ARRIVING] != at.NO_CAUSE:
         note_jump(run, run.counts[at.MODE] * run.jet[0], run.counts[at.ARRIVING])
     elif run.counts[at.EDGE] != 0 and run.counts[at.HAS_INERTIA] == 0:
         note_jump(run, run.counts[at.MODE] * run.jet[0], at.FOLD)
-    take_step(run, target, guess, leaves)
+
+
+@kernel
+def slip_implicitly(run: Run, xi_to: float) -> None:
+    """Slip for one implicit step, or up to what ends it."""
+    guess = collocate(run, xi_to - run.state[at.XI])
+    note_shock(run)
+    length = 1.0
+    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
+    reached = guess >= xi_to - run.state[at.XI]
+    if run.counts[at.HAS_STATE] == 0 and run.k[at.K_SPEED] * settling_rate(run) < NOT_STIFF:
+        run.counts[at.STIFF] = 0
+    finish_step(run, xi_to, guess, length, reached, False)
 
 
 @inlined
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
-    """Choose the length of the step, cut it at the first event, record it, and do what the event asks for."""
+    """Choose the length of an explicit step, and go."""
     limit = (target - run.state[at.XI]) / guess
     length = usable_length(run.jet, run.par[at.TOLERANCE])
     # as the tolerance would have it: what events and ends of pieces cut off says nothing of the next step's length
@@ -199,8 +208,14 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         length = limit
     elif length > 0.5 * limit:
         length = 0.5 * limit
+    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
+    finish_step(run, target, guess, length, reached, leaves)
+
+
+@inlined
+def finish_step(run: Run, target: float, guess: float, length: float, reached: bool, leaves: bool) -> None:
+    """Cut the step (of so many guesses) at the first event, record it, and do what the event asks for."""
     rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
-    stretch(run, length, rate)
     arrest = NONE
     if run.counts[at.IS_ALGEBRAIC] == 0 and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
@@ -212,6 +227,8 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     if end < 1.0:
         length *= end
         stretch(run, length, rate)
+    if is_implicit(run):
+        keep_state(run, length)
     keep_step(run, rate, length, to)
     if arrest == end:
         come_to_rest(run)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
-Curve = Literal["slip", "slip_rate", "traction", "load"]
+Curve = Literal["slip", "slip_rate", "traction", "load", "state"]
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 
 
@@ -65,6 +65,16 @@ class Solution:
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
+    def state(self, t: ArrayLike) -> Floats:
+        """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).
+
+        Raises InputError for a law without one.
+        """
+        if self.problem.friction.state is None:
+            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
+        at, shape = self._at(t, "right")
+        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+
     @cached_property
     def events(self) -> pd.DataFrame:
         """Slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
@@ -97,10 +107,15 @@ class Solution:
 
         return energy(self, t)
 
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """What there is to draw: slip, slip rate, traction, load, and the state of a law that has one."""
+        return CURVES if self.problem.friction.state is None else (*CURVES, "state")
+
     def curve(self, name: Curve, start: float = 0.0, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Times (s) and values for drawing: dense where the solution varies, with both limits at every shock."""
-        if name not in CURVES:
-            raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, CURVES)}")
+        if name not in self.curves:
+            raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
         end = float(self.breaks[-1]) if end is None else end
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         if len(breaks) > points:  # too many pieces to draw each: keep the shocks
@@ -109,8 +124,8 @@ class Solution:
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
         time = np.concatenate([breaks, right])
         order = np.argsort(time, kind="stable")  # left limits first
-        if name == "slip":
-            return time[order], self.slip(time)[order]
+        if name in ("slip", "state"):  # continuous
+            return time[order], getattr(self, name)(time)[order]
         evaluate = getattr(self, name)
         values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
         return time[order], values[order]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, choose_branch, friction_at, leave_branch, rest_limit, towards
 from stickslip.evolution.compiled import ahead, inlined
+from stickslip.evolution.implicit import forgotten, stick_and_heal
 from stickslip.evolution.polynomial import NONE, evaluate, fill, first_descent, restrict, scale
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.workspace import Run
@@ -14,6 +15,10 @@ from stickslip.evolution.workspace import Run
 def arrive(run: Run) -> None:
     """A new piece of load begins: does the contact stick or slip under it, which way, on which branch?"""
     load = run.load[0]
+    if run.counts[at.STICKS] == 0:
+        if run.counts[at.HAS_INERTIA] == 0 and load != -run.par[at.REFERENCE]:
+            run.counts[at.MODE] = 1 if load > -run.par[at.REFERENCE] else -1
+        return
     limit = rest_limit(run)
     mode = run.counts[at.MODE]
     if mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
@@ -37,6 +42,9 @@ def arrive(run: Run) -> None:
 @inlined
 def stick(run: Run, xi_to: float) -> None:
     """Stay at rest until the load leaves what friction can hold."""
+    if run.counts[at.HAS_STATE] == 1 and run.state[at.STATE_NOW] != 0.0 and not forgotten(run):
+        stick_and_heal(run, xi_to)
+        return
     width, part = xi_to - run.state[at.XI], run.part
     limit = rest_limit(run)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
@@ -53,6 +61,8 @@ def stick(run: Run, xi_to: float) -> None:
     if slips:
         scale(load, onset)
     fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
+    if run.counts[at.HAS_STATE] == 1:
+        fill(ahead(run.stored_state, at.TERMS * run.counts[at.LENGTH]), 0.0)
     record(run, run.state[at.XI] + onset * width if slips else xi_to)
     run.counts[at.EDGE] = 0
     if slips:
@@ -65,6 +75,9 @@ def come_to_rest(run: Run) -> None:
     """The slip rate has reached zero: rest, or slip the other way where the load is beyond the strength there."""
     before = run.counts[at.MODE]
     run.state[at.RATE_NOW] = 0.0
+    if run.counts[at.STICKS] == 0:
+        run.counts[at.MODE] = -before
+        return
     run.counts[at.MODE] = 0
     if run.counts[at.HAS_INERTIA] == 0:
         run.counts[at.EDGE] = before

@@ -23,7 +23,9 @@ COUNTS = at.COUNTS + 1
 WHOLE, REAL = 5, 6
 """Columns of the history's tables."""
 
-WORK_ROWS = 11
+MATRIX_ROWS = 18
+"""Equations of an implicit step: their matrix and right-hand side fill so many rows of TERMS numbers."""
+WORK_ROWS = 14 + MATRIX_ROWS
 
 
 class Run(NamedTuple):
@@ -32,6 +34,7 @@ class Run(NamedTuple):
     par: Floats
     value_at: Integers  # by piece of the law
     jet_at: Integers
+    state_at: Integers
     constants: Floats
     slip_shift: Floats
     offset: Floats
@@ -54,6 +57,7 @@ class Run(NamedTuple):
     real: Floats
     stored_load: Floats
     stored_rate: Floats
+    stored_state: Floats
 
     load: Floats  # the present piece of load, in xi
     local: Floats  # of the step at hand, in units of the guess; zero beyond the degree of the piece
@@ -66,6 +70,10 @@ class Run(NamedTuple):
     kept: Floats  # and the state there
     part: Floats  # for tests on load and rate
     spare: Floats
+    state_jet: Floats  # of an implicit step: the state's polynomial
+    stage_rate: Floats  # and the values at its points
+    stage_state: Floats
+    matrix: Floats
 
     pieces: int
     size: int  # of the constants of a piece
@@ -87,11 +95,12 @@ def lend(setup: Setup, state: Floats, count: Integers, scratch: Floats, store: S
 def borrow(table: Integers) -> Run:
     """The run in a table of `lend`."""
     address, law, branch, first, work = integers(table[1]), floats(table[3]), floats(table[4]), floats(table[5]), floats(table[8])
-    pieces, size, branches, loads, capacity = table[13], table[14], table[15], table[16], table[17]
+    pieces, size, branches, loads, capacity = table[14], table[15], table[16], table[17], table[18]
     return Run(
         floats(table[0]),
         address,
         ahead(address, pieces),
+        ahead(address, 2 * pieces),
         floats(table[2]),
         law,
         ahead(law, pieces),
@@ -112,6 +121,7 @@ def borrow(table: Integers) -> Run:
         floats(table[10]),
         floats(table[11]),
         floats(table[12]),
+        floats(table[13]),
         work,
         ahead(work, TERMS),
         ahead(work, 2 * TERMS),
@@ -123,6 +133,10 @@ def borrow(table: Integers) -> Run:
         ahead(work, 8 * TERMS),
         ahead(work, 9 * TERMS),
         ahead(work, 10 * TERMS),
+        ahead(work, 11 * TERMS),
+        ahead(work, 12 * TERMS),
+        ahead(work, 13 * TERMS),
+        ahead(work, 14 * TERMS),
         pieces,
         size,
         branches,

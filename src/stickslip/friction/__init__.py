@@ -12,11 +12,13 @@ from stickslip.friction.exponential_stribeck import ExponentialStribeck
 from stickslip.friction.from_expression import ExpressionLaw, FromExpression
 from stickslip.friction.from_function import FromFunction
 from stickslip.friction.hyperbolic_rate import HyperbolicRate
+from stickslip.friction.lagged import LaggedFriction
 from stickslip.friction.linear_slip_weakening import LinearSlipWeakening
 from stickslip.friction.parabolic_slip_weakening import ParabolicSlipWeakening
 from stickslip.friction.piecewise_linear_rate import PiecewiseLinearRate
 from stickslip.friction.piecewise_linear_slip import PiecewiseLinearSlip
 from stickslip.friction.power_stribeck import PowerStribeck
+from stickslip.friction.rate_and_state import RateAndState
 from stickslip.friction.registry import LAWS
 from stickslip.friction.sinusoidal_slip import SinusoidalSlip
 from stickslip.friction.slip_plus_rate import SlipPlusRate
@@ -36,11 +38,13 @@ __all__ = [
     "FromFunction",
     "FromTable",
     "HyperbolicRate",
+    "LaggedFriction",
     "LinearSlipWeakening",
     "ParabolicSlipWeakening",
     "PiecewiseLinearRate",
     "PiecewiseLinearSlip",
     "PowerStribeck",
+    "RateAndState",
     "SinusoidalSlip",
     "SlipPlusRate",
     "SlipTimesRate",

@@ -41,6 +41,8 @@ class CompositeLaw(FrictionLaw):
         for part, place in zip(self.parts, ("slip", "rate"), strict=True):
             if not isinstance(part, FrictionLaw):
                 raise InputError(f"{name}: {place} must be a friction law, got {type(part).__name__}")
+            if part.state is not None:
+                raise InputError(f"{name}: {place} must be a law without a state of its own, {part.kind} has one")
         for part, place, other in ((self.slip, "slip", "rate"), (self.rate, "rate", "slip")):
             if getattr(part, f"depends_on_{other}"):
                 raise InputError(f"{name}: {place} must be a law of {place} only, but {part.kind} depends on {other}")
@@ -80,7 +82,7 @@ class CompositeLaw(FrictionLaw):
         return self.rate.rate_scales
 
 
-class _Prefixed:
+class Prefixed:
     """The parameters of a part, seen through those of the whole."""
 
     def __init__(self, law: SimpleNamespace, prefix: str) -> None:
@@ -92,7 +94,7 @@ class _Prefixed:
 
 def _joined(join: Callable[[Any, Any], Any], slip: Formula, rate: Formula) -> Formula:
     def formula(law: Any, u: Any, v: Any) -> Any:
-        first, second = (_Prefixed(law, prefix) for prefix in PREFIXES)
+        first, second = (Prefixed(law, prefix) for prefix in PREFIXES)
         return join(slip(first, u, v), rate(second, u, v))
 
     return formula

@@ -14,32 +14,41 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.errors import InputError
-from stickslip.friction.expression import RATE, SLIP, Expression, Parameter, as_expression, depends_on
+from stickslip.friction.expression import RATE, SLIP, STATE, Expression, Parameter, as_expression, depends_on
 from stickslip.friction.fields import Series, check_fields, fields_of
 from stickslip.quantities import Quantity, quantities_of
 
-Formula = Callable[[Any, Any, Any], Any]
-"""mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s)."""
+Formula = Callable[..., Any]
+"""mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s); a law with a state has it as
+a fourth argument."""
+
+
+@dataclass(frozen=True)
+class StateVariable:
+    """What a law with memory remembers besides slip: name, unit and meaning of the number that users see."""
+
+    name: str
+    unit: str
+    meaning: str
+    scale: float = 0.0
+    """Size of a change that matters, of the number that the formulas see; 0: relative to the number itself."""
 
 
 @lru_cache(maxsize=256)
 def _trees(
-    pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: tuple[tuple[str, float], ...]
+    pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: tuple[tuple[str, float], ...], has_state: bool
 ) -> tuple[Expression, ...]:
     """The formulas as trees: made once for all laws that differ in the values of their parameters only."""
     symbols = SimpleNamespace(**({name: Parameter(name) for name in parameters} | dict(literals)))
-    made = {formula: as_expression(formula(symbols, SLIP, RATE)) for formula in dict.fromkeys(pieces)}
+    variables = (SLIP, RATE, STATE) if has_state else (SLIP, RATE)
+    made = {formula: as_expression(formula(symbols, *variables)) for formula in dict.fromkeys(pieces)}
     return tuple(made[formula] for formula in pieces)
 
 
 @lru_cache(maxsize=256)
-def _contain(
-    pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: tuple[tuple[str, float], ...], variable: str
-) -> bool:
-    """Whether one of the trees contains the variable, "slip" or "rate"."""
-    return any(
-        depends_on(tree, SLIP if variable == "slip" else RATE) for tree in dict.fromkeys(_trees(pieces, parameters, literals))
-    )
+def _contain(trees: tuple[Expression, ...], variable: Expression) -> bool:
+    """Whether one of the trees contains the variable."""
+    return any(depends_on(tree, variable) for tree in dict.fromkeys(trees))
 
 
 @dataclass(frozen=True)
@@ -60,6 +69,12 @@ class FrictionLaw(ABC):
     """What slip the law sees: "net" (u itself, forwards and backwards) or "path" (its length; initial_slip counts as walked)."""
     knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
     """What the knots between pieces are places of: slip (m) or slip rate (m/s)."""
+    state: ClassVar[StateVariable | None] = None
+    """A state variable of the law's own: then `formula` has it as a fourth argument, and `state_rate` says how it changes."""
+    sticks: ClassVar[bool] = True
+    """Whether there is a static strength below which the contact rests; else friction passes smoothly through v = 0."""
+    start: ClassVar[Mapping[str, Any]] = {}
+    """Of a law that never sticks: `coefficient` (load per normal load) and `state` from which its example may start."""
     example: ClassVar[Mapping[str, Any]] = {}
     """Plausible values of the fields as a scenario file would give them: shown by `stickslip new`, used by tests."""
     columns: ClassVar[Mapping[str, str]] = {}
@@ -109,6 +124,26 @@ class FrictionLaw(ABC):
         """
         return None
 
+    # ---- state --------------------------------------------------------------------------------------------------------------
+
+    @property
+    def state_rate(self) -> Formula:
+        """dw/dt from the parameters, slip, slip rate and state w, for a law with a state."""
+        raise TypeError(f"{type(self).__name__} has no state variable")
+
+    def inner_state(self, value: float) -> float:
+        """The number w that the formulas see, for a value of the state as users give it."""
+        return value
+
+    def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The state as users see it, for values of w."""
+        return w
+
+    def state_tree(self) -> Expression:
+        """dw/dt as an expression tree in SLIP, RATE, STATE and parameters."""
+        (tree,) = _trees((self.state_rate,), self.parameters(), tuple(self.literals().items()), True)
+        return tree
+
     # ---- parameters ---------------------------------------------------------------------------------------------------------
 
     def parameters(self) -> tuple[str, ...]:
@@ -134,19 +169,23 @@ class FrictionLaw(ABC):
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
         return np.asarray(np.searchsorted(np.asarray(self.knots), slip if self.knot_variable == "slip" else rate, side="right"))
 
-    def piece_coefficient(self, i: int, u: Any, v: Any) -> Any:
+    def piece_coefficient(self, i: int, u: Any, v: Any, w: Any = 0.0) -> Any:
         """mu by the formula of piece i, also outside its stretch. Complex slips and rates give complex values."""
-        return self.pieces[i](SimpleNamespace(**self.numbers(i)), u, v)
+        variables = (u, v) if self.state is None else (u, v, w)
+        return self.pieces[i](SimpleNamespace(**self.numbers(i)), *variables)
 
-    def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0) -> NDArray[np.float64]:
-        """mu at slip u (m) and slip rate of magnitude v (m/s, >= 0; 0 means the limit 0+). Broadcasts; no unit."""
-        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+    def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
+        """mu at slip u (m) and slip rate of magnitude v (m/s, >= 0; 0 means the limit 0+). Broadcasts; no unit.
+
+        w is the state as the formulas see it (`inner_state`), for a law that has one.
+        """
+        slip, rate, state = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float), np.asarray(w, float))
         piece = self.piece_at(slip, rate)
         values = np.empty(slip.shape)
         with np.errstate(over="ignore", under="ignore"):  # exp(-v / 1e-9) is 0, exp(v / 1e-9) below a line is too
             for i in np.unique(piece).tolist():
                 chosen = piece == i
-                values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen])
+                values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen], state[chosen])
         return values
 
     def static_coefficient(self, u: ArrayLike) -> NDArray[np.float64]:
@@ -156,8 +195,8 @@ class FrictionLaw(ABC):
     # ---- what follows from the formulas ---------------------------------------------------------------------------------------
 
     def trees(self) -> tuple[Expression, ...]:
-        """The formulas of `pieces` as expression trees in SLIP, RATE and parameters."""
-        return _trees(self.pieces, self.parameters(), tuple(self.literals().items()))
+        """The formulas of `pieces` as expression trees in SLIP, RATE (STATE) and parameters."""
+        return _trees(self.pieces, self.parameters(), tuple(self.literals().items()), self.state is not None)
 
     @property
     def depends_on_slip(self) -> bool:
@@ -171,7 +210,7 @@ class FrictionLaw(ABC):
 
     def _depends_on(self, variable: Expression) -> bool:
         knotted = len(self.pieces) > 1 and self.knot_variable == variable.operation
-        return knotted or _contain(self.pieces, self.parameters(), tuple(self.literals().items()), variable.operation)
+        return knotted or _contain(self.trees(), variable)
 
     @property
     def variation(self) -> float:

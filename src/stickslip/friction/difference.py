@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.friction.expression import Expression, nodes_of
+from stickslip.friction.expression import STATE, Expression, nodes_of
 
 Array = NDArray[np.float64]
 
@@ -33,18 +33,20 @@ class _Node:
 
 
 def difference(
-    tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike
+    tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike, state: float = 0.0
 ) -> tuple[Array, Array]:
     """mu(slip + slip_step, rate) - mu(slip, 0), and d mu / d rate at the end point (s/m).
 
     slip and slip_step in m, rate >= 0 in m/s; the last two broadcast. `tree` is one piece of a law's formula and `parameters`
-    holds the law's numbers by name. Raises KeyError for a parameter without a value.
+    holds the law's numbers by name; `state` is the law's own, the same at both ends. Raises KeyError for a parameter without a
+    value.
     """
+    kept = _Node(state, 0.0, state, 0.0)
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found: dict[Expression, _Node] = {}
     with np.errstate(divide="ignore", over="ignore"):
         for node in nodes_of(tree):
-            found[node] = _evaluate(node, [found[a] for a in node.arguments], parameters, slip, du, v)
+            found[node] = kept if node == STATE else _evaluate(node, [found[a] for a in node.arguments], parameters, slip, du, v)
     result = found[tree]
     return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
 

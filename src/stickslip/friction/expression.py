@@ -1,8 +1,8 @@
 """Formulas as trees: what a friction law is made of.
 
 A law writes its formula once, with ordinary operators and the functions of this module. Called with numbers or arrays the
-formula is a number or an array; called with the symbols `SLIP`, `RATE` and `Parameter` it is an `Expression` tree, from which
-`stickslip.evolution.generate` writes Taylor recurrences. Nothing here is ever evaluated as Python text.
+formula is a number or an array; called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter` it is an `Expression` tree, from
+which `stickslip.evolution.generate` writes compiled code. Nothing here is ever evaluated as Python text.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LARGEST_POWER = 16
 
 @dataclass(frozen=True)
 class Expression:
-    """A node: an operation on other nodes, a parameter, a constant, or one of the two variables."""
+    """A node: an operation on other nodes, a parameter, a constant, or one of the variables."""
 
     operation: str
     arguments: tuple[Expression, ...] = ()
@@ -132,6 +132,7 @@ class Expression:
 
 SLIP = Expression("slip", name="u")
 RATE = Expression("rate", name="v")
+STATE = Expression("state", name="w")
 
 
 def _product(base: Expression, count: int) -> Expression:
@@ -226,7 +227,7 @@ def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any)
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:
-    """Whether the formula contains the variable (SLIP or RATE)."""
+    """Whether the formula contains the variable (SLIP, RATE or STATE)."""
     return variable in nodes_of(node)
 
 

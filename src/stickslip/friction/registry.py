@@ -9,11 +9,13 @@ from stickslip.friction.exponential_slip_weakening import ExponentialSlipWeakeni
 from stickslip.friction.exponential_stribeck import ExponentialStribeck
 from stickslip.friction.from_expression import ExpressionLaw
 from stickslip.friction.hyperbolic_rate import HyperbolicRate
+from stickslip.friction.lagged import LaggedFriction
 from stickslip.friction.linear_slip_weakening import LinearSlipWeakening
 from stickslip.friction.parabolic_slip_weakening import ParabolicSlipWeakening
 from stickslip.friction.piecewise_linear_rate import PiecewiseLinearRate
 from stickslip.friction.piecewise_linear_slip import PiecewiseLinearSlip
 from stickslip.friction.power_stribeck import PowerStribeck
+from stickslip.friction.rate_and_state import RateAndState
 from stickslip.friction.sinusoidal_slip import SinusoidalSlip
 from stickslip.friction.slip_plus_rate import SlipPlusRate
 from stickslip.friction.slip_times_rate import SlipTimesRate
@@ -35,6 +37,8 @@ LAWS: dict[str, type[FrictionLaw]] = {
         PowerStribeck,
         PiecewiseLinearRate,
         VelocityStrengthening,
+        RateAndState,
+        LaggedFriction,
         SlipPlusRate,
         SlipTimesRate,
         ExpressionLaw,

@@ -97,6 +97,6 @@ def heat(history: History, time: Floats) -> Floats:
         mode, speed, grown = history.store.mode[at.piece], np.abs(history.rate(at)), history.grown(at)
         walked = mode * grown if law.counts == "path" else grown
         slip = problem.law_slip + history.store.law_slip[at.piece] + walked
-        return problem.normal * law.coefficient(slip, speed) * speed
+        return problem.normal * law.coefficient(slip, speed, history.state(at)) * speed
 
     return up_to(history, time, power, np.flatnonzero(history.store.mode))

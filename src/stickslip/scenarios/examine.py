@@ -73,7 +73,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     facts = {
         table: [
             Fact(name, values[name], declared.unit, declared.meaning)
-            for name, (declared, _) in quantities_in(table, kind).items()
+            for name, (declared, _) in quantities_in(table, kind, problem.friction.state).items()
             if values[name] is not None
         ]
         for table, (kind, values) in holders.items()

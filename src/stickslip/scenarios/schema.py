@@ -15,6 +15,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from stickslip.bodies import BODIES
 from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS
+from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import Field as LawField
 from stickslip.friction.fields import Part, fields_of
 from stickslip.problem import SELECTION_RULES, Problem
@@ -28,7 +29,7 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
 LARGEST_RTOL = 1e-2
-STATE = Quantity("1", "state variable of the friction law")
+STATE = Quantity("1", "state variable of the friction law, if it has one")
 
 
 class _Strict(BaseModel):
@@ -45,10 +46,11 @@ class _Document(_Strict):
     run: dict[str, Any]
 
 
-def quantities_in(table: str, kind: type) -> dict[str, tuple[Quantity, Any]]:
+def quantities_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity, Any]]:
     """Each quantity of a table with its default (MISSING where there is none).
 
     `kind` is the law for [friction] and the body for every other table: loads are stresses for a slab, forces for a block.
+    `state` is what the friction law remembers, for [initial].
     """
     if table in KINDS:
         return _declared(kind)
@@ -56,13 +58,14 @@ def quantities_in(table: str, kind: type) -> dict[str, tuple[Quantity, Any]]:
         return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10)}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
-    return found | {"state": (STATE, None)} if table == "initial" else found
+    remembered = Quantity(state.unit, state.meaning) if state else STATE
+    return found | {"state": (remembered, None)} if table == "initial" else found
 
 
-def entries_in(table: str, kind: type) -> dict[str, tuple[Quantity | LawField, Any]]:
+def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity | LawField, Any]]:
     """Everything of a table by its key, with its default: the quantities, and what else a friction law is made of."""
     if table not in KINDS:
-        return dict(quantities_in(table, kind))
+        return dict(quantities_in(table, kind, state))
     return {key_of(name, entry): (entry, default) for name, (entry, default) in fields_of(kind).items()}
 
 
@@ -78,11 +81,11 @@ def _of_body(declared: Quantity, body: type) -> Quantity:
 
 
 @cache
-def table_model(table: str, kind: type) -> type[BaseModel]:
+def table_model(table: str, kind: type, state: StateVariable | None = None) -> type[BaseModel]:
     """The pydantic model of one table."""
     root = table.partition(".")[0]
     entries: dict[str, Any] = {"kind": (str, ...)} if root in KINDS else {}
-    for name, (declared, default) in entries_in(root, kind).items():
+    for name, (declared, default) in entries_in(root, kind, state).items():
         read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
         entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
@@ -154,11 +157,11 @@ def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     document = _validate(_Document, dict(raw), source)
     kinds = {table: kind_of(table, document[table], source.file) for table in KINDS}
     for table in TABLES:
-        document[table] = read_table(table, kinds.get(table, kinds["body"]), document[table], source)
+        document[table] = read_table(table, kinds.get(table, kinds["body"]), document[table], source, kinds["friction"].state)  # type: ignore[attr-defined] # registered
     return document
 
 
-def read_table(table: str, kind: type, raw: dict[str, Any], source: Source) -> dict[str, Any]:
+def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
     """One table, checked; the points of a law come from the file that it names, if it does. Raises InputError."""
     columns: Mapping[str, str] = getattr(kind, "columns", {}) if table.partition(".")[0] in KINDS else {}
     if columns and "file" in raw:
@@ -169,7 +172,7 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source) -> d
             raise InputError(f"{source.file}: [{table}] file {got}")
         points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file")
         raw = {key: value for key, value in raw.items() if key != "file"} | points
-    return _validate(table_model(table, kind), raw, source, table)
+    return _validate(table_model(table, kind, state), raw, source, table)
 
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:

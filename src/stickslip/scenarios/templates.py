@@ -9,11 +9,12 @@ from typing import Any
 
 from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import NamedNumbers, Part, fields_of
-from stickslip.problem import SELECTION_RULES
+from stickslip.problem import SELECTION_RULES, normal_load
 from stickslip.scenarios import library
-from stickslip.scenarios.entries import describe, key_of
-from stickslip.scenarios.schema import KINDS, TABLES, entries_in, kind_of
+from stickslip.scenarios.entries import Source, describe, key_of
+from stickslip.scenarios.schema import KINDS, TABLES, build, entries_in, kind_of, read_table
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Generic starters, and the bundled scenario whose values they show."""
@@ -56,8 +57,10 @@ def template(name: str, friction: str | None = None) -> str:
 
 def _starter(example: dict[str, Any], friction: str | None) -> str:
     if friction is not None:
-        law = kind_of("friction", {"kind": friction}, "new")
+        law: type[FrictionLaw] = kind_of("friction", {"kind": friction}, "new")
         example["friction"] = {"kind": friction} | _keyed(law)
+        if not law.sticks:
+            example["initial"] = _start_of(law, example["body"])
     kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
     parts = [_HEADER, 'title = ""\n']
     for table in TABLES:
@@ -66,11 +69,18 @@ def _starter(example: dict[str, Any], friction: str | None) -> str:
         if table == "friction":
             lines += ["# Other laws, shown in full by `stickslip new slab --friction KIND`:", "#"]
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
-        lines += _table(table, kind, example[table])
+        lines += _table(table, kind, example[table], kinds["friction"].state)  # type: ignore[attr-defined] # registered
         if table == "run":
             lines.append(f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}')
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
+
+
+def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
+    """Where a law without static strength starts: under the load that its example names per normal load."""
+    source = Source("starter")
+    read = build("body", read_table("body", kind_of("body", body, source.file), body, source), source.file)
+    return {"load": law.start["coefficient"] * normal_load(read), "state": law.start["state"]}
 
 
 def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
@@ -78,12 +88,12 @@ def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
     return {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
 
 
-def _table(table: str, kind: type, example: dict[str, Any]) -> list[str]:
+def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable | None = None) -> list[str]:
     """A table with its keys, and the tables in it."""
     lines, inner = [f"[{table}]"], []
     if table.partition(".")[0] in KINDS:
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
-    for name, (entry, default) in entries_in(table.partition(".")[0], kind).items():
+    for name, (entry, default) in entries_in(table.partition(".")[0], kind, state).items():
         value = example.get(name)
         if isinstance(entry, Part) and value:
             inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value)]

@@ -1,0 +1,171 @@
+"""Implicit steps: for contacts with a state of their own, and for stiff ones with mass.
+
+Such a contact settles far faster than anything else happens; an explicit series would have to follow every settling time.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.branch import load_ahead, towards
+from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
+from stickslip.evolution.compiled import ahead, inlined, kernel
+from stickslip.evolution.layout import Floats
+from stickslip.evolution.polynomial import NONE, copy, fill, first_descent, scale, total
+from stickslip.evolution.record import record
+from stickslip.evolution.stages import BY_STATE, MU, contact_at, rate_at_load, solve_stages
+from stickslip.evolution.workspace import Run
+
+ATTEMPTS = 80
+STIFF, NOT_STIFF = 4.0, 1.5
+"""Settling times in an explicit step beyond which the contact is stiff: only stability can have kept it so short; and in an
+implicit step, below which it no longer is."""
+CHECKED = 16
+"""Explicit steps between two looks at the stiffness."""
+FORGOTTEN = 1e-18
+"""Share of friction below which what is left of the state at rest is dropped."""
+
+
+@inlined
+def is_implicit(run: Run) -> bool:
+    """Whether the next step is an implicit one."""
+    return run.counts[at.HAS_STATE] == 1 or run.counts[at.STIFF] == 1
+
+
+@kernel
+def settling_rate(run: Run) -> float:
+    """How fast (1/s) the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
+    contact_at(run, run.state[at.LAW_SLIP], abs(run.state[at.RATE_NOW]), run.state[at.STATE_NOW])
+    return (run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[1]) / run.par[at.INERTIA]
+
+
+@inlined
+def judge_stiffness(run: Run) -> None:
+    """After an explicit step of a contact with mass: now and then, whether it has become stiff."""
+    run.counts[at.STEPS] += 1
+    if run.counts[at.STEPS] % CHECKED == 0 and run.state[at.LAST_STEP] * settling_rate(run) > STIFF:
+        run.counts[at.STIFF] = 1
+
+
+@kernel
+def start_of_step(run: Run) -> float:
+    """Slip rate and state at the start into the stages; the force that is none by definition, where slip leaves rest."""
+    state, force = run.state, 0.0
+    run.stage_state[0] = state[at.STATE_NOW]
+    run.stage_rate[0] = abs(state[at.RATE_NOW])
+    if run.counts[at.MODE] == 0:
+        run.stage_rate[0] = 0.0
+    elif run.counts[at.EDGE] != 0:
+        contact_at(run, state[at.LAW_SLIP], 0.0, state[at.STATE_NOW])
+        force = run.seen[0] - run.par[at.NORMAL] * run.value[MU]
+        if run.counts[at.HAS_INERTIA] == 0:
+            run.stage_rate[0] = 0.0
+    elif run.counts[at.HAS_INERTIA] == 0:
+        run.stage_rate[0] = rate_at_load(run, run.seen[0], abs(state[at.RATE_NOW]))
+    return force
+
+
+@kernel
+def error_of(run: Run) -> float:
+    """Error of the step's polynomials, in units of the tolerance."""
+    fastest, farthest = run.par[at.RATE_FLOOR], run.par[at.STATE_SCALE] + 1e-300
+    for i in range(POINTS):
+        fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
+    error = last_terms(run.jet) / fastest
+    if run.counts[at.HAS_STATE] == 1:
+        error = max(error, last_terms(run.state_jet) / farthest)
+    return error / run.par[at.TOLERANCE]
+
+
+@kernel
+def collocate(run: Run, left: float) -> float:
+    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+
+    The step is repeated, shorter, until its error is below the tolerance, or no longer shrinks with it: that is rounding.
+    """
+    speed = abs(run.state[at.SPEED])
+    guess = min(left, run.state[at.LAST_STEP] / speed)
+    if 0.5 * left < guess < left:
+        guess = 0.5 * left
+    before = math.inf
+    for _ in range(ATTEMPTS):
+        load_ahead(run, guess)
+        run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
+        run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
+        force = start_of_step(run)
+        if solve_stages(run, run.k[at.K_SPEED], force):
+            interpolate(run.stage_rate, run.jet, run.spare)
+            interpolate(run.stage_state, run.state_jet, run.spare)
+            error = error_of(run)
+            factor = 0.9 * max(error, 1e-12) ** (-1.0 / (STAGES + 1.0))
+            if error <= 1.0 or (error < 1e3 and error > 0.5 * before):
+                run.state[at.LAST_STEP] = guess * speed * min(factor, 5.0)
+                return guess
+            before = error
+            guess *= max(min(factor, 0.8), 0.1)
+        else:
+            before = math.inf
+            guess *= 0.25
+    fill(run.jet, math.nan)
+    return guess
+
+
+@kernel
+def keep_state(run: Run, length: float) -> None:
+    """Put the state's polynomial, up to `length` of the step, into the history, and the state at its end where it is now."""
+    if run.counts[at.HAS_STATE] == 0:
+        return
+    kept = ahead(run.stored_state, at.TERMS * run.counts[at.LENGTH])
+    for k in range(at.TERMS):
+        kept[k] = run.state_jet[k]
+    if length != 1.0:
+        scale(kept, length)
+    run.state[at.STATE_NOW] = total(kept)
+
+
+@kernel
+def forgotten(run: Run) -> bool:
+    """Whether nothing is left of the state that friction would notice; then nothing is left at all."""
+    contact_at(run, run.state[at.LAW_SLIP], 0.0, run.state[at.STATE_NOW])
+    if abs(run.value[BY_STATE] * run.state[at.STATE_NOW]) > FORGOTTEN:
+        return False
+    run.state[at.STATE_NOW] = 0.0
+    return True
+
+
+@kernel
+def strength_ahead(run: Run, out: Floats) -> None:
+    """The static strength (minus the reference) over a step at rest, from the states at its points."""
+    for i in range(POINTS):
+        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
+        run.stage_rate[i] = run.par[at.NORMAL] * run.value[MU]
+    interpolate(run.stage_rate, out, run.spare)
+
+
+@kernel
+def stick_and_heal(run: Run, xi_to: float) -> None:
+    """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
+    width = collocate(run, xi_to - run.state[at.XI])
+    reached = width >= xi_to - run.state[at.XI]
+    strength, part = run.jet, run.part
+    strength_ahead(run, strength)
+    load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
+    fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
+    copy(run.local, load, at.TERMS)
+    onset, direction = NONE, 0
+    for way in (1, -1):
+        for k in range(at.TERMS):
+            part[k] = strength[k] - way * run.local[k]
+        part[0] = 0.0 if run.counts[at.EDGE] == way else strength[0] - towards(run, run.local[0], way)
+        first = first_descent(part, run.spare)
+        if first < onset:
+            onset, direction = first, way
+    end = min(onset, 1.0)
+    if end < 1.0:
+        scale(load, end)
+    keep_state(run, end)
+    record(run, xi_to if reached and end == 1.0 else run.state[at.XI] + end * width)
+    run.counts[at.EDGE], run.counts[at.MOVED] = 0, 1
+    if onset < NONE:
+        run.counts[at.MODE], run.counts[at.EDGE] = direction, direction

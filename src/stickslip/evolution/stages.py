@@ -1,0 +1,164 @@
+"""The stages of an implicit step: slip rate and state at Radau's points, by Newton's method.
+
+    M v' = load - K q - Z v - S mu(u, v, w),    u' = v,    w' = F(u, v, w)
+
+A contact without mass (M = 0) and one without a state are the same equations with terms left out. v >= 0 is the magnitude.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.branch import constants_of
+from stickslip.evolution.collocation import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES
+from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined, kernel
+from stickslip.evolution.layout import TERMS, Floats
+from stickslip.evolution.polynomial import evaluate
+from stickslip.evolution.workspace import Run
+
+MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
+"""What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
+ITERATIONS = 40
+
+
+@inlined
+def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
+    """Friction and the change of the state, with derivatives, into run.value."""
+    piece = run.counts[at.PIECE]
+    constants, slip = constants_of(run, piece), law_slip + run.slip_shift[piece]
+    if run.counts[at.HAS_STATE] == 1:
+        call_state_value(run.state_at[piece], constants, slip, rate, state, run.value)
+    else:
+        below = min(rate, 0.0)  # a rate law need not mean anything there, but an iteration may look: straight on
+        call_value(run.value_at[piece], constants, slip, rate - below, run.value)
+        run.value[MU] += run.value[BY_RATE] * below
+        for k in range(BY_STATE, CHANGE_BY_STATE + 1):
+            run.value[k] = 0.0
+    run.value[MU] += run.offset[piece]
+
+
+@kernel
+def rate_at_load(run: Run, load: float, guess: float) -> float:
+    """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
+    impedance, normal = run.par[at.IMPEDANCE], run.par[at.NORMAL]
+    low, high = 0.0, (load + run.par[at.REFERENCE]) / impedance
+    s = guess if low < guess < high else 0.5 * high
+    for _ in range(200):
+        contact_at(run, run.state[at.LAW_SLIP], s, run.state[at.STATE_NOW])
+        error = impedance * s + normal * run.value[MU] - load
+        if error > 0.0:
+            high = s
+        else:
+            low = s
+        step = s - error / (impedance + normal * run.value[BY_RATE])
+        if not low < step < high:
+            step = math.sqrt(low * high) if low > 0.0 else 1e-3 * high
+        if abs(step - s) <= 1e-15 * abs(s) or high <= low:
+            return step
+        s = step
+    return s
+
+
+@kernel
+def assemble(run: Run, h: float, force: float) -> None:
+    """Newton's equations at the present stages, for a step of h seconds; `force` is taken from the load."""
+    par, v, w, m = run.par, run.stage_rate, run.stage_state, run.matrix
+    moving, remembers = run.counts[at.MODE] != 0, run.counts[at.HAS_STATE] == 1
+    mass, chi = par[at.INERTIA] / h, run.k[at.K_CHI] * h
+    size = 2 * STAGES if remembers else STAGES
+    for i in range(1, POINTS):
+        row, other = ahead(m, TERMS * (i - 1)), ahead(m, TERMS * (STAGES + i - 1))
+        walked, change, evolved = 0.0, 0.0, 0.0
+        for j in range(POINTS):
+            walked += INTEGRAL[i, j] * v[j]
+            change += DERIVATIVE[i, j] * v[j]
+            evolved += DERIVATIVE[i, j] * w[j]
+        contact_at(run, run.state[at.LAW_SLIP] + chi * walked, v[i], w[i])
+        value = run.value
+        resisted = par[at.IMPEDANCE] * v[i] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * walked
+        by_walk = par[at.STIFFNESS] * h + par[at.NORMAL] * value[BY_SLIP] * chi
+        for j in range(1, POINTS):
+            row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
+        row[i - 1] += par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] if moving else 1.0
+        row[size] = evaluate(run.seen, POINT[i]) - force - resisted - mass * change if moving else 0.0
+        if remembers:
+            for j in range(1, POINTS):
+                row[STAGES + j - 1] = 0.0
+                other[j - 1] = -h * value[CHANGE_BY_SLIP] * chi * INTEGRAL[i, j] if moving else 0.0
+                other[STAGES + j - 1] = DERIVATIVE[i, j]
+            row[STAGES + i - 1] = par[at.NORMAL] * value[BY_STATE] if moving else 0.0
+            other[i - 1] -= h * value[CHANGE_BY_RATE]
+            other[STAGES + i - 1] -= h * value[CHANGE_BY_STATE]
+            other[size] = h * value[CHANGE] - evolved
+
+
+@kernel
+def eliminate(m: Floats, size: int) -> bool:
+    """Solve the equations in the rows of m; the solution replaces the last column. False where they are singular."""
+    for i in range(size):
+        row, largest = ahead(m, TERMS * i), 0.0
+        for j in range(size):
+            largest = max(largest, abs(row[j]))
+        if not 0.0 < largest < math.inf:
+            return False
+        for j in range(size + 1):
+            row[j] /= largest
+    for k in range(size):
+        pivot = k
+        for i in range(k + 1, size):
+            if abs(m[TERMS * i + k]) > abs(m[TERMS * pivot + k]):
+                pivot = i
+        if m[TERMS * pivot + k] == 0.0:
+            return False
+        for j in range(k, size + 1):
+            m[TERMS * k + j], m[TERMS * pivot + j] = m[TERMS * pivot + j], m[TERMS * k + j]
+        for i in range(k + 1, size):
+            factor = m[TERMS * i + k] / m[TERMS * k + k]
+            if factor != 0.0:
+                for j in range(k + 1, size + 1):
+                    m[TERMS * i + j] -= factor * m[TERMS * k + j]
+    for i in range(size - 1, -1, -1):
+        for j in range(i + 1, size):
+            m[TERMS * i + size] -= m[TERMS * i + j] * m[TERMS * j + size]
+        m[TERMS * i + size] /= m[TERMS * i + i]
+    return True
+
+
+@kernel
+def correct(run: Run, size: int) -> float:
+    """Add the solution of Newton's equations to the stages; how large the change is, relative to the stages."""
+    v, w, m = run.stage_rate, run.stage_state, run.matrix
+    fastest, farthest, moved, evolved = 1e-300, run.par[at.STATE_SCALE] + 1e-300, 0.0, 0.0
+    for i in range(1, POINTS):
+        step = m[TERMS * (i - 1) + size]
+        v[i] += step
+        moved, fastest = max(moved, abs(step)), max(fastest, abs(v[i]))
+        if size > STAGES:
+            step = m[TERMS * (STAGES + i - 1) + size]
+            w[i] += step
+            evolved, farthest = max(evolved, abs(step)), max(farthest, abs(w[i]))
+        if not (math.isfinite(v[i]) and math.isfinite(w[i])):
+            return math.inf
+    return max(moved / fastest, evolved / farthest)
+
+
+@kernel
+def solve_stages(run: Run, h: float, force: float) -> bool:
+    """Slip rates and states at the points of a step of h seconds, from the values at its start. False if they are not found."""
+    for i in range(1, POINTS):
+        run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
+    size = 2 * STAGES if run.counts[at.HAS_STATE] == 1 else STAGES
+    before = math.inf
+    for _ in range(ITERATIONS):
+        assemble(run, h, force)
+        if not eliminate(run.matrix, size):
+            return False
+        change = correct(run, size)
+        # Newton squares its error: the next change would be lost in the tolerance; or the last digits go round in circles
+        if change <= 1e-2 * math.sqrt(run.par[at.TOLERANCE]) or 0.1 * before < change < 1e-9:
+            return True
+        if math.isinf(change):
+            return False
+        before = change
+    return False
