@@ -38,14 +38,15 @@ PAIRS = [
 def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     """A law of a kind; combinations that the law refuses are not drawn."""
     given = {name: draw(_field(entry)) for name, (entry, default) in fields_of(LAWS[kind]).items() if _wanted(name, kind, default)}
-    if kind == "expression":
-        return FromExpression(given["expression"], EXPRESSIONS[given["expression"]], counts=given["counts"])
     if any(isinstance(entry, Part) for entry, _ in fields_of(LAWS[kind]).values()):
         slip, rate = draw(st.sampled_from(PAIRS))
         given = {"slip": draw(laws(slip)), "rate": draw(laws(rate))}
     lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
     given = {name: value[: min(lengths)] if isinstance(value, tuple) else value for name, value in given.items()}
     try:
+        if kind == "expression":
+            choices = {name: given[name] for name in ("counts", "memory")}
+            return FromExpression(given["expression"], EXPRESSIONS[given["expression"]], **choices)
         return LAWS[kind](**given)
     except InputError:
         assume(False)

@@ -21,7 +21,8 @@ TERMS = ORDER + 1
 # ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-PARAMETERS = 17
+HEALED_PIECE = 17  # of the law, where rest heals the contact; -1 where the law remembers all slip
+PARAMETERS = 18
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
@@ -37,7 +38,7 @@ COUNTS = 22
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
-NO_CAUSE, START, FOLD, ECHO, LOADING = range(5)
+NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
 FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED = range(6)
 
 

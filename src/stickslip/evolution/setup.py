@@ -84,6 +84,7 @@ def _parameters(problem: Problem) -> at.Floats:
     par[at.REFERENCE] = problem.strength
     par[at.COUNTS_NET] = 1.0 if law.counts == "net" else 0.0
     par[at.STATIC_EXCESS] = law.static_excess
+    par[at.HEALED_PIECE] = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
     par[at.LARGEST_DROP] = max(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):
