@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -214,3 +215,14 @@ def test_a_composite_remembers_as_its_slip_law(kind: str) -> None:
     times = np.linspace(0.0, 20.0, 81)
     assert len(run.events) > 2
     assert run.slip(times) == pytest.approx(theirs.slip(times), rel=0.0, abs=1e-7 * float(run.slip(20.0)))
+
+
+def test_a_saved_run_keeps_what_it_forgot(tmp_path: Path) -> None:
+    run = ss.simulate(pulled(WEAKENING, 0.02), 12.0)
+    again = ss.load(ss.save(run, tmp_path / "run.nc"))
+    times = np.linspace(0.0, 12.0, 121)
+    assert len(run.events) > 2
+    assert again.problem == run.problem
+    assert (again.traction(times) == run.traction(times)).all()
+    assert (again.energy(times).heat == run.energy(times).heat).all()
+    assert float(run.traction(times[times > run.events.end[0]]).max()) > 5.0  # healed: 6 N, not 4
