@@ -6,10 +6,11 @@ python docs/law_table.py
 from __future__ import annotations
 
 import sys
-from dataclasses import fields
 from pathlib import Path
 
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.fields import fields_of
+from stickslip.quantities import Quantity
 
 PAGE = Path(__file__).with_name("laws-and-bodies.md")
 HEADING, NEXT = "## The laws\n", "\n## "
@@ -24,15 +25,14 @@ def table() -> str:
 def row(law: type[FrictionLaw]) -> str:
     about = (law.__doc__ or "").strip().split("\n\n")[0]
     text = " ".join(about.split()).replace("|", "\\|")
-    given = ", ".join(f"`{f.name}`{unit(f.metadata)}" for f in fields(law))
+    given = ", ".join(f"`{name}`{unit(declared)}" for name, (declared, _) in fields_of(law).items())
     counts = law.counts if isinstance(law.counts, str) else "of its parts"
-    counts = "either" if "counts" in {f.name for f in fields(law)} else counts
+    counts = "either" if "counts" in fields_of(law) else counts
     return f"| `{law.kind}`, `{law.__name__}` | {text} | {counts} | {given} | {law.source} |"
 
 
-def unit(metadata: object) -> str:
-    declared = getattr(metadata, "get", lambda _: None)("quantity")
-    return "" if declared is None or declared.unit == "1" else f" ({declared.unit})"
+def unit(declared: object) -> str:
+    return f" ({declared.unit})" if isinstance(declared, Quantity) and declared.unit != "1" else ""
 
 
 def with_table(text: str) -> str:

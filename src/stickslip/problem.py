@@ -94,7 +94,12 @@ class Problem:
 
     @property
     def law_slip(self) -> float:
-        """The slip (m) that the friction law sees at the start: u0, or its magnitude where the law counts the path."""
+        """The slip (m) that the friction law sees at the start: u0, its magnitude where the law counts the path, 0 where it heals.
+
+        The start is an arrest: a law that remembers slip since the last one knows nothing of u0.
+        """
+        if self.friction.memory == "since-arrest":
+            return 0.0
         return abs(self.initial_slip) if self.friction.counts == "path" else self.initial_slip
 
     @property

@@ -146,9 +146,9 @@ def load(path: str | Path) -> Solution:
     attributes = dataset.attrs
     problem = read_scenario(attributes["scenario"], str(path)).problem
     names = ("history_whole", "history_real", "history_load", "history_rate")
-    columns = [np.ascontiguousarray(dataset[name].to_numpy()) for name in names]
-    state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, columns[-1].shape[1]))
-    store = Store(*columns, np.ascontiguousarray(state))
+    whole, real, load, rate = (np.ascontiguousarray(dataset[name].to_numpy()) for name in names)
+    state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, load.shape[1]))
+    store = Store(whole, real, load, rate, np.ascontiguousarray(state))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
     history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))

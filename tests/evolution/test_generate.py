@@ -74,6 +74,18 @@ def test_difference_keeps_its_digits(name: str) -> None:
         assert out[0] == pytest.approx(float(exact), rel=5e-12, abs=0.0)
 
 
+def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
+    """exp(-1000) is 0 and exp(1000) is infinite: their product must not be taken."""
+    functions, constants = compiled(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
+    out = np.zeros(3)
+    for step in (-1.0, -0.99, -0.5, 0.5):
+        VALUE(functions.value)(pointer(constants), step, 0.0, pointer(out))
+        with mpmath.workdps(50):
+            exact = 0.5 * (mpmath.exp(-1000 * (1 + mpmath.mpf(step))) - mpmath.exp(-1000))
+            slope = -500 * mpmath.exp(-1000 * (1 + mpmath.mpf(step)))
+        assert [out[0], out[2]] == pytest.approx([float(exact), float(slope)], rel=1e-12, abs=0.0)
+
+
 @pytest.mark.parametrize("name", FORMULAS)
 def test_slopes(name: str) -> None:
     formula, out = FORMULAS[name], np.zeros(3)

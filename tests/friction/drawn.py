@@ -38,8 +38,6 @@ PAIRS = [
 def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     """A law of a kind; combinations that the law refuses are not drawn."""
     given = {name: draw(_field(entry)) for name, (entry, default) in fields_of(LAWS[kind]).items() if _wanted(name, kind, default)}
-    if kind == "expression":
-        return FromExpression(given["expression"], EXPRESSIONS[given["expression"]], counts=given["counts"])
     if kind == "lagged":
         given["rate"] = draw(laws(draw(st.sampled_from(["hyperbolic-rate", "exponential-stribeck"]))))
     elif any(isinstance(entry, Part) for entry, _ in fields_of(LAWS[kind]).values()):
@@ -48,6 +46,9 @@ def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
     given = {name: value[: min(lengths)] if isinstance(value, tuple) else value for name, value in given.items()}
     try:
+        if kind == "expression":
+            choices = {name: given[name] for name in ("counts", "memory")}
+            return FromExpression(given["expression"], EXPRESSIONS[given["expression"]], **choices)
         return LAWS[kind](**given)
     except InputError:
         assume(False)

@@ -59,6 +59,37 @@ def test_the_shocks_of_figure_6() -> None:
     assert end.traction_after == pytest.approx(-399_999.969, rel=0, abs=6e-4)
 
 
+def test_the_cycles_of_the_block() -> None:
+    scenario = load_scenario("cycles-block")
+    run = scenario.run()
+    events = run.events
+    assert len(events) == 7
+    assert events.slip.max() == pytest.approx(0.164279, rel=0, abs=5e-7)
+    assert events.slip.max() == pytest.approx(events.slip.min(), rel=1e-9, abs=0)
+    recurrence = events.start.diff().iloc[1:]
+    assert recurrence.mean() / YEAR == pytest.approx(events.slip[0] / 0.035, rel=1e-6, abs=0)
+    assert recurrence.max() == pytest.approx(recurrence.min(), rel=1e-9, abs=0)
+    energy = run.energy([run.duration])
+    assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-8
+
+
+def test_the_cycles_of_the_slab() -> None:
+    """Small slips lead in each main one; main slips do not depend on the tolerance, so they are not chaos of rounding."""
+    scenario = load_scenario("cycles-slab")
+    runs = [replace(scenario, rtol=rtol).run() for rtol in (1e-10, 1e-13)]
+    main = [(events := run.catalogue(event_rate=0.0))[events.slip > 1e-5] for run in runs]
+    assert len(main[0]) == 7
+    assert main[0].slip.between(2.0e-5, 2.5e-5).all()
+    assert main[0].start.diff().iloc[1:].between(4.2e-3, 4.6e-3).all()
+    assert main[0].slip.to_numpy() == pytest.approx(main[1].slip.to_numpy(), rel=1e-6, abs=0)
+    assert main[0].start.to_numpy() == pytest.approx(main[1].start.to_numpy(), rel=1e-7, abs=1e-9)
+    small = runs[0].catalogue(event_rate=0.0)
+    assert len(small) - len(main[0]) > 15
+    assert len(runs[0].history) < 5000
+    energy = runs[0].energy([runs[0].duration])
+    assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-8
+
+
 def _last_place(value: float) -> int:
     """Exponent of the last decimal place of a number as written."""
     mantissa, _, exponent = repr(value).partition("e")

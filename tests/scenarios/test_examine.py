@@ -123,3 +123,12 @@ def test_warnings() -> None:
     block = load_scenario("fig6-block-printed")
     assert warnings(block) == ""
     assert "has no effect" in warnings(replace(block, problem=replace(block.problem, selection="maxwell")))
+
+
+def test_healing_at_once_on_a_slab_without_mass_is_warned_of() -> None:
+    scenario = load_scenario("cycles-slab")
+    assert warnings(scenario) == ""
+    bare = replace(scenario.problem, body=replace(scenario.problem.body, contact_mass=0.0))
+    assert "creeps by tiny slips" in warnings(replace(scenario, problem=bare))
+    worn = replace(bare, friction=replace(bare.friction, memory="all"))
+    assert "creeps by tiny slips" not in warnings(replace(scenario, problem=worn))

@@ -26,7 +26,7 @@ def new(
     """Print a commented scenario to start from.
 
     "slab" and "block" are starters that explain every key, its unit and its
-    range; the others are runs of the paper. Redirect the text into a file,
+    range; the others are bundled runs. Redirect the text into a file,
     edit it, and hand it to `stickslip check` and `stickslip run`.
 
     \b

@@ -46,6 +46,13 @@ _options = dict(cache=True, nopython=True, error_model="numpy", fastmath={{"cont
 
 
 @njit(error_model="numpy")
+def exp_difference(value, argument, step):
+    if abs(step) < 1.0:
+        return value * expm1(step)
+    return exp(argument + step) - value  # nothing is lost, and value may be 0 where expm1(step) is infinite
+
+
+@njit(error_model="numpy")
 def power_difference(base, step, exponent):
     if base > 0.0 and step > -base:
         return base**exponent * expm1(exponent * log1p(step / base))

@@ -144,7 +144,7 @@ def strength_ahead(run: Run, out: Floats) -> None:
 
 
 @kernel
-def stick_and_heal(run: Run, xi_to: float) -> None:
+def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
     width = collocate(run, xi_to - run.state[at.XI])
     reached = width >= xi_to - run.state[at.XI]

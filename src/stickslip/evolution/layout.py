@@ -21,8 +21,9 @@ TERMS = ORDER + 1
 # ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-STATE_SCALE, RATE_FLOOR = 17, 18
-PARAMETERS = 19
+STATE_SCALE, RATE_FLOOR, HEALED_PIECE = 17, 18, 19
+# HEALED_PIECE: of the law, where rest heals the contact; -1 where the law remembers all slip
+PARAMETERS = 20
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
@@ -40,7 +41,7 @@ COUNTS = 26
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
-NO_CAUSE, START, FOLD, ECHO, LOADING = range(5)
+NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
 FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED = range(6)
 
 

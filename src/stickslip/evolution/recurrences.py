@@ -166,7 +166,7 @@ class Recurrences:
             sine, cosine = (self.reference(Expression(name, (a,))) for name in ("sin", "cos"))
             return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
         return {
-            "exp": f"{r} * expm1({ea})",
+            "exp": f"exp_difference({r}, {ra}, {ea})",
             "log": f"log1p({ea} / {ra})",
             "sqrt": f"{ea} / (sqrt({ra} + {ea}) + {r})",
             "tanh": f"tanh({ea}) * (1.0 - {r} * {r}) / (1.0 + {r} * tanh({ea}))",

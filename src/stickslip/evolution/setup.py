@@ -91,6 +91,7 @@ def _parameters(problem: Problem) -> at.Floats:
     par[at.STATIC_EXCESS] = law.static_excess
     par[at.STATE_SCALE] = law.state.scale if law.state else 0.0
     par[at.RATE_FLOOR] = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
+    par[at.HEALED_PIECE] = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
     par[at.LARGEST_DROP] = max(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):

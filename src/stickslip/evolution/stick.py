@@ -1,14 +1,20 @@
-"""The contact at rest: what a new piece of load finds, how long rest lasts, and how slip comes to rest."""
+"""The contact at rest: what a new piece of load finds, how rest heals, how long it lasts, and how slip comes to rest."""
 
 from __future__ import annotations
+
+import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, choose_branch, friction_at, leave_branch, rest_limit, towards
 from stickslip.evolution.compiled import ahead, inlined
-from stickslip.evolution.implicit import forgotten, stick_and_heal
+from stickslip.evolution.implicit import forgotten, stick_with_state
+from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, evaluate, fill, first_descent, restrict, scale
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.workspace import Run
+
+TOUCH = 10.0
+"""Rests up to the root of this many local tolerances (the root of `rtol`), in rows, are touches of rest in passing."""
 
 
 @inlined
@@ -40,15 +46,9 @@ def arrive(run: Run) -> None:
 
 
 @inlined
-def stick(run: Run, xi_to: float) -> None:
-    """Stay at rest until the load leaves what friction can hold."""
-    if run.counts[at.HAS_STATE] == 1 and run.state[at.STATE_NOW] != 0.0 and not forgotten(run):
-        stick_and_heal(run, xi_to)
-        return
-    width, part = xi_to - run.state[at.XI], run.part
-    limit = rest_limit(run)
-    load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
-    restrict(run.load, run.state[at.XI], width, load)
+def onset_of_slip(run: Run, load: Floats) -> tuple[float, int]:
+    """Where on [0, 1] of a stretch of load rest ends, and in which direction; NONE if it lasts."""
+    part, limit = run.part, rest_limit(run)
     onset, direction = NONE, 0
     for way in (1, -1):
         for k in range(at.TERMS):
@@ -57,6 +57,50 @@ def stick(run: Run, xi_to: float) -> None:
         first = first_descent(part, run.spare)
         if first < onset:
             onset, direction = first, way
+    return onset, direction
+
+
+@inlined
+def is_arrest(run: Run, lasting: float) -> bool:
+    """Whether rest that lasts so long (s, without healing) is more than a touch of rest in passing.
+
+    A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
+    the order of its root. A contact without mass stops because the load falls, and stays.
+    """
+    return run.counts[at.HAS_INERTIA] == 0 or lasting > math.sqrt(TOUCH * run.par[at.TOLERANCE]) * run.par[at.ROW_TIME]
+
+
+@inlined
+def heal(run: Run, load: float) -> None:
+    """A law that remembers slip since the last arrest forgets it: friction is that of the start. Slip at once if it cannot hold."""
+    before = rest_limit(run)
+    run.state[at.LAW_SLIP], run.counts[at.PIECE] = 0.0, int(run.par[at.HEALED_PIECE])
+    limit = rest_limit(run)
+    if limit == before:
+        return
+    run.counts[at.EDGE] = 0
+    for direction in (1, -1):
+        beyond = towards(run, load, direction) - limit
+        if beyond > 0.0:
+            run.counts[at.MODE] = direction
+            if run.counts[at.HAS_INERTIA] == 0:
+                note_jump(run, direction * beyond / run.par[at.IMPEDANCE], at.HEALING)
+
+
+@inlined
+def stick(run: Run, xi_to: float) -> None:
+    """Stay at rest until the load leaves what friction can hold."""
+    if run.counts[at.HAS_STATE] == 1 and run.state[at.STATE_NOW] != 0.0 and not forgotten(run):
+        stick_with_state(run, xi_to)
+        return
+    width, load = xi_to - run.state[at.XI], ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
+    restrict(run.load, run.state[at.XI], width, load)
+    onset, direction = onset_of_slip(run, load)
+    if run.par[at.HEALED_PIECE] >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state[at.SPEED]):
+        heal(run, load[0])
+        if run.counts[at.MODE] != 0:
+            return
+        onset, direction = onset_of_slip(run, load)
     slips = onset <= 1.0 - TIE
     if slips:
         scale(load, onset)
@@ -67,7 +111,7 @@ def stick(run: Run, xi_to: float) -> None:
     run.counts[at.EDGE] = 0
     if slips:
         run.counts[at.MODE], run.counts[at.EDGE] = direction, direction
-        choose_branch(run, limit)
+        choose_branch(run, rest_limit(run))
 
 
 @inlined

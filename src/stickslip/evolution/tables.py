@@ -16,7 +16,7 @@ from stickslip.problem import Problem
 if TYPE_CHECKING:
     import pandas as pd
 
-CAUSES = ("", "start", "fold", "echo", "loading")
+CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 
 MAXIMA_PER_PIECE = 32
 

@@ -18,7 +18,7 @@ PREFIXES = ("slip_", "rate_")
 
 @dataclass(frozen=True)
 class CompositeLaw(FrictionLaw):
-    """A slip law and a rate law, joined number by number. It counts slip as its slip law does.
+    """A slip law and a rate law, joined number by number. It counts and remembers slip as its slip law does.
 
     One of the two may have knots, not both. The parts are `slip` and `rate`; their parameters get these names in front.
     """
@@ -52,6 +52,10 @@ class CompositeLaw(FrictionLaw):
     @property
     def counts(self) -> Literal["net", "path"]:  # type: ignore[override] # follows the slip law
         return self.slip.counts
+
+    @property
+    def memory(self) -> Literal["all", "since-arrest"]:  # type: ignore[override] # follows the slip law
+        return self.slip.memory
 
     @property
     def knot_variable(self) -> Literal["slip", "rate"]:  # type: ignore[override] # follows the part with knots

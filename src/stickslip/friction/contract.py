@@ -67,6 +67,8 @@ class FrictionLaw(ABC):
     """Paper and equation."""
     counts: ClassVar[Literal["net", "path"]] = "net"
     """What slip the law sees: "net" (u itself, forwards and backwards) or "path" (its length; initial_slip counts as walked)."""
+    memory: ClassVar[Literal["all", "since-arrest"]] = "all"
+    """Since when slip is counted: the start, or the last arrest, with which the contact heals (see `friction.memory`)."""
     knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
     """What the knots between pieces are places of: slip (m) or slip rate (m/s)."""
     state: ClassVar[StateVariable | None] = None

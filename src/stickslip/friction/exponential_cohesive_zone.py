@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from stickslip.friction.contract import FrictionLaw
 from stickslip.friction.expression import exp
+from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
 
 
 @dataclass(frozen=True)
-class ExponentialCohesiveZone(FrictionLaw):
+class ExponentialCohesiveZone(RemembersSlip):
     """mu(d) = dynamic + (static - dynamic) y exp(1 - y), y = (d + offset) / distance (d2). d is the path walked, both ways.
 
     Friction reaches `static` at y = 1; offset (d1) below distance leaves a stretch d < distance - offset on which it rises.
@@ -19,8 +19,8 @@ class ExponentialCohesiveZone(FrictionLaw):
 
     kind: ClassVar[str] = "exponential-cohesive-zone"
     source: ClassVar[str] = (
-        "Bolotskaya, Hager & Ampuero, Effects of failure parameterization on pre- and co-seismic earthquake rupture "
-        "(exponential cohesive zone); shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397"
+        "Bolotskaya 2023, doctoral thesis, Massachusetts Institute of Technology, exponential cohesive zone as in its code "
+        "PyLith_custom_friction, doi:10.5281/zenodo.14047393; shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397"
     )
     counts: ClassVar[Literal["net", "path"]] = "path"
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "distance": "0.2 m", "offset": "0.1 m"}

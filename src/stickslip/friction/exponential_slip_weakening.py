@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from stickslip.friction.contract import FrictionLaw
 from stickslip.friction.expression import exp
+from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
 
 
 @dataclass(frozen=True)
-class ExponentialSlipWeakening(FrictionLaw):
+class ExponentialSlipWeakening(RemembersSlip):
     """mu(d) = dynamic + (static - dynamic) exp(-d / distance). d is the path walked, in both directions.
 
     The slip-weakening distance D_w of the source, at which 95 % of the fall is done, is distance times ln 20.

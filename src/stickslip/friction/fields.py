@@ -119,9 +119,12 @@ def declare(field: Field, default: Any = dataclasses.MISSING) -> Any:
 
 
 def fields_of(kind: type) -> dict[str, tuple[Quantity | Field, Any]]:
-    """Everything that a law declares, quantities too, what has no default (MISSING) first: by name, with its default."""
+    """Everything that a law declares, quantities too: by name, with its default.
+
+    First what has no default (MISSING), last the choices.
+    """
     found = [(f.name, f.metadata.get("quantity") or f.metadata.get("field"), f.default) for f in dataclasses.fields(kind)]
-    found.sort(key=lambda one: one[2] is not dataclasses.MISSING)
+    found.sort(key=lambda one: (one[2] is not dataclasses.MISSING, isinstance(one[1], Choice)))
     return {name: (declared, default) for name, declared, default in found if declared is not None}
 
 

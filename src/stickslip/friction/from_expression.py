@@ -11,10 +11,11 @@ import numpy as np
 
 from stickslip.errors import InputError, nearest
 from stickslip.friction.bounds import bounds
-from stickslip.friction.contract import Formula, FrictionLaw
+from stickslip.friction.contract import Formula
 from stickslip.friction.dimensions import check_dimensions
 from stickslip.friction.expression import SLIP, Expression, depends_on, evaluate, nodes_of
 from stickslip.friction.fields import Choice, Named, NamedNumbers, Text, declare
+from stickslip.friction.memory import RemembersSlip
 from stickslip.friction.parse import LARGEST_EXPONENT, LONGEST, RESERVED, parse
 from stickslip.friction.sampled import check_samples
 from stickslip.quantities import quantity
@@ -25,7 +26,7 @@ LONGEST_NAME = 40
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExpressionLaw(FrictionLaw):
+class ExpressionLaw(RemembersSlip):
     """mu(u, v) as the user writes it, u the slip (m) that `counts` names and v >= 0 the slip rate (m/s).
 
     It must have all derivatives where slip begins, at v = 0, and must not be negative: checked on samples up to 10 m and 10 m/s.
@@ -152,13 +153,14 @@ def FromExpression(  # noqa: N802 - reads as the law it makes
     parameters: Mapping[str, float | str] | None = None,
     static: float | None = None,
     counts: Literal["net", "path"] = "net",
+    memory: Literal["all", "since-arrest"] = "all",
 ) -> ExpressionLaw:
     """A law from text such as "mu_d + (mu_s - mu_d) / (1 + alpha*v)", with the parameters' values: numbers in SI or "1 mm/s".
 
     Raises InputError: one line that says which part is wrong. Nothing is evaluated as Python.
     """
     values = tuple(named_value(name, value, "ExpressionLaw:") for name, value in (parameters or {}).items())
-    return ExpressionLaw(expression=expression, values=values, static=static, counts=counts)
+    return ExpressionLaw(expression=expression, values=values, static=static, counts=counts, memory=memory)
 
 
 def named_value(name: str, value: float | str, where: str) -> Named:

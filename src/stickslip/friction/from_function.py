@@ -11,7 +11,7 @@ from stickslip.friction.expression import RATE, SLIP, Expression, Parameter, as_
 from stickslip.friction.from_expression import ExpressionLaw, FromExpression
 from stickslip.friction.text import to_text
 
-OPTIONS = ("static", "counts")
+OPTIONS = ("static", "counts", "memory")
 
 
 def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
@@ -24,7 +24,7 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
 
     The function is called once, with symbols: ordinary operators and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh and what
     they make up are recorded as an `ExpressionLaw`, which a scenario can hold. Branches on values cannot be. Values are numbers
-    in SI or texts with a unit; `static` and `counts` go to the law where the function has no parameter of that name.
+    in SI or texts with a unit; `static`, `counts` and `memory` go to the law where the function has no parameter of that name.
     Raises InputError: one line that says what cannot be traced.
     """
     if function is None:

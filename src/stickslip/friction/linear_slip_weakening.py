@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
-from stickslip.friction.contract import FrictionLaw
+from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
 
 
 @dataclass(frozen=True)
-class LinearSlipWeakening(FrictionLaw):
+class LinearSlipWeakening(RemembersSlip):
     """mu falls linearly from static to dynamic over a slip `distance`, then stays. Counts the path walked, in both directions."""
 
     kind: ClassVar[str] = "linear-slip-weakening"

@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from stickslip.friction.contract import Formula
 from stickslip.friction.fields import Series, declare
+from stickslip.friction.memory import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw, line_along_slip, lines
 from stickslip.quantities import Quantity
 
 
 @dataclass(frozen=True)
-class PiecewiseLinearSlip(PiecewiseLaw):
+class PiecewiseLinearSlip(RemembersSlip, PiecewiseLaw):
     """mu(d) runs straight from point to point, and is constant before the first and beyond the last. d is the path walked."""
 
     kind: ClassVar[str] = "piecewise-linear-slip"
     source: ClassVar[str] = (
-        "Bolotskaya, Hager & Ampuero, Effects of failure parameterization on pre- and co-seismic earthquake rupture "
-        "(double slip weakening, with initial strengthening)"
+        "Bolotskaya & Hager 2022, Bull. Seismol. Soc. Am., doi:10.1785/0120220052 (double slip weakening with initial "
+        "strengthening)"
     )
     counts: ClassVar[Literal["net", "path"]] = "path"
     example: ClassVar[dict[str, Any]] = {"slips": [0.0, "5 cm", "0.2 m", "0.5 m"], "coefficients": [0.55, 0.6, 0.45, 0.4]}

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from stickslip.friction.contract import FrictionLaw
 from stickslip.friction.expression import sin
+from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
 
 
 @dataclass(frozen=True)
-class SinusoidalSlip(FrictionLaw):
+class SinusoidalSlip(RemembersSlip):
     """mu(u) = mean + amplitude sin(wavenumber u): the paper's mu0 + a sin(omega u). Counts net slip."""
 
     kind: ClassVar[str] = "sinusoidal-slip"

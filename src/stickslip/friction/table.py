@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from stickslip.errors import InputError
 from stickslip.friction.contract import Formula
 from stickslip.friction.fields import Choice, Series, declare
+from stickslip.friction.memory import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw, along_rate, along_slip
 from stickslip.quantities import Quantity
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableLaw(PiecewiseLaw):
+class TableLaw(RemembersSlip, PiecewiseLaw):
     """mu through measured points of slip or of slip rate: monotone cubic between them, constant outside (no extrapolation).
 
     The cubic is exact at the points, has no overshoot and a continuous slope between the first and the last. A table of slip
@@ -71,10 +72,11 @@ def FromTable(  # noqa: N802 - reads as the law it makes
     slip: Iterable[float] | None = None,
     rate: Iterable[float] | None = None,
     counts: Literal["net", "path"] = "path",
+    memory: Literal["all", "since-arrest"] = "all",
 ) -> TableLaw:
     """A law through points: friction coefficients at slips (m) or at slip rates (m/s). Raises InputError for bad points."""
     given: dict[str, Any] = {"slip": slip, "rate": rate}
-    return TableLaw(friction=friction, counts=counts, **given)  # type: ignore[arg-type] # checked and made tuples there
+    return TableLaw(friction=friction, counts=counts, memory=memory, **given)  # type: ignore[arg-type] # checked and made tuples there
 
 
 def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -101,11 +101,11 @@ class _Stepper:
         self.hyperbolic = self.mass == 0.0 and law.kind == "hyperbolic-rate"
         if self.mass == 0.0 and law.depends_on_rate and law.kind not in ("hyperbolic-rate", "coulomb"):
             raise InputError(f"method_of_steps: cannot solve {type(law).__name__} on a contact without mass")
-        self.path = law.counts == "path"
+        self.path, self.heals = law.counts == "path", law.memory == "since-arrest"
         if len(law.pieces) > 1 and law.knot_variable == "rate":
             raise InputError(f"method_of_steps: does not know kinks in slip rate, as {type(law).__name__} has them")
         start = self.problem.law_slip
-        self.part = int(law.piece_at(start))
+        self.home = self.part = int(law.piece_at(start))
         here = float(law.coefficient(start))
         self.offsets = [float(law.piece_coefficient(i, start, 0.0)) - here for i in range(len(law.pieces))]
         self.offsets[self.part] = 0.0
@@ -173,6 +173,9 @@ class _Stepper:
             breaks = {b for b in breaks if b > t + 1e-13 * max(t, 1e-3)}
             stop = min([duration, *breaks])
             load = self.load_near(0.5 * (t + stop))
+            if sense == 0 and self.heals:
+                state[1], self.part = 0.0, self.home
+                sense = next((s for s in (1, -1) if self.beyond(s, load(t, float(state[0])), 0.0) > 0.0), 0)
             end, state, after = self._rest(t, stop, state, load) if sense == 0 else self._slide(t, stop, state, load, sense)
             breaks |= {end + trip}
             t, sense = (

@@ -226,6 +226,8 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
     strain = abs(problem.load) / body.shear_modulus
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
+    if problem.friction.memory == "since-arrest" and body.contact_mass == 0.0 and body.reflection == -1.0:
+        found.append("healing at once on a slab without contact_mass: slowly pulled, it creeps by tiny slips after the first event")
     if scenario.duration < body.two_way_time:
         found.append(f"the run ends before the first echo returns at R = {body.two_way_time:.6g} s")
     if contact.regime == "irregular":
