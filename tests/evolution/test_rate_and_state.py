@@ -1,0 +1,250 @@
+"""Rate-and-state friction: stability against the linearised system, histories against scipy, both directions, both bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, newton
+from scipy.signal import argrelmax
+
+import stickslip as ss
+
+NORMAL, SPEED = 1e8, 1e-4
+LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
+CRITICAL = NORMAL * (LAW.b - LAW.a) / LAW.distance
+"""Stiffness (Pa/m) below which quasi-static sliding is unstable."""
+EVOLUTIONS = pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
+
+
+def law_of(evolution: str) -> ss.friction.RateAndState:
+    return ss.friction.RateAndState(LAW.reference, LAW.a, LAW.b, LAW.distance, LAW.rate, evolution=evolution)
+
+
+def steady(body: Any, law: ss.friction.RateAndState, off: float = 1.0) -> ss.Problem:
+    """Steady sliding at SPEED, but for a state that is off by a factor."""
+    load = NORMAL * float(law.steady_coefficient(SPEED)) + (body.damping if isinstance(body, ss.SpringBlock) else 0.0) * SPEED
+    return ss.Problem(body, law, pull_rate=SPEED, initial_load=load, initial_state=off * float(law.steady_state(SPEED)))
+
+
+def growth(solution: ss.Solution, start: float, every: float | None = None) -> float:
+    """Rate (1/s) at which the swings of the slip rate about SPEED grow, from its maxima after `start`.
+
+    A slab is looked at once `every` round trip: what bounces in it is the same each time.
+    """
+    time = np.arange(start, solution.duration, every or (solution.duration - start) / 40_000)
+    rate = solution.slip_rate(time) / SPEED - 1.0
+    top = argrelmax(rate, order=100)[0]
+    assert len(top) >= 4
+    return float(np.polyfit(time[top], np.log(rate[top]), 1)[0])
+
+
+def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
+    """The linearised block: m s^2 + damping s + K + S s/V (a - b / (1 + s Dc/V)) = 0, its root with the largest real part."""
+    time = LAW.distance / SPEED
+    viscous = damping + NORMAL * LAW.a / SPEED
+    cubic = [mass * time, mass + viscous * time, viscous - NORMAL * LAW.b / SPEED + stiffness * time, stiffness]
+    return complex(max(np.roots(cubic), key=lambda root: root.real))
+
+
+@pytest.mark.parametrize("share", [0.98, 1.02])
+@pytest.mark.parametrize("damping", [0.0, 2e9])
+@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+def test_critical_stiffness_and_growth_rate(damping: float, evolution: str, share: float) -> None:
+    """k_c = S (b - a) / Dc - damping V / Dc, for hardly any mass.
+
+    Measured growth against the linearised system: 2e-6 of the frequency of the swings, whose amplitude is 1e-4.
+    """
+    critical = CRITICAL - damping * SPEED / LAW.distance
+    root = slowest_root(1.0, share * critical, damping)
+    assert (root.real > 0.0) == (share < 1.0)
+    assert abs(slowest_root(1.0, critical, damping).real) < 1e-4 * abs(root.imag)
+    period = 2.0 * np.pi / abs(root.imag)
+    block = ss.SpringBlock(1.0, share * critical, NORMAL, damping)
+    run = ss.simulate(steady(block, law_of(evolution), 1.0001), 12.0 * period)
+    assert growth(run, 3.0 * period) == pytest.approx(root.real, rel=0.0, abs=2e-6 * abs(root.imag))
+
+
+@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
+    """k_c = S (b - a) / Dc (1 + m V^2 / (S a Dc)), here twice that without mass.
+
+    A heavy block starts from rest, far from steady sliding. Above k_c its swings fade, and when they are small they fade as the
+    linearised system says, to 1e-5 of their frequency; at 0.9 k_c, where a block without mass would be stable, they stay large.
+    """
+    mass = NORMAL * LAW.a * LAW.distance / SPEED**2
+    runs = {}
+    for share in (0.9, 1.2):
+        stiffness = share * 2.0 * CRITICAL
+        root = slowest_root(mass, stiffness, 0.0)
+        period = 2.0 * np.pi / abs(root.imag)
+        assert abs(slowest_root(mass, 2.0 * CRITICAL, 0.0).real) < 1e-6 * abs(root.imag)
+        runs[share] = ss.simulate(steady(ss.SpringBlock(mass, stiffness, NORMAL), law_of(evolution)), 60.0 * period, rtol=1e-8)
+    swings = {share: np.ptp(run.slip_rate(np.linspace(50.0, 60.0, 1000) * period)) / SPEED for share, run in runs.items()}
+    assert swings[1.2] < 1e-3 < 0.2 < swings[0.9]
+    assert growth(runs[1.2], 45.0 * period) == pytest.approx(root.real, rel=0.0, abs=1e-5 * abs(root.imag))
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_growth_on_a_slab(share: float) -> None:
+    """S (a - b / (1 + s Dc/V)) / V + Z coth(s h/c) = 0: the slab's own equation, waves and all. Tolerance 2e-4 of the frequency."""
+    slab = ss.ElasticSlab(2800, 3500, 3.43e10 / (share * CRITICAL), NORMAL)
+    time, half = LAW.distance / SPEED, 0.5 * slab.two_way_time
+
+    def equation(s: complex) -> complex:
+        return NORMAL / SPEED * (LAW.a - LAW.b / (1.0 + s * time)) + slab.impedance / np.tanh(s * half)
+
+    guess = complex(0.05 * (1.0 - share) / time, np.sqrt((LAW.b - LAW.a) / LAW.a) / time)
+    root = complex(newton(equation, guess, maxiter=200))
+    assert (root.real > 0.0) == (share < 1.0)
+    period = 2.0 * np.pi / abs(root.imag)
+    run = ss.simulate(steady(slab, LAW, 1.001), 8.0 * period, rtol=1e-8)
+    assert growth(run, period, slab.two_way_time) == pytest.approx(root.real, rel=0.0, abs=2e-4 * abs(root.imag))
+
+
+@EVOLUTIONS
+def test_block_against_scipy(evolution: str) -> None:
+    """A whole stick-slip event, against Radau on ln v. Absolute 1e-6 of the slip and of the state's logarithm."""
+    law = law_of(evolution)
+    block = ss.SpringBlock(1e3, 0.3 * CRITICAL, NORMAL)
+    problem = steady(block, law, 1.2)
+    duration = 40.0 * LAW.distance / SPEED
+    times = np.linspace(0.1 * duration, duration, 30)
+    start = ss.simulate(problem, 0.01 * duration, rtol=1e-12)  # past the first microseconds, in which v rises from 0
+    begin = start.duration
+
+    def derivative(t: float, y: Any) -> list[float]:
+        rate = np.exp(y[1])
+        friction = NORMAL * float(law.coefficient(0.0, rate, y[2]))
+        force = problem.load + block.stiffness * (SPEED * t - y[0]) - friction
+        return [rate, force / (block.mass * rate), float(law.state_rate(law, 0.0, rate, y[2]))]
+
+    first = [float(start.slip(begin)), np.log(float(start.slip_rate(begin))), law.inner_state(float(start.state(begin)))]
+    theirs = solve_ivp(derivative, (begin, duration), first, method="Radau", rtol=1e-9, atol=1e-12, t_eval=times)
+    run = ss.simulate(problem, duration)
+    assert theirs.success
+    assert run.events.peak_rate.max() > 1e3 * SPEED
+    assert run.slip(times) == pytest.approx(theirs.y[0], rel=0.0, abs=1e-6 * theirs.y[0][-1])
+    inner = np.array([law.inner_state(float(theta)) for theta in run.state(times)])
+    assert inner == pytest.approx(theirs.y[2], rel=0.0, abs=1e-5)
+
+
+@EVOLUTIONS
+def test_slab_against_scipy(evolution: str) -> None:
+    """Two round trips of a slab without contact mass: theta by LSODA, v from the contact equation by bisection at every call."""
+    law = law_of(evolution)
+    slab = ss.ElasticSlab(2800, 3500, 10.0, NORMAL)
+    problem = ss.Problem(slab, law, pull_rate=1e-3, initial_load=0.65 * NORMAL, initial_state=float(law.steady_state(SPEED)))
+    trip = slab.two_way_time
+
+    def rate_at(load: float, w: float) -> float:
+        return float(
+            brentq(
+                lambda v: slab.impedance * v + NORMAL * float(law.coefficient(0, v, w)) - load, 0, load / slab.impedance, xtol=1e-18
+            )
+        )
+
+    def first_load(t: float) -> float:
+        return problem.load + slab.stiffness * problem.pull_rate * t
+
+    def second_load(t: float) -> float:
+        w = float(first.sol(t - trip)[1])
+        return first_load(t - trip) - 2 * slab.impedance * (rate_at(first_load(t - trip), w) - problem.pull_rate)
+
+    def derivative(load: Any) -> Any:
+        def change(t: float, y: Any) -> list[float]:
+            rate = rate_at(load(t), y[1])
+            return [rate, float(law.state_rate(law, 0.0, rate, y[1]))]
+
+        return change
+
+    options: dict[str, Any] = {"method": "LSODA", "rtol": 1e-8, "atol": 1e-12, "dense_output": True}
+    first = solve_ivp(derivative(first_load), (0.0, trip), [0.0, problem.state], **options)
+    second = solve_ivp(derivative(second_load), (trip, 2 * trip), first.y[:, -1], **options)
+    run = ss.simulate(problem, 2 * trip)
+    for part, times in ((first, np.linspace(0.01, 1, 12) * trip), (second, np.linspace(1.01, 2, 12) * trip)):
+        slip, w = part.sol(times)
+        assert run.slip(times) == pytest.approx(slip, rel=0.0, abs=1e-6 * second.y[0, -1])
+        assert np.log(run.state(times) * law.rate / law.distance) == pytest.approx(w, rel=0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("body", [ss.SpringBlock(1e3, CRITICAL, NORMAL), ss.ElasticSlab(2800, 3500, 10.0, NORMAL)])
+def test_both_directions_are_mirror_images(body: Any) -> None:
+    runs = [
+        ss.simulate(ss.Problem(body, LAW, initial_load=sign * 0.65 * NORMAL, initial_state=1.0), 0.02, rtol=1e-9)
+        for sign in (1, -1)
+    ]
+    times = np.linspace(0.0, 0.02, 50)
+    assert (runs[0].slip(times) == -runs[1].slip(times)).all()
+    assert (runs[0].state(times) == runs[1].state(times)).all()
+    assert float(np.ptp(runs[0].slip(times))) > 1e-6
+
+
+def test_the_slip_rate_passes_through_zero() -> None:
+    """A light block overshoots its spring: it swings back and never sticks; energy balances to 1e-10 of the heat."""
+    law = ss.friction.RateAndState(0.05, 0.01, 0.0, 1e-5, 1e-6)
+    block = ss.SpringBlock(1e4, 1e10, 1e6)
+    run = ss.simulate(ss.Problem(block, law, initial_load=1e6, initial_state=1.0), 0.2)
+    rate = run.slip_rate(np.linspace(0.0, 0.2, 2001))
+    assert rate.min() < -1e-3 < 1e-3 < rate.max()
+    energy = run.energy(np.linspace(0.0, 0.2, 20))
+    assert float(np.abs(energy.balance).max()) < 1e-10 * float(energy.heat[-1])
+
+
+def test_state_friction_dissipates_and_the_contact_equation_holds() -> None:
+    slab = ss.ElasticSlab(2800, 3500, 10.0, NORMAL)
+    run = ss.simulate(ss.Problem(slab, LAW, pull_rate=1e-3, initial_load=0.65 * NORMAL, initial_state=1.0), 0.1)
+    times = np.linspace(0.0, 0.1, 400)[1:]
+    rate, traction = run.slip_rate(times), run.traction(times)
+    assert slab.impedance * rate + traction == pytest.approx(run.load(times), rel=1e-14)
+    by_law = NORMAL * LAW.coefficient(0.0, np.abs(rate), np.log(run.state(times) * LAW.rate / LAW.distance))
+    assert by_law == pytest.approx(np.abs(traction), rel=0.0, abs=1e-9 * NORMAL)
+    assert (traction * rate >= 0.0).all()
+
+
+def test_steady_sliding() -> None:
+    """mu_ss = reference + (a - b) ln(v / rate), and b ln 2 more for PRZ, whose steady theta is 2 Dc / v. Relative 1e-12."""
+    for evolution in ("ageing", "slip", "prz"):
+        law = law_of(evolution)
+        more = law.b * np.log(2.0) if evolution == "prz" else 0.0
+        expected = law.reference + (law.a - law.b) * np.log(SPEED / law.rate) + more
+        assert float(law.steady_coefficient(SPEED)) == pytest.approx(expected, rel=1e-12)
+        w = law.inner_state(float(law.steady_state(SPEED)))
+        assert float(law.state_rate(law, 0.0, SPEED, w)) == pytest.approx(0.0, abs=1e-12 * SPEED / law.distance)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"initial_load": 6e7}, "needs initial_state"),
+        ({"initial_load": 6e7, "initial_state": 0.0}, "initial_state must be greater than 0 s"),
+        ({"initial_load": 6e7, "initial_state": float("nan")}, "initial_state must be finite"),
+        ({"initial_excess": 0.0, "initial_state": 1.0}, "no static strength"),
+    ],
+)
+def test_bad_starts_are_told_in_one_line(given: dict[str, float], message: str) -> None:
+    with pytest.raises(ss.InputError, match=f"^Problem: [^\n]*{message}[^\n]*$"):
+        ss.Problem(ss.SpringBlock(1.0, 1.0, 1e8), LAW, **given)
+
+
+def test_bad_laws_are_told_in_one_line() -> None:
+    with pytest.raises(ss.InputError, match=r"^RateAndState: a must be at least 0.0025[^\n]*$"):
+        ss.friction.RateAndState(0.6, 1e-3, 0.015, 1e-5)
+    with pytest.raises(ss.InputError, match=r"evolution 'agein' is unknown; did you mean 'ageing'"):
+        ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, evolution="agein")
+    with pytest.raises(ss.InputError, match=r"^SlipPlusRate: rate must be a law without a state"):
+        ss.friction.SlipPlusRate(ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1), LAW)
+    with pytest.raises(ss.InputError, match=r"^state: Coulomb has no state variable$"):
+        ss.simulate(ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), ss.friction.Coulomb(0.6, 0.5), initial_load=0.0), 1.0).state(0.5)
+
+
+def test_a_saved_run_keeps_its_state(tmp_path: Any) -> None:
+    run = ss.simulate(steady(ss.SpringBlock(1e3, CRITICAL, NORMAL), LAW, 1.1), 1.0)
+    again = ss.load(run.save(tmp_path / "run.nc"))
+    times = np.linspace(0.0, 1.0, 30)
+    assert (again.state(times) == run.state(times)).all()
+    assert again.problem == run.problem
+    assert run.dataset(times).state.attrs["units"] == "s"
+    assert run.status.ok
