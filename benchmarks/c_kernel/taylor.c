@@ -457,7 +457,7 @@ static void end_row(Run *r) {
 
 int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64_t budget) {
     Run run, *r = &run;
-    int64_t pieces = table[13], branches = table[15], loads = table[16];
+    int64_t pieces = table[14], branches = table[16], loads = table[17];
     const double *law = (const double *)table[3], *branch = (const double *)table[4], *first = (const double *)table[5];
     run.par = (const double *)table[0], run.c = (const double *)table[2];
     run.shift = law, run.offset = law + pieces;
@@ -466,7 +466,7 @@ int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64
     run.first_theta = first, run.first_load = first + loads, run.first_slope = first + 2 * loads, run.first_jump = first + 3 * loads;
     run.state = (double *)table[6], run.count = (int64_t *)table[7], run.whole = (int64_t *)table[9];
     run.real = (double *)table[10], run.all_load = (double *)table[11], run.all_rate = (double *)table[12];
-    run.branches = branches, run.loads = loads, run.capacity = table[17];
+    run.branches = branches, run.loads = loads, run.capacity = table[18];
     while (1) {
         if (run.count[LENGTH] + 8 > run.capacity) return FULL;
         if (run.count[STALLED] > 200) return STORM;
