@@ -12,10 +12,11 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.branch import rest_limit
 from stickslip.evolution.compiled import ahead, kernel
 from stickslip.evolution.fold import leave_fold_piece
+from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
 from stickslip.evolution.polynomial import fill, maximum, total
 from stickslip.evolution.record import note_degree
-from stickslip.evolution.slip import slip
+from stickslip.evolution.slip import slip, slip_implicitly
 from stickslip.evolution.stick import arrive, stick
 from stickslip.evolution.workspace import EXIT, REAL, WHOLE, Run, borrow
 
@@ -182,6 +183,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
         if run.state[at.XI] < xi_to:
             if run.counts[at.MODE] == 0:
                 stick(run, xi_to)
+            elif is_implicit(run):
+                slip_implicitly(run, xi_to)
             else:
                 slip(run, xi_to)
             if not math.isfinite(run.state[at.RATE_NOW]):

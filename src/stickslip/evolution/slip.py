@@ -19,7 +19,7 @@ from stickslip.evolution.fold import (
     ends_at_fold,
     starts_at_fold,
 )
-from stickslip.evolution.implicit import NOT_STIFF, collocate, is_implicit, judge_stiffness, keep_state, settling_rate
+from stickslip.evolution.implicit import NOT_STIFF, collocate, judge_stiffness, keep_state, settling_rate
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
@@ -144,10 +144,7 @@ def straight_from_fold(run: Run) -> None:
 
 @inlined
 def slip(run: Run, xi_to: float) -> None:
-    """Slip for one step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
-    if is_implicit(run):
-        slip_implicitly(run, xi_to)
-        return
+    """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
     if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
         target, leaves, done = end_of_branch(run, xi_to)
@@ -193,7 +190,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     reached = guess >= xi_to - run.state[at.XI]
     if run.counts[at.HAS_STATE] == 0 and run.k[at.K_SPEED] * settling_rate(run) < NOT_STIFF:
         run.counts[at.STIFF] = 0
-    finish_step(run, xi_to, guess, length, reached, False)
+    finish_step(run, xi_to, guess, length, reached, False, True)
 
 
 @inlined
@@ -209,11 +206,11 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     elif length > 0.5 * limit:
         length = 0.5 * limit
     stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
-    finish_step(run, target, guess, length, reached, leaves)
+    finish_step(run, target, guess, length, reached, leaves, False)
 
 
 @inlined
-def finish_step(run: Run, target: float, guess: float, length: float, reached: bool, leaves: bool) -> None:
+def finish_step(run: Run, target: float, guess: float, length: float, reached: bool, leaves: bool, implicit: bool) -> None:
     """Cut the step (of so many guesses) at the first event, record it, and do what the event asks for."""
     rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
     arrest = NONE
@@ -227,7 +224,7 @@ def finish_step(run: Run, target: float, guess: float, length: float, reached: b
     if end < 1.0:
         length *= end
         stretch(run, length, rate)
-    if is_implicit(run):
+    if implicit:
         keep_state(run, length)
     keep_step(run, rate, length, to)
     if arrest == end:
