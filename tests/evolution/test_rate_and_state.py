@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq, newton
+from scipy.optimize import brentq
 from scipy.signal import argrelmax
 
 import stickslip as ss
+from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
 
 NORMAL, SPEED = 1e8, 1e-4
 LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
@@ -42,11 +43,7 @@ def growth(solution: ss.Solution, start: float, every: float | None = None) -> f
 
 
 def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
-    """The linearised block: m s^2 + damping s + K + S s/V (a - b / (1 + s Dc/V)) = 0, its root with the largest real part."""
-    time = LAW.distance / SPEED
-    viscous = damping + NORMAL * LAW.a / SPEED
-    cubic = [mass * time, mass + viscous * time, viscous - NORMAL * LAW.b / SPEED + stiffness * time, stiffness]
-    return complex(max(np.roots(cubic), key=lambda root: root.real))
+    return block_growth(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, stiffness, mass, damping)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -57,7 +54,8 @@ def test_critical_stiffness_and_growth_rate(damping: float, evolution: str, shar
 
     Measured growth against the linearised system: 2e-6 of the frequency of the swings, whose amplitude is 1e-4.
     """
-    critical = CRITICAL - damping * SPEED / LAW.distance
+    critical = critical_stiffness(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, 0.0, damping)
+    assert critical == pytest.approx(CRITICAL - damping * SPEED / LAW.distance, rel=1e-14)
     root = slowest_root(1.0, share * critical, damping)
     assert (root.real > 0.0) == (share < 1.0)
     assert abs(slowest_root(1.0, critical, damping).real) < 1e-4 * abs(root.imag)
@@ -75,6 +73,7 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
     linearised system says, to 1e-5 of their frequency; at 0.9 k_c, where a block without mass would be stable, they stay large.
     """
     mass = NORMAL * LAW.a * LAW.distance / SPEED**2
+    assert critical_stiffness(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, mass) == pytest.approx(2.0 * CRITICAL, rel=1e-14)
     runs = {}
     for share in (0.9, 1.2):
         stiffness = share * 2.0 * CRITICAL
@@ -91,13 +90,7 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
 def test_growth_on_a_slab(share: float) -> None:
     """S (a - b / (1 + s Dc/V)) / V + Z coth(s h/c) = 0: the slab's own equation, waves and all. Tolerance 2e-4 of the frequency."""
     slab = ss.ElasticSlab(2800, 3500, 3.43e10 / (share * CRITICAL), NORMAL)
-    time, half = LAW.distance / SPEED, 0.5 * slab.two_way_time
-
-    def equation(s: complex) -> complex:
-        return NORMAL / SPEED * (LAW.a - LAW.b / (1.0 + s * time)) + slab.impedance / np.tanh(s * half)
-
-    guess = complex(0.05 * (1.0 - share) / time, np.sqrt((LAW.b - LAW.a) / LAW.a) / time)
-    root = complex(newton(equation, guess, maxiter=200))
+    root = slab_growth(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, slab.impedance, 0.5 * slab.two_way_time)
     assert (root.real > 0.0) == (share < 1.0)
     period = 2.0 * np.pi / abs(root.imag)
     run = ss.simulate(steady(slab, LAW, 1.001), 8.0 * period, rtol=1e-8)

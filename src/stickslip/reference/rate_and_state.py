@@ -1,0 +1,67 @@
+"""Stability of steady sliding under rate-and-state friction: critical stiffness and growth rates of the linearised system.
+
+With s the growth rate, V the slip rate and T = Dc/V, friction answers a disturbance of the slip as S s/V (a - b / (1 + s T)), for
+the ageing and the slip law alike, and the body as
+
+    block   m s^2 + damping s + K              (Rice & Ruina 1983, J. Appl. Mech. 50, 343)
+    slab    Z s coth(s h/c)                    (rigid driver; G/h for slow disturbances)
+
+PRZ with its steady theta = 2 Dc/V relaxes in the same way.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Callable
+
+import numpy as np
+
+
+def critical_stiffness(
+    normal: float, a: float, b: float, distance: float, rate: float, mass: float = 0.0, damping: float = 0.0
+) -> float:
+    """Stiffness K below which steady sliding at `rate` is unstable: S (b - a) / Dc without mass and damping; negative: never.
+
+    (S (b - a) / V - damping) (1 / T + m / (A T^2)) with A = damping + S a / V, T = Dc / V: Routh's condition on the cubic of
+    `block_growth`. Without damping it is S (b - a) / Dc (1 + m V^2 / (S a Dc)), without mass S (b - a) / Dc - damping V / Dc.
+    SI throughout: normal in N and stiffness in N/m, or both per unit area.
+    """
+    time = distance / rate
+    viscous = damping + normal * a / rate
+    return (normal * (b - a) / rate - damping) * (1.0 / time + mass / (viscous * time * time))
+
+
+def block_growth(
+    normal: float, a: float, b: float, distance: float, rate: float, stiffness: float, mass: float, damping: float = 0.0
+) -> complex:
+    """Complex growth rate (1/s) of the fastest growing disturbance of a block's steady sliding (the imaginary part >= 0)."""
+    time = distance / rate
+    viscous = damping + normal * a / rate
+    cubic = [mass * time, mass + viscous * time, viscous - normal * b / rate + stiffness * time, stiffness]
+    root = max(np.roots(cubic), key=lambda root: root.real)
+    return complex(root.real, abs(root.imag))
+
+
+def slab_growth(normal: float, a: float, b: float, distance: float, rate: float, impedance: float, half_time: float) -> complex:
+    """Complex growth rate (1/s) of steady sliding of a slab on a rigid driver, h/c = `half_time` (s), Z = `impedance` (Pa s/m).
+
+    The root of S/V (a - b / (1 + s T)) + Z coth(s h/c) = 0 that belongs to the block of stiffness G/h = Z c/h.
+    """
+    time = distance / rate
+
+    def miss(s: complex) -> complex:
+        return normal / rate * (a - b / (1.0 + s * time)) + impedance / cmath.tanh(s * half_time)
+
+    start = block_growth(normal, a, b, distance, rate, impedance / half_time, impedance * half_time / 3.0)
+    return _root(miss, start)
+
+
+def _root(miss: Callable[[complex], complex], start: complex) -> complex:
+    """Secant method from a good start."""
+    before, now = start * (1.0 + 1e-6), start
+    for _ in range(100):
+        low, high = miss(before), miss(now)
+        if high == low or abs(now - before) <= 1e-15 * abs(now):
+            break
+        before, now = now, now - high * (now - before) / (high - low)
+    return now
