@@ -118,8 +118,9 @@ class Solution:
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
         end = float(self.breaks[-1]) if end is None else end
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
-        if len(breaks) > points:  # too many pieces to draw each: keep the shocks
-            breaks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
+        if len(breaks) > points:  # too many pieces to draw each: keep the shocks, and in every stretch where it is fastest
+            shocks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
+            breaks = np.union1d(shocks, self._fastest(breaks, points)) if len(shocks) <= points else self._fastest(breaks, points)
         inside = [np.linspace(a, b, 8) for a, b in pairwise(breaks)]
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
         time = np.concatenate([breaks, right])
@@ -129,6 +130,12 @@ class Solution:
         evaluate = getattr(self, name)
         values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
         return time[order], values[order]
+
+    def _fastest(self, times: Floats, groups: int) -> Floats:
+        """Of so many groups of times the one of each at which the slip rate is largest."""
+        speed = np.abs(self.slip_rate(times))
+        starts = np.unique(np.linspace(0, len(times) - 1, groups).astype(int))
+        return np.array([times[a + int(np.argmax(speed[a:b]))] for a, b in pairwise([*starts.tolist(), len(times)])])
 
     def dataset(self, t: ArrayLike) -> xr.Dataset:
         """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance."""

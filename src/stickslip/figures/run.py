@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip import YEAR
 from stickslip.figures.curves import Name, nearly_flat
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, SHOWN, VERMILLION, letter, styled, zero_line
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, zero_line
 
 if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
@@ -36,8 +36,11 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
         time, values = solution.curve(name, start, end)
         panel.plot(time / size, values, color=colour)
     _draw_stress(axes[2], solution, start, end, size)
+    if not solution.problem.friction.sticks:
+        _draw_every_size(axes[1], *solution.curve("slip_rate", start, end), size)
     for panel in axes:
-        zero_line(panel)
+        if panel.get_yscale() == "linear":
+            zero_line(panel)
         for at in _shock_times(solution, start, end):
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
     axes[0].set_ylabel("slip $u$ (m)")
@@ -48,11 +51,18 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
     return figure
 
 
+def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.float64], size: float) -> None:
+    """The slip rate on a logarithmic axis: a contact that never sticks creeps and rushes."""
+    panel.clear()
+    speed = np.abs(rate)
+    panel.semilogy(time / size, np.where(speed > 0.0, speed, np.nan), color=GREEN)
+
+
 def _draw_stress(panel: Axes, solution: Solution, start: float, end: float, size: float) -> None:
     """Traction and load; as changes from the initial load where they hardly change."""
     units = solution.problem.load_unit
     (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
-    unit, scale = SHOWN[units]
+    unit, scale = readable(float(np.abs(load).max()), units)
     offset, text = 0.0, f"traction, load ({unit})"
     if nearly_flat(load, traction):
         scale, offset, text = 1.0, solution.problem.load, f"change of\ntraction, load ({units})"

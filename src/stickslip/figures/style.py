@@ -96,6 +96,13 @@ def label(variable: xr.DataArray) -> str:
     return text if unit == "1" else f"{text} ({unit})"
 
 
+def readable(largest: float, units: str) -> tuple[str, float]:
+    """Unit and its size in which a stress or force of this size (in Pa or N) has one to three digits before the point."""
+    prefixes = {1e12: "T", 1e9: "G", 1e6: "M", 1e3: "k"}
+    size = next((size for size in prefixes if largest >= size), 1.0)
+    return prefixes.get(size, "") + units, size
+
+
 def letter(axes: Axes, text: str) -> None:
     """Title of a panel: its letter and what it shows."""
     axes.set_title(text, pad=6)
