@@ -9,11 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.bodies import Body, ElasticSlab
-from stickslip.errors import InputError, nearest
+from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.quantities import check_quantities, quantity
-
-SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
+from stickslip.selection import SelectionRule, checked, name_of
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,8 @@ class Problem:
     limit at t = 0 is then the initial state at rest.
 
     far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
-    `selection` names the rule that picks one slip rate where several solve the contact equation.
+    `selection` names the rule that picks one slip rate where several solve the contact equation, or is that rule
+    (`stickslip.selection`).
     """
 
     body: Body
@@ -39,7 +39,7 @@ class Problem:
     initial_state: float | None = field(default=None)
     far_stress: float | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
     far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
-    selection: str = "perfect-delay"
+    selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
@@ -52,14 +52,18 @@ class Problem:
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
         if self.initial_state is not None:
             raise InputError(f"Problem: initial_state: {type(self.friction).__name__} has no state variable")
-        if self.selection not in SELECTION_RULES:
-            raise InputError(f"Problem: selection rule '{self.selection}' is unknown; {nearest(self.selection, SELECTION_RULES)}")
+        object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
     def _check_far_side(self) -> None:
         free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
         if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
+
+    @property
+    def rule(self) -> str:
+        """Name of the selection rule."""
+        return name_of(self.selection)
 
     @property
     def normal(self) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.names import complete_rule, complete_scenario
-from stickslip.errors import InputError, nearest
+from stickslip.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
@@ -67,9 +67,9 @@ def run(
 
 def _adjusted(name: str, duration: str | None, rtol: float | None, selection: str | None) -> Scenario:
     """The scenario with what the options change. Raises InputError."""
-    from stickslip.problem import SELECTION_RULES
     from stickslip.scenarios.scenario import load_scenario
     from stickslip.scenarios.schema import check_rtol, read_duration
+    from stickslip.selection import names, unknown
 
     loaded = load_scenario(name)
     changes: dict[str, Any] = {}
@@ -78,8 +78,8 @@ def _adjusted(name: str, duration: str | None, rtol: float | None, selection: st
     if rtol is not None:
         changes["rtol"] = check_rtol(rtol, "run", "--rtol")
     if selection is not None:
-        if selection not in SELECTION_RULES:
-            raise InputError(f"run: --selection '{selection}' is unknown; {nearest(selection, SELECTION_RULES)}")
+        if selection not in names():
+            raise InputError(f"run: --selection '{selection}' {unknown(selection)}")
         changes["problem"] = replace(loaded.problem, selection=selection)
     return replace(loaded, **changes)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,19 @@ from stickslip.friction import FrictionLaw
 from stickslip.friction.difference import difference
 from stickslip.friction.expression import Expression
 from stickslip.problem import Problem
+
+
+_FLAT = 1e-9
+"""Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """An interval of slip rates (m/s) on which g does not change, and its excess over the static strength (Pa) there."""
+
+    rate_from: float
+    rate_to: float
+    excess: float
 
 
 @dataclass(frozen=True)
@@ -47,12 +61,56 @@ class Resistance:
         rate = np.asarray(rate, float)
         step, slope = np.empty(rate.shape), np.empty(rate.shape)
         piece = self.law.piece_at(self.law_slip, rate)
-        first = int(self.law.piece_at(self.law_slip))
         for i in np.unique(piece).tolist():
             chosen = piece == i
-            own_step, slope[chosen] = difference(self.trees[i], self.law.numbers(i), self.law_slip, 0.0, rate[chosen])
-            step[chosen] = own_step + (self._at_rest(i) - self._at_rest(first) if i != first else 0.0)
+            step[chosen], slope[chosen] = self._by_formula(i, rate[chosen])
+            if i in self._flat_pieces:
+                step[chosen], slope[chosen] = self._flat_pieces[i], 0.0
+        return step, slope
+
+    def _by_formula(self, i: int, rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Excess and slope by the formula of piece i."""
+        first = int(self.law.piece_at(self.law_slip))
+        step, slope = difference(self.trees[i], self.law.numbers(i), self.law_slip, 0.0, rate)
+        step = step + (self._at_rest(i) - self._at_rest(first) if i != first else 0.0)
         return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+
+    @cached_property
+    def rate_knots(self) -> tuple[float, ...]:
+        """Slip rates (m/s) above 0 at which the law changes its formula."""
+        return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
+
+    @cached_property
+    def _flat_pieces(self) -> dict[int, float]:
+        """Pieces on which friction falls exactly as fast as Z s rises, and the excess (Pa) there.
+
+        Exactly: g varies by no more than its own rounding. Only a piece can be flat, because elsewhere formulas are analytic.
+        """
+        flat: dict[int, float] = {}
+        for low, high in pairwise((0.0, *self.rate_knots)):
+            i = int(self.law.piece_at(self.law_slip, low))
+            excess, slope = self._by_formula(i, np.linspace(low, high, 9))
+            size = abs(self.strength) + np.max(np.abs(excess)) + self.impedance * high
+            if np.ptp(excess) <= 8.0 * np.finfo(float).eps * size and np.max(np.abs(slope)) <= _FLAT * self.impedance:
+                flat[i] = flat.get(i - 1, float(excess[0]))
+        return flat
+
+    @cached_property
+    def plateaus(self) -> tuple[Plateau, ...]:
+        """Where g is flat, slowest first: every slip rate of such an interval solves the contact equation at its load."""
+        found: list[Plateau] = []
+        for low, high in pairwise((0.0, *self.rate_knots)):
+            i = int(self.law.piece_at(self.law_slip, low))
+            if i in self._flat_pieces:
+                joined = bool(found) and found[-1].rate_to == low
+                start = found.pop().rate_from if joined else low
+                found.append(Plateau(start, high, self._flat_pieces[i]))
+        return tuple(found)
+
+    def end_excess(self, rate: float) -> float:
+        """Excess (Pa) at the end of a branch: that of the plateau which begins or ends there, if one does."""
+        level = next((p.excess for p in self.plateaus if rate in (p.rate_from, p.rate_to)), None)
+        return float(self.excess(rate)) if level is None else level
 
     @cached_property
     def trees(self) -> tuple[Expression, ...]:

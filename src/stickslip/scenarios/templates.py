@@ -10,7 +10,7 @@ from typing import Any
 from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.fields import NamedNumbers, Part, fields_of
-from stickslip.problem import SELECTION_RULES
+from stickslip.selection import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import describe, key_of
 from stickslip.scenarios.schema import KINDS, TABLES, entries_in, kind_of
