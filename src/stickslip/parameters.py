@@ -55,7 +55,9 @@ def parameters(problem: Problem) -> Iterator[Parameter]:
     for name, declared in quantities_of(type(problem.body)).items():
         value = getattr(problem.body, name)
         if value is not None:
-            yield Parameter(f"body.{name}", value, declared, _in_field(problem.body, name, lambda body: replace(problem, body=body)))
+            yield Parameter(
+                f"body.{name}", value, declared, _in_field(problem.body, name, lambda body: replace(problem, body=body))
+            )
     slip = quantities_of(Problem)["initial_slip"]
     yield Parameter("initial.slip", problem.initial_slip, slip, lambda value: replace(problem, initial_slip=value))
 

@@ -55,6 +55,8 @@ class SelectionRule(Protocol):
 
     def __call__(self, g: Resistance, stable: tuple[Branch, ...], /) -> SelectionTable: ...
 
+    def __hash__(self) -> int: ...
+
 
 registered: dict[str, SelectionRule] = {}
 """Rules that users have registered, by name."""
@@ -101,7 +103,9 @@ def checked(rule: Any) -> str | SelectionRule:
             raise InputError(f"Problem: selection rule {ascii(rule)[:60]} {unknown(rule)}")
         return rule
     if not callable(rule):
-        raise InputError(f"Problem: selection must be a name or a function (g, stable) -> SelectionTable, got {type(rule).__name__}")
+        raise InputError(
+            f"Problem: selection must be a name or a function (g, stable) -> SelectionTable, got {type(rule).__name__}"
+        )
     name = name_of(rule)
     if name in registered and registered[name] is rule:
         return name

@@ -19,7 +19,7 @@ from stickslip.evolution.status import Status
 from stickslip.files import write_atomically
 from stickslip.observables.choices import choices
 from stickslip.scenarios import Scenario, read_scenario
-from stickslip.selection import names
+from stickslip.selection import names as rule_names
 
 FORMAT = 1
 """Version of the layout below; a file with another one is refused."""
@@ -145,7 +145,7 @@ def load(path: str | Path) -> Solution:
         found = dataset.attrs.get("stickslip_format", "none")
         raise InputError(f"{path}: not a solution of this version of stickslip (format {FORMAT} expected, found {found})")
     attributes = dataset.attrs
-    if attributes["selection_rule"] not in names():
+    if attributes["selection_rule"] not in rule_names():
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     problem = read_scenario(attributes["scenario"], str(path)).problem

@@ -96,7 +96,7 @@ def critical_normal_stress(g: Resistance) -> float | None:
 
 
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
-    """Where the regime changes along one number of the law or the body: "alpha", "rate.alpha", "body.normal_stress", "initial.slip".
+    """Where the regime changes along one number of a problem: "alpha", "rate.alpha", "body.normal_stress", "initial.slip".
 
     Looked for from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 where it is 0), as far as the problem
     takes them, at a law slip (m; default: the start), then found to rounding. Two changes within a step of 10^(1/4) can
@@ -114,9 +114,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
 
     here = margin_at(found.value)
     points = sorted([*_walk(found, margin_at, -1), (found.value, here), *_walk(found, margin_at, 1)])
-    values = [
-        sign_change(margin_at, low[0], high[0]) for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0)
-    ]
+    values = [sign_change(margin_at, low[0], high[0]) for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0)]
     changes = [points[0][1] < 0.0, *(high[1] < 0.0 for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0))]
     regimes: tuple[Regime, ...] = tuple("irregular" if falls else "regular" for falls in changes)
     return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]))

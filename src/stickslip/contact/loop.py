@@ -5,15 +5,19 @@ Source: Campillo et al. 1996, Fig. 4: the paths ODABE and EBCDO of perfect delay
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
+from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.maxwell import area
-from stickslip.contact.resistance import Resistance
+from stickslip.contact.resistance import Resistance, resistance
+from stickslip.contact.selection import selection_table
+from stickslip.problem import Problem
 from stickslip.selection import SelectionTable
 
 
@@ -87,3 +91,17 @@ def _against(g: Resistance, jump: Jump, excess: float) -> float:
     """Integral of (load - g) dv along a jump (Pa m/s)."""
     low, high = sorted((jump.rate_before, jump.rate_after))
     return -area(g, low, high, excess) if jump.direction == "up" else area(g, low, high, excess)
+
+
+def first_rate(problem: Problem) -> float:
+    """The slip rate (m/s) to which a massless contact jumps forwards at t = 0+; 0 where it is stuck or has inertia."""
+    body = problem.body
+    if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0:
+        return 0.0
+    stable, table = selection_table(problem)
+    grows = problem.excess == 0.0 and problem.pull_rate > 0.0
+    excess = sys.float_info.min if grows else problem.excess
+    if excess <= table.stick_to:
+        return 0.0
+    rate = rate_on(resistance(problem), stable[table.climb(-1, excess)], excess)
+    return rate if rate > sys.float_info.min else 0.0

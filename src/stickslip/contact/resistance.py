@@ -16,7 +16,6 @@ from stickslip.friction.difference import difference
 from stickslip.friction.expression import Expression
 from stickslip.problem import Problem
 
-
 _FLAT = 1e-9
 """Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
 

@@ -82,14 +82,16 @@ class Uniqueness:
         return self._solutions(load)[1]
 
     def continuum(self, load: float) -> tuple[float, float] | None:
-        """The interval of slip rates (m/s) that all solve the contact equation at a load (Pa, to its rounding); None if none does."""
-        g = self._equation()
-        excess = abs(load) - g.strength
-        rounding = 4.0 * float(np.spacing(max(abs(load), g.strength)))
-        at = next((p for p in g.plateaus if abs(p.excess - excess) <= rounding), None)
+        """The interval of slip rates (m/s) that all solve the contact equation at a load (Pa, to its rounding), if there is one."""
+        at = self._plateau(load)
         if at is None:
             return None
         return (at.rate_from, at.rate_to) if load >= 0.0 else (-at.rate_to, -at.rate_from)
+
+    def _plateau(self, load: float) -> Plateau | None:
+        g = self._equation()
+        rounding = 4.0 * float(np.spacing(max(abs(load), g.strength)))
+        return next((p for p in g.plateaus if abs(p.excess - (abs(load) - g.strength)) <= rounding), None)
 
     def _equation(self) -> Resistance:
         if self.resistance is None:
@@ -97,9 +99,10 @@ class Uniqueness:
         return self.resistance
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        g, flat = self._equation(), self.continuum(load)
-        forward, stable = rates_at(g, self.branches, load - g.strength)
-        backward, mirrored = rates_at(g, self.branches, -load - g.strength)
+        g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
+        level = {} if plateau is None else {load >= 0.0: plateau.excess}  # to the digit, not to the rounding of the load
+        forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
+        backward, mirrored = rates_at(g, self.branches, level.get(False, -load - g.strength))
         moving, kept = backward > 0.0, forward > (-1.0 if abs(load) <= g.strength else 0.0)
         rates = np.concatenate((-backward[moving][::-1], forward[kept]))
         kinds = np.concatenate((mirrored[moving][::-1], stable[kept]))
@@ -174,7 +177,7 @@ def _summary(
     problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
 ) -> str:
     """One paragraph for people."""
-    law, idle = type(problem.friction).__name__, f"The selection rule ({problem.rule}) has no effect."
+    law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
     bound = ""
     if critical:
         found = parameter(problem, critical[0])
@@ -196,6 +199,12 @@ def _summary(
     moves = f"jumps {steps}" if steps else "makes no jump"
     several = f"Several slip rates solve the contact equation in {' and in '.join(sizes)}."
     return f"{law}: {'continuum' if flat else 'irregular'}. {several}{bound} The rule '{problem.rule}' {moves}."
+
+
+def _named(problem: Problem, g: Resistance) -> str:
+    law = problem.friction
+    moving = law.depends_on_slip and law.depends_on_rate
+    return f"{type(law).__name__} at a slip of {g.law_slip:.6g} m" if moving else type(law).__name__
 
 
 def _side(excess: float) -> str:

@@ -48,7 +48,7 @@ def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integer
 
 
 @lru_cache(maxsize=256)
-def _prepared(problem: Problem, rule: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # rule: its name may be given anew
+def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
     check_carried(problem)
     par = _parameters(problem)
     branches, stick_to = _branches(problem)

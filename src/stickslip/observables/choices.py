@@ -19,6 +19,10 @@ from stickslip.contact.uniqueness import Uniqueness, uniqueness
 if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
 
+Floats = NDArray[np.float64]
+Side = Literal["left", "right"]
+Regime = Literal["regular", "irregular", "continuum"]
+
 _ROUNDING = 1e-12
 """Share of the window by which a load must lie inside it: at its ends (a start at the static strength) there is no choice."""
 _SLIPS = 33
@@ -36,7 +40,7 @@ class Choices:
     """
 
     rule: str
-    regime: Literal["regular", "irregular", "continuum"]
+    regime: Regime
     shocks: NDArray[np.bool_]
     since: float | None = None
 
@@ -63,16 +67,16 @@ def choices(solution: Solution) -> Choices:
     return Choices(problem.rule, contact.regime, decided, _first_between(contact, solution))
 
 
-def _between(contact: Uniqueness, solution: Solution, time: NDArray[np.float64], side: Literal["left", "right"]) -> NDArray[np.bool_]:
+def _between(contact: Uniqueness, solution: Solution, time: Floats, side: Side) -> NDArray[np.bool_]:
     """Whether the load, of either sign, is strictly between the folds."""
     return _inside(contact, solution.load(time, side=side) if len(time) else np.zeros(0))
 
 
-def _inside(contact: Uniqueness, load: NDArray[np.float64]) -> NDArray[np.bool_]:
-    return _place(contact, load) == 0.0
+def _inside(contact: Uniqueness, load: Floats) -> NDArray[np.bool_]:
+    return np.equal(_place(contact, load), 0.0)
 
 
-def _place(contact: Uniqueness, load: NDArray[np.float64]) -> NDArray[np.float64]:
+def _place(contact: Uniqueness, load: Floats) -> Floats:
     """-1 below the folds, 0 strictly between them, +1 above, for loads of either sign."""
     assert contact.window is not None
     assert contact.resistance is not None
@@ -105,7 +109,7 @@ def _refined(contact: Uniqueness, solution: Solution, low: float, high: float) -
         low, high = float(times[first - 1]), float(times[first])
 
 
-def _regime_on_the_way(solution: Solution, contact: Uniqueness) -> Literal["regular", "irregular", "continuum"]:
+def _regime_on_the_way(solution: Solution, contact: Uniqueness) -> Regime:
     """Irregular if the contact is so at any of the slips that the run passes."""
     if contact.regime != "regular":
         return contact.regime

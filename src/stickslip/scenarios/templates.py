@@ -10,10 +10,10 @@ from typing import Any
 from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.fields import NamedNumbers, Part, fields_of
-from stickslip.selection import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import describe, key_of
 from stickslip.scenarios.schema import KINDS, TABLES, entries_in, kind_of
+from stickslip.selection import SELECTION_RULES
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Generic starters, and the bundled scenario whose values they show."""
