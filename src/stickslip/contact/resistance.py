@@ -16,6 +16,7 @@ from stickslip.friction.difference import difference
 from stickslip.friction.expression import Expression
 from stickslip.problem import Problem
 
+_FASTEST = 1e9
 _FLAT = 1e-9
 """Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
 
@@ -130,8 +131,12 @@ class Resistance:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own."""
-        found = (self.normal * self.law.variation / self.impedance, *self.law.rate_scales)
+        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own.
+
+        Not those so fast that S (variation of mu) is nothing against Z s: there g rises whatever the law does.
+        """
+        own = self.normal * self.law.variation / self.impedance
+        found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 
     def fastest(self, excess: float) -> float:
