@@ -43,9 +43,9 @@ def parameter(problem: Problem, name: str) -> Parameter:
     if len(fitting) > 1:
         raise InputError(f"parameter '{name}' may be any of {', '.join(fitting)}: say which")
     if not fitting:
-        ends = [full.rpartition(".")[2] for full in found]
-        hint = nearest(name, ends)
-        raise InputError(f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, found)}")
+        single = [full for full in found if "[" not in full]
+        hint = nearest(name, [full.rpartition(".")[2] for full in single])
+        raise InputError(f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, single)}")
     return found[fitting[0]]
 
 

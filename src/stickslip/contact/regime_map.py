@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
@@ -77,10 +78,13 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     margin(problem)  # refuses a block
 
     def at(x_value: float, y_value: float) -> float:
-        try:
-            return margin(parameter(names[0].put(x_value), names[1].name).put(y_value))
-        except InputError:
-            return float("nan")
+        pairs = list(zip(names, (x_value, y_value), strict=True))
+        for (first, one), (second, other) in (pairs, pairs[::-1]):  # one alone may be refused where both together are not
+            try:
+                return margin(parameter(first.put(one), second.name).put(other))
+            except InputError:
+                continue
+        return math.nan
 
     values = np.empty((y.points, x.points))
     for row, column in product(range(y.points), range(x.points)):
