@@ -85,7 +85,7 @@ def names() -> tuple[str, ...]:
 def unknown(name: str) -> str:
     """The end of a sentence about a name that is no rule."""
     hint = nearest(name, names())
-    return f"is unknown; {hint}" if hint.startswith("did") else f"is unknown; {hint}, and what stickslip.selection.register names"
+    return f"is unknown; {hint}" if hint.startswith("did") else f"is unknown; {hint} or a registered one"
 
 
 def name_of(rule: str | SelectionRule) -> str:
@@ -102,10 +102,8 @@ def checked(rule: Any) -> str | SelectionRule:
         if rule not in names():
             raise InputError(f"Problem: selection rule {ascii(rule)[:60]} {unknown(rule)}")
         return rule
-    if not callable(rule):
-        raise InputError(
-            f"Problem: selection must be a name or a function (g, stable) -> SelectionTable, got {type(rule).__name__}"
-        )
+    if not callable(rule) or rule.__hash__ is None:
+        raise InputError(f"Problem: selection must be a name or a function (g, stable), got {type(rule).__name__}")
     name = name_of(rule)
     if name in registered and registered[name] is rule:
         return name
