@@ -5,10 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import stickslip as ss
+from stickslip.contact.branches import Branch
 from stickslip.contact.resistance import resistance
-from stickslip.contact.selection import selection_table
+from stickslip.contact.selection import flaw, selection_table
 from stickslip.selection import SELECTION_RULES, SelectionTable, registered
 
 from .laws import Wavy, hyperbolic, slab_problem
@@ -163,3 +166,40 @@ def test_a_rule_sees_the_resistance():
     strength, excess, stable = seen[0]
     assert (strength, excess) == (8e7, float(resistance(problem).excess(1.0)))
     assert len(stable) == 1
+
+
+LEVELS = [-math.inf, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, math.inf]
+PROBES = [-3.5, -3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5]
+
+
+def stuck_or_kept(table, branch, excess):
+    """Whether the table keeps the branch (-1: stick) at an excess."""
+    return excess <= table.stick_to if branch < 0 else table.keep_from[branch] <= excess <= table.keep_to[branch]
+
+
+def can_be_followed(table):
+    """By trying every branch at every excess: what is taken when it is left is kept there."""
+    kept = [-1, *(i for i in range(len(table.keep_to)) if table.keep_from[i] <= table.keep_to[i])]
+    for branch in kept:
+        for excess in PROBES:
+            if stuck_or_kept(table, branch, excess):
+                continue
+            above = branch < 0 or excess > table.keep_to[branch]
+            try:
+                taken = table.climb(branch, excess) if above else table.descend(branch, excess)
+            except StopIteration:
+                return False
+            if not stuck_or_kept(table, taken, excess):
+                return False
+    return True
+
+
+@settings(max_examples=500, deadline=None)
+@given(
+    stick=st.sampled_from([level for level in LEVELS if level <= 0.0]),
+    ends=st.lists(st.tuples(st.sampled_from(LEVELS), st.sampled_from(LEVELS)), min_size=1, max_size=4),
+)
+def test_flaws_are_those_that_a_walk_meets(stick, ends):
+    table = SelectionTable(stick, tuple(low for low, _ in ends), tuple(high for _, high in ends))
+    everywhere = tuple(Branch(float(i), i + 1.0, -math.inf, math.inf) for i in range(len(ends)))
+    assert (flaw(table, everywhere) == "") == can_be_followed(table)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import Uniqueness
     from stickslip.problem import Problem
     from stickslip.scenarios.examine import Examination, Fact
+    from stickslip.scenarios.scenario import Scenario
 
 
 def check(
@@ -48,7 +49,6 @@ def check(
         --map "normal_stress=10 MPa..500 MPa" --figure map.png
     """
     from stickslip.cli.files import check_target
-    from stickslip.cli.show import clean, console
     from stickslip.scenarios.examine import examine
     from stickslip.scenarios.scenario import load_scenario
 
@@ -57,17 +57,23 @@ def check(
     loaded = load_scenario(scenario)
     drawn = _drawn(loaded.problem, figure, map_axes or [])
     found = examine(loaded)
-    screen = console()
-    screen.print(clean(loaded.title or loaded.name), style="bold")
-    if loaded.description:
-        screen.print(clean(loaded.description))
-    _print(screen, {f"[{name}]": facts for name, facts in found.given.items()} | {"what follows": found.derived})
-    _print_findings(screen, found)
+    _show(loaded, found)
     if drawn is not None and figure is not None:
         from stickslip.files import write_atomically
 
         write_atomically(figure, drawn.savefig)
         typer.echo(f"written: {figure}")
+
+
+def _show(scenario: Scenario, found: Examination) -> None:
+    from stickslip.cli.show import clean, console
+
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    if scenario.description:
+        screen.print(clean(scenario.description))
+    _print(screen, {f"[{name}]": facts for name, facts in found.given.items()} | {"what follows": found.derived})
+    _print_findings(screen, found)
 
 
 def _drawn(problem: Problem, figure: Path | None, axes: list[str]) -> Figure | None:
@@ -138,6 +144,6 @@ def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
         rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {jump.load:.12g} Pa"
         yield f"jump {jump.direction} *", f"{rates}; traction changes by {change:.6g} Pa"
     if contact.jumps:
-        retraced = "the way back retraces the way there" if contact.loop_area == 0.0 else "in the plane of load and slip rate"
-        yield "loop *", f"the load going up and down encloses {contact.loop_area:.6g} Pa m/s {retraced}"
+        retraced = ": it comes back the way it went" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
+        yield "loop *", f"the load going up and down encloses {contact.loop_area:.6g} Pa m/s{retraced}"
         yield "*", f"rests on the rule '{contact.rule}': another rule gives other numbers. All else above does not."

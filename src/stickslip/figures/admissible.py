@@ -32,6 +32,7 @@ _TINY = 1e-3
 def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
     """The set K for slip forwards at the start of a problem, and the path of a run in it: loads as excess over the strength (Pa).
 
+    A law of slip moves the set as it slips: the path of a run under one leaves the set of the start.
     Raises InputError for a block or a contact mass: inertia makes the slip rate a state, and there is no such set.
     """
     contact = uniqueness(problem)
@@ -52,9 +53,10 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         "strength": quantity((), g.strength, "static strength", r"S\mu_s", "Pa"),
         "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
     }
-    about = f"{type(problem.friction).kind} friction, {contact.regime}"
+    place = f" at a slip of {g.law_slip:.6g} m" if problem.friction.depends_on_slip else ""
     coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s")}
-    attributes = {"title": f"Set K: {about}", "rule": contact.rule}
+    title = f"Set K: {type(problem.friction).kind} friction{place}, {contact.regime}"
+    attributes = {"title": title, "rule": contact.rule}
     return xr.Dataset(contents | path, coords=coordinates, attrs=attributes)
 
 
