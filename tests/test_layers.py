@@ -16,10 +16,11 @@ PACKAGE = Path(stickslip.__file__).parent
 
 LAYERS = (
     ("errors", "files"),
-    ("quantities", "units"),
+    ("quantities", "selection", "units"),
     ("friction",),
     ("bodies",),
     ("problem",),
+    ("parameters",),
     ("contact", "reference"),
     ("evolution",),
     ("observables",),

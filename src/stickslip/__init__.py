@@ -14,12 +14,13 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from stickslip import friction
+from stickslip import friction, parameters, selection
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.errors import InputError
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
+    from stickslip.contact.critical import critical_value
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
@@ -33,6 +34,7 @@ YEAR = 31_557_600.0
 
 _LATER = {
     "Solution": "stickslip.evolution.solution",
+    "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
     "save": "stickslip.storage",
@@ -48,10 +50,13 @@ __all__ = [
     "Problem",
     "Solution",
     "SpringBlock",
+    "critical_value",
     "friction",
     "load",
     "load_scenario",
+    "parameters",
     "save",
+    "selection",
     "simulate",
     "uniqueness",
 ]

@@ -9,11 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.bodies import Body, ElasticSlab
-from stickslip.errors import InputError, nearest
+from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.quantities import Quantity, check_quantities, quantity
-
-SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
+from stickslip.selection import SelectionRule, checked, name_of
 
 
 def normal_load(body: Body) -> float:
@@ -35,7 +34,8 @@ class Problem:
     one, in the law's own unit; a law that sticks starts healed (0) by default.
 
     far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
-    `selection` names the rule that picks one slip rate where several solve the contact equation.
+    `selection` names the rule that picks one slip rate where several solve the contact equation, or is that rule
+    (`stickslip.selection`).
     """
 
     body: Body
@@ -47,7 +47,7 @@ class Problem:
     initial_state: float | None = field(default=None)  # its unit is the law's business
     far_stress: float | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
     far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
-    selection: str = "perfect-delay"
+    selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
@@ -59,8 +59,7 @@ class Problem:
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
         self._check_state()
-        if self.selection not in SELECTION_RULES:
-            raise InputError(f"Problem: selection rule '{self.selection}' is unknown; {nearest(self.selection, SELECTION_RULES)}")
+        object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
     def _check_state(self) -> None:
@@ -81,6 +80,11 @@ class Problem:
         free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
         if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
+
+    @property
+    def rule(self) -> str:
+        """Name of the selection rule."""
+        return name_of(self.selection)
 
     @property
     def normal(self) -> float:

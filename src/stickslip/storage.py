@@ -17,7 +17,9 @@ from stickslip.evolution.layout import Store
 from stickslip.evolution.solution import Curve, Solution
 from stickslip.evolution.status import Status
 from stickslip.files import write_atomically
+from stickslip.observables.choices import choices
 from stickslip.scenarios import Scenario, read_scenario
+from stickslip.selection import names as rule_names
 
 FORMAT = 1
 """Version of the layout below; a file with another one is refused."""
@@ -44,14 +46,17 @@ def units(solution: Solution) -> dict[str, str]:
 def provenance(solution: Solution) -> dict[str, Any]:
     """Who made this, from what, under which rule and tolerance: attributes of every file and dataset."""
     scenario = Scenario(solution.problem, solution.duration, solution.rtol)
+    chosen = choices(solution)
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
         "scenario": scenario.to_toml(),
-        "selection_rule": solution.problem.selection,
+        "selection_rule": chosen.rule,
         "selection_note": solution.selection_note,
+        "selection_regime": chosen.regime,
+        "selection_decided_shocks": int(chosen.shocks.sum()),
         "rtol": solution.rtol,
         "duration": solution.duration,
         "status": solution.status.name,
@@ -144,6 +149,9 @@ def load(path: str | Path) -> Solution:
         found = dataset.attrs.get("stickslip_format", "none")
         raise InputError(f"{path}: not a solution of this version of stickslip (format {FORMAT} expected, found {found})")
     attributes = dataset.attrs
+    if attributes["selection_rule"] not in rule_names():
+        rule = attributes["selection_rule"]
+        raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     problem = read_scenario(attributes["scenario"], str(path)).problem
     names = ("history_whole", "history_real", "history_load", "history_rate")
     whole, real, load, rate = (np.ascontiguousarray(dataset[name].to_numpy()) for name in names)

@@ -87,6 +87,35 @@ def test_check_shows_units_folds_and_warnings(command):
     assert "warning" in out
 
 
+def test_check_says_what_jumps_and_what_rests_on_the_rule(command):
+    out = command("check", "fig6-slab").out
+    for pattern in (
+        r"^critical value +friction\.alpha = 0\.196 s/m; here above it, at 1",
+        r"^critical value +body\.normal_stress = 19600000 Pa; here above it, at 100000000",
+        r"^jump up \* +slip rate 0 to 4\.10204082 m/s at a load of 80000000 Pa; traction changes by -4\.02e\+07 Pa",
+        r"^jump down \* +slip rate 1\.25876976 to 0 m/s at a load of 64471887\.2424 Pa; traction changes by 1\.23359e\+07 Pa",
+        r"^loop \* +the load going up and down encloses 4\.62819e\+07 Pa m/s",
+        r"^\* +rests on the rule 'perfect-delay'",
+        r"the slip rate jumps to 4\.10204082 m/s",
+    ):
+        assert re.search(pattern, out, re.MULTILINE), pattern
+    block = command("check", "fig6-block-reconstructed").out
+    assert not re.search(r"^(critical value|fold|jump|loop)", block, re.MULTILINE)
+
+
+def test_check_says_where_a_mixed_law_is_irregular(command, tmp_path: Path):
+    (tmp_path / "mine.toml").write_text(command("new", "slab", "--friction", "product").out)
+    assert re.search(r"^along slip +irregular from 0 to 0\.8 m of slip", command("check", "mine.toml").out, re.MULTILINE)
+
+
+def test_check_draws_the_set_and_the_map(command, tmp_path: Path):
+    assert "written: k.svg" in command("check", "fig6-slab", "--figure", "k.svg").out
+    axes = ("--map", "alpha=0.01..10:4:log", "--map", "normal_stress=10 MPa..500 MPa:3")
+    assert "written: map.png" in command("check", "fig6-slab", *axes, "--figure", "map.png").out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["k.svg", "map.png"]
+    assert "written: path.png" in command("run", "fig4-loop", "--path", "path.png").out
+
+
 def test_run_says_what_happened(command):
     shown = command("run", "fig6-slab")
     assert shown.code == 0

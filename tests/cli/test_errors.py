@@ -29,6 +29,24 @@ CASES = [
     (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["check", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["check", "\x1b[31mred.toml"], "'\\x1b[31mred.toml': no such file"),
+    (["check", "fig6-slab", "--figure", "a.txt"], "--figure a.txt: the name must end in .png or .pdf or .svg"),
+    (["check", "fig6-block-printed", "--figure", "a.png"], "figure of the set K: inertia makes the slip rate a state"),
+    (["run", "fig6-block-printed", "--path", "a.png"], "run: --path needs a slab without contact mass"),
+    (["check", "fig6-slab", "--map", "alpha=1..2"], "check: a map needs two --map and a --figure, got 1 and none"),
+    (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"]], "check: a map needs two --map and a --figure, got 2 and none"),
+    (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"], "--figure", "a.png"], "regime map: needs two different parameters"),
+    (
+        ["check", "fig6-slab", "--map", "alpa=1..2", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map: parameter 'alpa' is unknown; did you mean 'alpha'?",
+    ),
+    (
+        ["check", "fig6-slab", "--map", "alpha:1-2", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map must be NAME=LOW..HIGH[:POINTS][:log], as",
+    ),
+    (
+        ["check", "fig6-slab", "--map", "thickness=1 kg..2 km", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map: body.thickness must be a number in m or a text with a unit",
+    ),
     (["paper", "--out", "bad.toml/paper"], "--out bad.toml/paper:"),
 ]
 

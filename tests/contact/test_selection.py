@@ -12,7 +12,7 @@ from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.maxwell import area
 from stickslip.contact.resistance import resistance
 from stickslip.contact.selection import RULES, selection_table
-from stickslip.problem import SELECTION_RULES
+from stickslip.selection import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Z, hyperbolic, q_of, slab_problem
 from .test_branches import wavy_laws

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.problem import SELECTION_RULES
+from stickslip.selection import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
 
@@ -119,7 +119,7 @@ def test_admissible_rates_of_a_state():
 
 
 def test_critical_value_of_other_laws():
-    assert ss.friction.Coulomb(0.8, 0.3).critical_value(Z, S) is None
+    assert ss.friction.Coulomb(0.8, 0.3).critical_value(Z, S) == ("static", 0.3)
     assert ss.friction.HyperbolicRate(0.3, 0.8, 1.0).critical_value(Z, S) is None
 
 

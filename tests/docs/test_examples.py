@@ -10,6 +10,7 @@ import subprocess
 import sys
 import types
 import warnings
+from collections.abc import Iterator
 from contextlib import redirect_stdout
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import pytest
 
 import stickslip
 from stickslip.scenarios.library import names
+from stickslip.selection import registered
 from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, missing_lines, run_command
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
@@ -25,6 +27,13 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 def page_name(page: Path) -> str:
     return page.stem
+
+
+@pytest.fixture(autouse=True)
+def _forget_rules() -> Iterator[None]:
+    """What an example registers is not known to the next test."""
+    yield
+    registered.clear()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)

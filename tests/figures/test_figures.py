@@ -15,7 +15,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import stickslip as ss
-from stickslip.figures import comparison, hysteresis, laws, resistance, systems
+from stickslip.contact.regime_map import Axis, regime_map
+from stickslip.figures import admissible, comparison, hysteresis, laws, regimes, resistance, systems
 from stickslip.figures.run import plot_run
 from stickslip.figures.style import STYLE
 from stickslip.paper.files import image
@@ -80,6 +81,78 @@ def test_loop_is_walked_by_the_run() -> None:
     figure = hysteresis.draw(dataset)
     assert all(has_unit(text) for text in labels(figure))
     assert {"A", "B", "C", "D", "E", "to O"} <= {text.get_text() for text in figure.axes[0].texts}
+
+
+def lines_of(figure: Figure) -> dict[str, np.ndarray]:
+    """What is drawn under each name of the legend: points (x, y)."""
+    return {str(line.get_label()): line.get_xydata() for line in figure.axes[0].lines if not str(line.get_label()).startswith("_")}
+
+
+def test_the_set_of_any_problem_is_coloured_by_stability() -> None:
+    figure = admissible.draw(admissible.data(SLAB_PROBLEM))
+    drawn = lines_of(figure)
+    assert {"stick", "slip, stable", "slip, unstable", "jump, perfect-delay"} == set(drawn)
+    assert all(has_unit(text) for text in labels(figure))
+    rate, load = drawn["slip, stable"].T
+    shown = np.isfinite(load)
+    assert rate[shown].min() == pytest.approx(1.25876975726, rel=1e-11)
+    assert load[shown] * 1e6 == pytest.approx(9.8e6 * rate[shown] + 3e7 + 5e7 / (1 + rate[shown]), rel=1e-14)
+    rate, load = drawn["slip, unstable"].T
+    assert rate[np.isfinite(load)].max() == pytest.approx(1.25876975726, rel=1e-2)
+    assert len(figure.axes[0].texts) == 2  # the arrows of the two jumps
+
+
+def test_a_run_is_drawn_over_its_set() -> None:
+    solution = ss.simulate(LOOP, 5.7)
+    figure = admissible.draw(admissible.data(LOOP, solution))
+    rate, load = lines_of(figure)["run"].T
+    assert load.min() == pytest.approx(60.0, abs=0.1)
+    assert load.max() == pytest.approx(60.0 + 9.8 * 2.6, rel=1e-9)
+    slips = rate > 0.0
+    assert load[slips] == pytest.approx(9.8 * rate[slips] + 30 + 50 / (1 + rate[slips]), rel=1e-8)
+    assert {"its start", "its end"} <= set(lines_of(figure))
+
+
+def test_near_the_critical_value_loads_are_differences() -> None:
+    critical = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.196 + 1e-6))
+    figure = admissible.draw(admissible.data(critical))
+    assert figure.axes[0].get_ylabel().endswith("minus static strength (Pa)")
+    _, load = lines_of(figure)["slip, unstable"].T
+    assert np.nanmin(load) == pytest.approx(ss.uniqueness(critical).window[0], rel=1e-9)
+
+
+def test_slip_backwards_shows_the_mirrored_set() -> None:
+    backwards = replace(SLAB_PROBLEM, initial_excess=None, initial_load=-81e6)
+    figure = admissible.draw(admissible.data(backwards, ss.simulate(backwards, 12.0)))
+    low, high = figure.axes[0].get_xlim()
+    assert low == -high < 0.0
+    assert lines_of(figure)["run"][:, 0].min() < 0.0
+
+
+def test_a_plateau_is_drawn_as_a_continuum() -> None:
+    law = ss.friction.PiecewiseLinearRate((0.0, 1.0, 2.0, 6.0), (0.6, 0.65, 0.65 - 0.098, 0.5))
+    drawn = lines_of(admissible.draw(admissible.data(replace(SLAB_PROBLEM, friction=law))))
+    rate, load = drawn["slip, continuum"].T
+    flat = np.isfinite(load) & (rate >= 1.0) & (rate <= 2.0)
+    assert load[flat] == pytest.approx(np.full(flat.sum(), 74.8), rel=1e-14)
+
+
+@pytest.mark.parametrize("body", [BLOCK, replace(SLAB, contact_mass=1.0)])
+def test_inertia_leaves_no_set_to_draw(body: ss.SpringBlock | ss.ElasticSlab) -> None:
+    with pytest.raises(ss.InputError, match="inertia"):
+        admissible.data(replace(SLAB_PROBLEM, body=body))
+
+
+def test_the_map_of_regimes_marks_the_problem() -> None:
+    found = regime_map(SLAB_PROBLEM, Axis("alpha", 0.01, 10.0, 6, log=True), Axis("normal_stress", 1e7, 5e8, 5))
+    dataset = regimes.data(SLAB_PROBLEM, found)
+    figure = regimes.draw(dataset)
+    assert labels(figure) == ["friction.alpha (s/m)", "body.normal_stress (MPa)"]
+    assert lines_of(figure)["the scenario"].tolist() == [[1.0, 100.0]]
+    (curve,) = figure.axes[0].collections[1:]
+    points = np.concatenate(curve.get_segments())
+    assert points[:, 0] * points[:, 1] * 0.5 == pytest.approx(np.full(len(points), 9.8), rel=1e-13)
+    assert figure.axes[0].get_xscale() == "log"
 
 
 @pytest.fixture(scope="module")

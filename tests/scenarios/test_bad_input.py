@@ -75,7 +75,11 @@ CASES = [
     ('"12 s"', '"12 s"\nrtol = 0.5', "[run] rtol must be at most 0.01, got 0.5"),
     ('"12 s"', '"12 s"\nrtol = 0.0', "[run] rtol must be at least 1e-15 (a pure number), got 0"),
     ('"12 s"', '"12 s"\nselection = "maxwel"', "[run] selection 'maxwel' is unknown; did you mean 'maxwell'?"),
-    ('"12 s"', '"12 s"\nselection = 3', "[run] selection 3 is unknown; allowed: maximal, maxwell, minimal, perfect-delay"),
+    (
+        '"12 s"',
+        '"12 s"\nselection = 3',
+        "[run] selection 3 is unknown; allowed: maximal, maxwell, minimal, perfect-delay or a registered one",
+    ),
     ('"12 s"', '"12 s"\np_wave = ', "not TOML: Invalid value (at line 19, column 10)"),
     ('"12 s"', "1" + 5000 * "0", None),
     ('"12 s"', 3000 * "[", None),

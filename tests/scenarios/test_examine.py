@@ -107,6 +107,38 @@ def test_the_start(excess: float, pull: float, words: str) -> None:
     assert words in examine(Scenario(Problem(SLAB, LAW, pull, initial_excess=excess), 10.0)).start
 
 
+def test_the_jump_at_the_start() -> None:
+    """v(0+) of the slip law is excess / Z; of the rate law the landing of the rule, which may leave stick below the strength."""
+    assert "jumps to 6.37753773e-05 m/s" in examine(load_scenario("fig5-slab-printed")).start
+    problem = load_scenario("fig6-slab").problem
+    for rule, excess, words in (
+        ("perfect-delay", 0.0, "slips at 0+: the load is the static strength and grows; the slip rate jumps to 4.10204082 m/s"),
+        ("perfect-delay", -1e6, "stuck: the load is 1e+06 Pa below"),
+        (
+            "maxwell",
+            -1e6,
+            "slips at once, because the rule 'maxwell' leaves stick below the static strength; the slip rate",
+        ),
+        ("perfect-delay", 1e6, "slips at once: the load exceeds the static strength by 1e+06 Pa; the slip rate jumps to 4.2"),
+    ):
+        changed = replace(problem, selection=rule, initial_excess=excess)
+        assert words in examine(Scenario(changed, 10.0)).start
+    heavy = replace(problem, body=replace(SLAB, contact_mass=1e5))
+    assert "jumps" not in examine(Scenario(heavy, 10.0)).start
+
+
+def test_critical_values_of_every_rate_law() -> None:
+    for kind in LAWS:
+        problem = read_scenario(template("slab", kind), "new").problem
+        found = examine(Scenario(problem, 10.0))
+        weakens = problem.friction.depends_on_rate and kind != "velocity-strengthening"
+        assert bool(found.critical) == weakens, kind
+        assert bool(found.along_slip) == (problem.friction.depends_on_slip and problem.friction.depends_on_rate), kind
+        for fact in found.critical:
+            assert fact.value > 0.0
+            assert fact.meaning.startswith("here ")
+
+
 def warnings(scenario: Scenario) -> str:
     return "\n".join(examine(scenario).warnings)
 

@@ -40,6 +40,6 @@ def complete_law(incomplete: str) -> list[str]:
 
 def complete_rule(incomplete: str) -> list[str]:
     """Selection rules."""
-    from stickslip.problem import SELECTION_RULES
+    from stickslip.selection import SELECTION_RULES
 
     return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]

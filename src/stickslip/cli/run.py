@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.names import complete_rule, complete_scenario
-from stickslip.errors import InputError, nearest
+from stickslip.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
+    from stickslip.problem import Problem
     from stickslip.scenarios.scenario import Scenario
 
 
@@ -23,6 +24,10 @@ def run(
     ] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
+    ] = None,
+    path: Annotated[
+        Path | None,
+        typer.Option("--path", help="Save a figure of the run's path in the set K (.png, .pdf or .svg).", show_default=False),
     ] = None,
     duration: Annotated[
         str | None, typer.Option(help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
@@ -52,13 +57,16 @@ def run(
     from stickslip.cli.files import check_target
     from stickslip.cli.summary import show_solution
 
-    for path, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", (".png", ".pdf", ".svg"))):
-        if path is not None:
-            check_target(path, option, suffixes)
+    pictures = (".png", ".pdf", ".svg")
+    for target, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", pictures), (path, "--path", pictures)):
+        if target is not None:
+            check_target(target, option, suffixes)
     chosen = _adjusted(scenario, duration, rtol, selection)
+    if path is not None:
+        _check_path(chosen.problem)
     solution = _simulate(chosen)
     show_solution(chosen, solution)
-    for line in _save(solution, out, figure):
+    for line in _save(solution, out, figure, path):
         typer.echo(line)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
@@ -67,9 +75,9 @@ def run(
 
 def _adjusted(name: str, duration: str | None, rtol: float | None, selection: str | None) -> Scenario:
     """The scenario with what the options change. Raises InputError."""
-    from stickslip.problem import SELECTION_RULES
     from stickslip.scenarios.scenario import load_scenario
     from stickslip.scenarios.schema import check_rtol, read_duration
+    from stickslip.selection import names, unknown
 
     loaded = load_scenario(name)
     changes: dict[str, Any] = {}
@@ -78,8 +86,8 @@ def _adjusted(name: str, duration: str | None, rtol: float | None, selection: st
     if rtol is not None:
         changes["rtol"] = check_rtol(rtol, "run", "--rtol")
     if selection is not None:
-        if selection not in SELECTION_RULES:
-            raise InputError(f"run: --selection '{selection}' is unknown; {nearest(selection, SELECTION_RULES)}")
+        if selection not in names():
+            raise InputError(f"run: --selection '{selection}' {unknown(selection)}")
         changes["problem"] = replace(loaded.problem, selection=selection)
     return replace(loaded, **changes)
 
@@ -95,7 +103,15 @@ def _simulate(scenario: Scenario) -> Solution:
         return scenario.run(progress)
 
 
-def _save(solution: Solution, out: Path | None, figure: Path | None) -> list[str]:
+def _check_path(problem: Problem) -> None:
+    """Refuse a figure that cannot be drawn before the run. Raises InputError."""
+    from stickslip.contact.uniqueness import uniqueness
+
+    if uniqueness(problem).resistance is None:
+        raise InputError("run: --path needs a slab without contact mass: with inertia the slip rate is a state, there is no set K")
+
+
+def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path | None) -> list[str]:
     from stickslip.files import write_atomically
 
     written = []
@@ -105,4 +121,9 @@ def _save(solution: Solution, out: Path | None, figure: Path | None) -> list[str
     if figure is not None:
         write_atomically(figure, solution.plot().savefig)
         written.append(f"written: {figure}")
+    if path is not None:
+        from stickslip.figures import admissible
+
+        write_atomically(path, admissible.draw(admissible.data(solution.problem, solution)).savefig)
+        written.append(f"written: {path}")
     return written

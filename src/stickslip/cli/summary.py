@@ -27,7 +27,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{solution.status.name}: {solution.status.message}")
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
-    screen.print(f"selection rule {solution.selection_note}\n")
+    screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     _print(screen, "slip event", _with_lengths(solution.events), units)
     _print(screen, "shock", solution.shocks, ("s", "", "m/s", "m/s", force, force))

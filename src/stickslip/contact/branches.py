@@ -48,11 +48,11 @@ def branches_of(g: Resistance) -> tuple[Branch, ...]:
     """The stable branches of a resistance, slowest first; folds are polished to rounding."""
     if not g.law.depends_on_rate:
         return (Branch(0.0, math.inf, g.start, math.inf),)
-    rates = _search_grid(g)
+    rates = _refined_grid(g)
     rising = g.slope(rates) > 0.0
     rising[0] |= bool(g.slope(0.0) == 0.0 and rising[1])
     if not rising[-1]:
-        raise InputError(f"{type(g.law).__name__}: friction still falls faster than Z v rises at {rates[-1]:.3g} m/s")
+        raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {rates[-1]:.3g} m/s")
     turns = np.flatnonzero(rising[1:] != rising[:-1])
     folds = [_fold(g, rates[i], rates[i + 1]) for i in turns]
     ends = [*([0.0] if rising[0] else []), *folds, math.inf]
@@ -60,15 +60,21 @@ def branches_of(g: Resistance) -> tuple[Branch, ...]:
 
 
 def _branch(g: Resistance, low: float, high: float) -> Branch:
-    return Branch(low, high, float(g.excess(low)), math.inf if math.isinf(high) else float(g.excess(high)))
+    return Branch(low, high, g.end_excess(low), math.inf if math.isinf(high) else g.end_excess(high))
 
 
-def _search_grid(g: Resistance) -> NDArray[np.float64]:
-    """0 and slip rates in geometric progression over every scale, refined where g' nearly touches zero between two of them."""
+def search_grid(g: Resistance) -> NDArray[np.float64]:
+    """0 and slip rates (m/s) in geometric progression over every scale, evenly up to the fastest, and where pieces meet."""
     low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
+    knots = np.array([0.0, *g.rate_knots])
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
     even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)  # a law that waves in v does so up to its fastest scale
-    rates = np.unique(np.concatenate((even, np.logspace(low, high, count))))
+    return np.unique(np.concatenate((even, np.logspace(low, high, count), knots, 0.5 * (knots[1:] + knots[:-1]))))
+
+
+def _refined_grid(g: Resistance) -> NDArray[np.float64]:
+    """The search grid with more slip rates where g' nearly touches zero between two of them."""
+    rates = search_grid(g)
     for _ in range(3):
         slope = g.slope(rates)
         left, middle, right = slope[:-2], slope[1:-1], slope[2:]
@@ -90,7 +96,8 @@ def _fold(g: Resistance, low: float, high: float) -> float:
         low, high = float(rates[k]), float(rates[k + 1])
         if high - low <= 2.0 * np.spacing(high):
             break
-    return high if not first else low
+    end = high if not first else low
+    return next((knot for knot in g.rate_knots if abs(knot - end) <= 2.0 * np.spacing(end)), end)
 
 
 def rate_on(g: Resistance, branch: Branch, excess: float) -> float:

@@ -76,6 +76,7 @@ def area(g: Resistance, start: float, end: float, excess: float) -> float:
     count = max(1, math.ceil(math.log2(end / first)))
     inner = first * (end / first) ** (np.arange(count + 1) / count)
     edges = np.concatenate(([start], inner)) if first > start else inner
+    edges = np.union1d(edges, [knot for knot in g.rate_knots if start < knot < end])
     half = 0.5 * np.diff(edges)
     rates = edges[:-1, None] + half[:, None] * (1.0 + _NODES)
     return float(np.sum(half * ((g.excess(rates) - excess) @ _WEIGHTS)))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,8 +15,21 @@ from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.friction.difference import difference
-from stickslip.friction.expression import Expression
+from stickslip.friction.expression import Expression, evaluate
 from stickslip.problem import Problem
+
+_FASTEST = 1e9
+_FLAT = 1e-9
+"""Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """An interval of slip rates (m/s) on which g does not change, and its excess over the static strength (Pa) there."""
+
+    rate_from: float
+    rate_to: float
+    excess: float
 
 
 @dataclass(frozen=True)
@@ -45,23 +61,80 @@ class Resistance:
         Near-equal frictions are not subtracted: the excess keeps its digits down to s = 0.
         """
         rate = np.asarray(rate, float)
-        step, slope = np.empty(rate.shape), np.empty(rate.shape)
         piece = self.law.piece_at(self.law_slip, rate)
+        excess, slope = self._by_formula(piece, rate)
+        if self.plateaus:
+            level = self._levels[piece]
+            flat = ~np.isnan(level)
+            excess, slope = np.where(flat, level, excess), np.where(flat, 0.0, slope)
+        return excess, slope
+
+    def _by_formula(self, piece: NDArray[np.intp], rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Excess and slope by the formulas of the pieces: those that share a formula at once, whatever their parameters."""
+        step, slope = np.empty(rate.shape), np.empty(rate.shape)
         first = int(self.law.piece_at(self.law_slip))
-        for i in np.unique(piece).tolist():
-            chosen = piece == i
-            own_step, slope[chosen] = difference(self.trees[i], self.law.numbers(i), self.law_slip, 0.0, rate[chosen])
-            step[chosen] = own_step + (self._at_rest(i) - self._at_rest(first) if i != first else 0.0)
+        home = self._at_rest(self.trees[first], self.law.numbers(first))
+        used, place = np.unique(piece, return_inverse=True)
+        values = np.array([self.law.piece_values(i) for i in used.tolist()])
+        for tree in dict.fromkeys(self.trees[i] for i in used.tolist()):
+            own = np.array([self.trees[i] is tree for i in used.tolist()])
+            chosen = own[place].reshape(rate.shape)
+            numbers = dict(zip(self.law.parameters(), values[place.reshape(rate.shape)[chosen]].T, strict=True))
+            change, slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
+            offset = np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
+            step[chosen] = change + offset
         return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+
+    @cached_property
+    def rate_knots(self) -> tuple[float, ...]:
+        """Slip rates (m/s) above 0 at which the law changes its formula."""
+        return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
+
+    @cached_property
+    def _levels(self) -> NDArray[np.float64]:
+        """Excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
+
+        Exactly: g varies by no more than its own rounding. Only a piece can be flat, because elsewhere formulas are analytic.
+        """
+        levels = np.full(len(self.trees), np.nan)
+        if not self.rate_knots:
+            return levels
+        edges = np.array((0.0, *self.rate_knots))
+        rates = np.linspace(edges[:-1], edges[1:], 9, axis=1)
+        pieces = self.law.piece_at(self.law_slip, edges[:-1])
+        excess, slope = self._by_formula(np.repeat(pieces[:, None], 9, axis=1), rates)
+        size = abs(self.strength) + np.max(np.abs(excess), axis=1) + self.impedance * edges[1:]
+        still = np.ptp(excess, axis=1) <= 8.0 * np.finfo(float).eps * size
+        for k in np.flatnonzero(still & (np.max(np.abs(slope), axis=1) <= _FLAT * self.impedance)).tolist():
+            before = levels[pieces[k - 1]] if k > 0 else np.nan
+            levels[pieces[k]] = excess[k, 0] if np.isnan(before) else before
+        return levels
+
+    @cached_property
+    def plateaus(self) -> tuple[Plateau, ...]:
+        """Where g is flat, slowest first: every slip rate of such an interval solves the contact equation at its load."""
+        found: list[Plateau] = []
+        for low, high in pairwise((0.0, *self.rate_knots)):
+            level = float(self._levels[int(self.law.piece_at(self.law_slip, low))])
+            if not np.isnan(level):
+                joined = bool(found) and found[-1].rate_to == low
+                start = found.pop().rate_from if joined else low
+                found.append(Plateau(start, high, level))
+        return tuple(found)
+
+    def end_excess(self, rate: float) -> float:
+        """Excess (Pa) at the end of a branch: that of the plateau which begins or ends there, if one does."""
+        level = next((p.excess for p in self.plateaus if rate in (p.rate_from, p.rate_to)), None)
+        return float(self.excess(rate)) if level is None else level
 
     @cached_property
     def trees(self) -> tuple[Expression, ...]:
         """The law's formulas."""
         return self.law.trees()
 
-    def _at_rest(self, piece: int) -> float:
+    def _at_rest(self, tree: Expression, numbers: Mapping[str, Any]) -> Any:
         """What the formula of a piece gives at s = 0, even where the piece holds only at higher rates."""
-        return float(self.law.piece_coefficient(piece, self.law_slip, 0.0))
+        return evaluate(tree, numbers, np.float64(self.law_slip), np.float64(0.0))
 
     def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
         """g(s) - S mu_static (Pa); see `excess_and_slope`."""
@@ -73,8 +146,12 @@ class Resistance:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own."""
-        found = (self.normal * self.law.variation / self.impedance, *self.law.rate_scales)
+        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own.
+
+        Not those so fast that S (variation of mu) is nothing against Z s: there g rises whatever the law does.
+        """
+        own = self.normal * self.law.variation / self.impedance
+        found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 
     def fastest(self, excess: float) -> float:

@@ -32,3 +32,40 @@ def bracketed_newton(
         if newton and last <= _NEAR * abs(x) and abs(value) >= 0.5 * abs(before):
             break
     return x
+
+
+def sign_change(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function changes between negative and not negative, to rounding; it may jump there, or be infinite.
+
+    Chandrupatla's method (1997, Adv. Eng. Softw. 28, 145): inverse quadratic where the function is near a straight line,
+    bisection elsewhere. Returns the end of the last bracket at which the function is not negative.
+    """
+    a, b, c = high, low, high
+    fa, fb = function(a), function(b)
+    fc, t = fa, 0.5
+    for _ in range(200):
+        x = a + t * (b - a)
+        if not min(a, b) < x < max(a, b):
+            break
+        fx = function(x)
+        if (fx < 0.0) == (fa < 0.0):
+            c, fc = a, fa
+        else:
+            c, b, fc, fb = b, a, fb, fa
+        a, fa = x, fx
+        if fa == 0.0 or abs(b - a) <= 4.0 * math.ulp(abs(a)):
+            break
+        t = _next_share(a, b, c, fa, fb, fc)
+    return b if fa < 0.0 else a
+
+
+def _next_share(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> float:
+    """Where between a and b to look next, as a share of the way."""
+    if not (math.isfinite(fa) and math.isfinite(fb) and math.isfinite(fc)) or fc in (fa, fb) or fa == fb:
+        return 0.5
+    xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+    if not (phi**2 < xi and (1.0 - phi) ** 2 < 1.0 - xi):
+        return 0.5
+    share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    least = 2.0 * math.ulp(abs(a)) / abs(b - a)
+    return min(max(share, least), 1.0 - least)

@@ -7,43 +7,15 @@ the branches of one resistance and says at which loads each of them is kept; the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Protocol
 
 from stickslip.contact.branches import Branch, branches_of
 from stickslip.contact.maxwell import best_branches
 from stickslip.contact.resistance import Resistance, resistance
+from stickslip.errors import InputError
 from stickslip.problem import Problem
+from stickslip.selection import SelectionRule, SelectionTable, registered
 
 Branches = tuple[Branch, ...]
-
-
-@dataclass(frozen=True)
-class SelectionTable:
-    """Excess of the load over the static strength (Pa) at which stick is left, and between which each branch is kept.
-
-    Read it so: stuck, stay while excess <= stick_to, else take the first branch i with excess <= keep_to[i]. On branch i stay
-    while keep_from[i] <= excess <= keep_to[i]; above, take the first j > i with excess <= keep_to[j]; below, the last j < i with
-    keep_from[j] <= excess, else stick. A branch that is never taken has keep_from > keep_to. Backwards everything is mirrored.
-    """
-
-    stick_to: float
-    keep_from: tuple[float, ...]
-    keep_to: tuple[float, ...]
-
-    def climb(self, branch: int, excess: float) -> int:
-        """The branch taken when the load has risen past what `branch` (-1: stick) keeps."""
-        return next(j for j in range(branch + 1, len(self.keep_to)) if excess <= self.keep_to[j])
-
-    def descend(self, branch: int, excess: float) -> int:
-        """The branch taken when the load has fallen below what `branch` keeps; -1 is stick."""
-        return next((j for j in range(branch - 1, -1, -1) if self.keep_from[j] <= excess), -1)
-
-
-class SelectionRule(Protocol):
-    """A rule: from a resistance and its branches, slowest first, to a table."""
-
-    def __call__(self, g: Resistance, stable: Branches, /) -> SelectionTable: ...
 
 
 def perfect_delay(g: Resistance, stable: Branches, /) -> SelectionTable:
@@ -74,14 +46,79 @@ def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
 
 
 RULES: dict[str, SelectionRule] = {rule.__name__.replace("_", "-"): rule for rule in (perfect_delay, maxwell, minimal, maximal)}
-"""Every rule by its name in problems and scenarios (`stickslip.problem.SELECTION_RULES`)."""
+"""The built-in rules by their names in problems and scenarios (`stickslip.selection.SELECTION_RULES`)."""
+
+
+def rule_of(problem: Problem) -> SelectionRule:
+    """The selection rule of a problem. Raises InputError for a name that has been forgotten since."""
+    if not isinstance(problem.selection, str):
+        return problem.selection
+    known = RULES | registered
+    if problem.selection not in known:
+        raise InputError(f"selection rule '{problem.selection}' is unknown here: stickslip.selection.register it first")
+    return known[problem.selection]
 
 
 def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Branches, SelectionTable]:
     """Branches of the problem's contact at a law slip (m; default: the start) and the table of its selection rule.
 
-    Raises InputError for a block, which has no contact equation of its own.
+    Raises InputError for a block, which has no contact equation of its own, and for a rule whose table cannot be followed.
     """
     g = resistance(problem, law_slip)
     stable = branches_of(g)
-    return stable, RULES[problem.selection](g, stable)
+    return stable, table_of(problem, g, stable)
+
+
+def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTable:
+    """The table of the problem's rule, checked. Raises InputError where it cannot be followed: see `flaw`."""
+    table = rule_of(problem)(g, stable)
+    wrong = flaw(table, stable)
+    if wrong:
+        raise InputError(f"selection rule '{problem.rule}': {wrong}")
+    return table
+
+
+def flaw(table: SelectionTable, stable: Branches) -> str:
+    """What is wrong with a table, "" where nothing is.
+
+    Stick cannot be kept beyond the static strength, nor a branch where it does not exist; and wherever the load leaves a branch,
+    the one that is taken next must be kept at that load: else the contact would have nowhere to go, or would go back and forth.
+    """
+    if not isinstance(table, SelectionTable):
+        return f"it must return a SelectionTable, got {type(table).__name__}"
+    if not len(table.keep_from) == len(table.keep_to) == len(stable):
+        return f"{len(stable)} branches, but keep_from has {len(table.keep_from)} numbers and keep_to has {len(table.keep_to)}"
+    if any(math.isnan(level) for level in (table.stick_to, *table.keep_from, *table.keep_to)):
+        return "a level is not a number"
+    if table.stick_to > 0.0:
+        return f"stick_to must be at most 0, the static strength, got {table.stick_to:g} Pa"
+    kept = [i for i in range(len(stable)) if table.keep_from[i] <= table.keep_to[i]]
+    for i in kept:
+        if table.keep_from[i] < stable[i].excess_from or table.keep_to[i] > stable[i].excess_to:
+            exists = f"exists from {stable[i].excess_from:g} to {stable[i].excess_to:g} Pa"
+            return f"branch {i} {exists}, but is kept from {table.keep_from[i]:g} to {table.keep_to[i]:g} Pa"
+    return next((_dead_end(i, up) for i in (-1, *kept) for up in (True, False) if not _leads_on(table, i, up)), "")
+
+
+def _dead_end(branch: int, up: bool) -> str:
+    place = "stick" if branch < 0 else f"branch {branch}"
+    return f"when the load {'rises' if up else 'falls'} beyond what {place} is kept for, no branch is kept there"
+
+
+def _leads_on(table: SelectionTable, branch: int, up: bool) -> bool:
+    """Whether every load above (below) what a branch keeps is kept by the branch that the table then takes."""
+    if up:
+        level = table.stick_to if branch < 0 else table.keep_to[branch]
+        for low, high in zip(table.keep_from[branch + 1 :], table.keep_to[branch + 1 :], strict=True):
+            if high > level:
+                if low > level:
+                    return False
+                level = high
+        return level == math.inf
+    level = -math.inf if branch < 0 else table.keep_from[branch]
+    for low, high in reversed(list(zip(table.keep_from[: max(branch, 0)], table.keep_to[: max(branch, 0)], strict=True))):
+        if low < level:
+            if high < level:
+                return False
+            level = low
+    return level == -math.inf or table.stick_to >= level

@@ -9,13 +9,16 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.branches import Branch, branches_of, rate_on, rates_at
-from stickslip.contact.resistance import Resistance, resistance
-from stickslip.contact.selection import RULES, SelectionTable
+from stickslip.contact.branches import Branch, branches_of, rates_at
+from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.loop import Jump, Loop, jumps_of, loop_of
+from stickslip.contact.resistance import Plateau, Resistance, resistance
+from stickslip.contact.selection import table_of
 from stickslip.errors import InputError
+from stickslip.parameters import parameter
 from stickslip.problem import Problem
 
 
@@ -28,25 +31,19 @@ class Fold:
 
 
 @dataclass(frozen=True)
-class Jump:
-    """What the selection rule does as the load (Pa) slowly passes a level: the slip rates (m/s) before and after."""
-
-    rate_before: float
-    rate_after: float
-    load: float
-    direction: Literal["up", "down"]
-
-
-@dataclass(frozen=True)
 class Uniqueness:
     """The answer of `uniqueness`. Loads in Pa, slip rates in m/s, all for slip forwards: backwards everything is mirrored."""
 
-    regime: Literal["regular", "irregular"]
+    regime: Literal["regular", "irregular", "continuum"]
+    """regular: one slip rate at every load. irregular: several between the folds. continuum: at one load all those of an interval
+    (there may be folds besides)."""
     rule: str
     summary: str
     critical_parameter: str | None = None
-    """Which of the law's numbers has a critical value; it is irregular beyond it."""
+    """Which number of the problem has a critical value, as `critical_value` takes it: one of the law's own where there is a closed
+    form, else the normal stress."""
     critical_value: float | None = None
+    """Where along it the regime changes, in SI."""
     folds: tuple[Fold, ...] = ()
     jumps: tuple[Jump, ...] = ()
     window: tuple[float, float] | None = None
@@ -54,44 +51,85 @@ class Uniqueness:
     resistance: Resistance | None = None
     """The contact equation; None where inertia at the contact makes the slip rate a state."""
     branches: tuple[Branch, ...] = ()
+    loop: Loop | None = None
+    """What the rule walks as the load slowly rises past all folds and comes back; None where the slip rate is a state."""
+
+    @property
+    def loop_area(self) -> float:
+        """Area of the `loop` (Pa m/s); 0 where the slip rate is a state."""
+        return self.loop.area if self.loop else 0.0
+
+    @property
+    def plateaus(self) -> tuple[Plateau, ...]:
+        """Intervals of slip rates on which g is flat: at its load each solves the contact equation, and no rule picks one."""
+        return self.resistance.plateaus if self.resistance else ()
+
+    def g(self, rate: ArrayLike) -> NDArray[np.float64]:
+        """The resistance Z v + S mu(v) (Pa) to slip at rates v (m/s), odd in v; 0 means the limit 0+. Raises like `admissible`."""
+        g, rates = self._equation(), np.asarray(rate, float)
+        return np.where(rates < 0.0, -1.0, 1.0) * (g.strength + g.excess(np.abs(rates)))
 
     def admissible(self, load: float) -> NDArray[np.float64]:
         """Every slip rate (m/s) that solves the contact equation at a load (Pa), stick (0) and backward ones included, ascending.
 
-        Raises InputError where the slip rate is a state: a block, or a contact with mass.
+        Where all those of an interval do, its two ends stand for it: see `continuum`. Raises InputError where the slip rate is a
+        state: a block, or a contact with mass.
         """
         return self._solutions(load)[0]
 
     def stability(self, load: float) -> NDArray[np.bool_]:
-        """Whether each of the `admissible` rates is stable: g rises there, or the contact sticks. A fold is not."""
+        """Whether each of the `admissible` rates is stable: g rises there, or the contact sticks. Folds and plateaus are not."""
         return self._solutions(load)[1]
 
-    def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    def continuum(self, load: float) -> tuple[float, float] | None:
+        """The interval of slip rates (m/s) that all solve the contact equation at a load (Pa, to its rounding), if there is one."""
+        at = self._plateau(load)
+        if at is None:
+            return None
+        return (at.rate_from, at.rate_to) if load >= 0.0 else (-at.rate_to, -at.rate_from)
+
+    def _plateau(self, load: float) -> Plateau | None:
+        g = self._equation()
+        rounding = 4.0 * float(np.spacing(max(abs(load), g.strength)))
+        return next((p for p in g.plateaus if abs(p.excess - (abs(load) - g.strength)) <= rounding), None)
+
+    def _equation(self) -> Resistance:
         if self.resistance is None:
             raise InputError("admissible slip rates: inertia makes the slip rate a state of its own, any value is possible")
-        g = self.resistance
-        forward, stable = rates_at(g, self.branches, load - g.strength)
-        backward, mirrored = rates_at(g, self.branches, -load - g.strength)
+        return self.resistance
+
+    def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
+        level = {} if plateau is None else {load >= 0.0: plateau.excess}  # to the digit, not to the rounding of the load
+        forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
+        backward, mirrored = rates_at(g, self.branches, level.get(False, -load - g.strength))
         moving, kept = backward > 0.0, forward > (-1.0 if abs(load) <= g.strength else 0.0)
         rates = np.concatenate((-backward[moving][::-1], forward[kept]))
-        return rates, np.concatenate((mirrored[moving][::-1], stable[kept]))
+        kinds = np.concatenate((mirrored[moving][::-1], stable[kept]))
+        if flat is None:
+            return rates, kinds
+        inside = (rates >= flat[0]) & (rates <= flat[1]) & (rates != 0.0)
+        ends = [end for end in flat if end != 0.0 or 0.0 not in rates]
+        rates, kinds = np.append(rates[~inside], ends), np.append(kinds[~inside], np.zeros(len(ends), bool))
+        order = np.argsort(rates)
+        return rates[order], kinds[order]
 
 
 def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
     """Is the slip rate unique, at a law slip (m; default: the start)? Raises InputError as `contact.branches` does."""
     if not isinstance(problem.body, ElasticSlab):
-        return Uniqueness("regular", problem.selection, _INERTIA.format(body="The block", rule=problem.selection))
+        return Uniqueness("regular", problem.rule, _INERTIA.format(body="The block", rule=problem.rule))
     if problem.body.contact_mass > 0.0:
-        return Uniqueness("regular", problem.selection, _INERTIA.format(body="The contact mass", rule=problem.selection))
+        return Uniqueness("regular", problem.rule, _INERTIA.format(body="The contact mass", rule=problem.rule))
     g = resistance(problem, law_slip)
     stable = branches_of(g)
-    window = _window(stable)
-    critical = problem.friction.critical_value(g.impedance, g.normal)
-    jumps = _jumps(g, stable, RULES[problem.selection](g, stable)) if window else ()
+    table = table_of(problem, g, stable)
+    window, critical = _window(stable), _critical(problem, g)
+    jumps = jumps_of(g, stable, table) if window else ()
     return Uniqueness(
-        regime="irregular" if window else "regular",
-        rule=problem.selection,
-        summary=_summary(problem, critical, window, jumps),
+        regime="continuum" if g.plateaus else "irregular" if window else "regular",
+        rule=problem.rule,
+        summary=_summary(problem, g, critical, window, jumps),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
         folds=_folds(g, stable),
@@ -99,39 +137,34 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
         window=window,
         resistance=g,
         branches=stable,
+        loop=loop_of(g, stable, table),
     )
 
 
+def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
+    """Parameter and critical value: by the law's closed form, else that of the normal stress."""
+    closed = problem.friction.critical_value(g.impedance, g.normal)
+    if closed is not None:
+        return closed
+    stress = critical_normal_stress(g)
+    return None if stress is None else ("normal_stress", stress)
+
+
 def _folds(g: Resistance, stable: tuple[Branch, ...]) -> tuple[Fold, ...]:
-    ends = [end for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))]
+    ends = {end: None for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))}
     return tuple(Fold(rate, g.strength + excess) for rate, excess in ends if 0.0 < rate < np.inf)
 
 
 def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:
-    """The loads with several solutions as excess (Pa): from the lowest fold to the highest, stick's end (0) counting as one."""
+    """The loads with several solutions as excess (Pa): from the lowest fold to the highest, stick's end (0) counting as one.
+
+    None where there is one solution at every load; of no width where only a plateau has several.
+    """
     lower = [b.excess_from for b in stable if b.rate_from > 0.0 or b.excess_from < 0.0]
     upper = [b.excess_to for b in stable if b.rate_to < np.inf]
     if stable[0].rate_from > 0.0 or stable[0].excess_from < 0.0:
         upper.append(0.0)
     return (min(lower), max(upper)) if lower else None
-
-
-def _jumps(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> tuple[Jump, ...]:
-    def rate(branch: int, excess: float) -> float:
-        return 0.0 if branch < 0 else rate_on(g, stable[branch], excess)
-
-    found: list[Jump] = []
-    for i in range(-1, len(stable)):
-        low, high = (-np.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
-        if low > high:
-            continue
-        if high < np.inf:
-            beyond = float(np.nextafter(high, np.inf))
-            found.append(Jump(rate(i, high), rate(table.climb(i, beyond), high), g.strength + high, "up"))
-        if low > -np.inf:
-            beyond = float(np.nextafter(low, -np.inf))
-            found.append(Jump(rate(i, low), rate(table.descend(i, beyond), low), g.strength + low, "down"))
-    return tuple(jump for jump in found if jump.rate_before != jump.rate_after)
 
 
 _INERTIA = (
@@ -141,26 +174,37 @@ _INERTIA = (
 
 
 def _summary(
-    problem: Problem, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
+    problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
 ) -> str:
     """One paragraph for people."""
-    law, rule = type(problem.friction).__name__, problem.selection
+    law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
     bound = ""
     if critical:
-        name, value = critical
-        bound = f" The critical value is {name} = {value:.9g}; here {name} = {getattr(problem.friction, name):.9g}."
+        found = parameter(problem, critical[0])
+        unit = "" if found.unit == "1" else f" {found.unit}"
+        bound = f" The critical value is {critical[0]} = {critical[1]:.9g}{unit}; here {critical[0]} = {found.value:.9g}{unit}."
     if not problem.friction.depends_on_rate:
         reason = "friction does not depend on the slip rate and the impedance Z is positive"
-        return f"{law}: regular. The slip rate is unique: {reason}. The selection rule ({rule}) has no effect.{bound}"
+        return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
     if window is None:
         reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
-        return f"{law}: regular. The slip rate is unique: {reason}. The selection rule ({rule}) has no effect.{bound}"
-    size = f"a window of {window[1] - window[0]:.6g} Pa that ends {_side(window[1])} the static strength"
+        return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
+    flat = "; ".join(f"{p.rate_from:.6g} to {p.rate_to:.6g} m/s at a load of {g.strength + p.excess:.9g} Pa" for p in g.plateaus)
+    sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
+    if window[0] < window[1]:
+        sizes.append(f"a window of {window[1] - window[0]:.6g} Pa that ends {_side(window[1])} the static strength")
     steps = "; ".join(
         f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {j.load:.9g} Pa" for j in jumps
     )
     moves = f"jumps {steps}" if steps else "makes no jump"
-    return f"{law}: irregular. Several slip rates solve the contact equation in {size}.{bound} The rule '{rule}' {moves}."
+    several = f"Several slip rates solve the contact equation in {' and in '.join(sizes)}."
+    return f"{law}: {'continuum' if flat else 'irregular'}. {several}{bound} The rule '{problem.rule}' {moves}."
+
+
+def _named(problem: Problem, g: Resistance) -> str:
+    law = problem.friction
+    moving = law.depends_on_slip and law.depends_on_rate
+    return f"{type(law).__name__} at a slip of {g.law_slip:.6g} m" if moving else type(law).__name__
 
 
 def _side(excess: float) -> str:

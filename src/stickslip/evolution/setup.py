@@ -9,13 +9,14 @@ from functools import lru_cache
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.selection import selection_table
+from stickslip.contact.selection import rule_of, selection_table
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Setup
 from stickslip.evolution.workspace import COUNTS, STATES
 from stickslip.problem import Problem
+from stickslip.selection import SelectionRule
 
 
 def row_time(problem: Problem) -> float:
@@ -45,14 +46,14 @@ def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integer
 
     Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
     """
-    setup, state, count = _prepared(problem)
+    setup, state, count = _prepared(problem, rule_of(problem))
     par = setup.par.copy()
     par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, max(1e-10, 10.0 * rtol)
     return setup._replace(par=par), state.copy(), count.copy()
 
 
 @lru_cache(maxsize=256)
-def _prepared(problem: Problem) -> tuple[Setup, at.Floats, at.Integers]:
+def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
     check_carried(problem)
     par = _parameters(problem)
     branches, stick_to = _branches(problem)

@@ -172,12 +172,9 @@ class Solution:
     @cached_property
     def selection_note(self) -> str:
         """Whether the answer rests on the selection rule."""
-        from stickslip.contact.uniqueness import uniqueness
+        from stickslip.observables.choices import selection_note
 
-        regime = uniqueness(self.problem).regime
-        if regime == "irregular":
-            return f"{self.problem.selection}: the contact equation has several solutions, this run rests on the rule"
-        return f"{self.problem.selection}: without effect, the solution is unique"
+        return selection_note(self)
 
     def __repr__(self) -> str:
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])

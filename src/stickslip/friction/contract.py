@@ -120,9 +120,10 @@ class FrictionLaw(ABC):
         return 0.0
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Parameter and value beyond which Z v + S mu(v) falls somewhere, for Z = impedance (Pa s/m) and S = normal (Pa).
+        """Parameter and value at which Z v + S mu(v) begins to fall somewhere, for Z = impedance (Pa s/m) and S = normal (Pa).
 
-        None for a law without a closed form of it. Several slip rates then solve the contact equation (paper, section 3).
+        The parameter is named as in `stickslip.parameters`. None for a law without a closed form of it, or that never falls. On one
+        side of the value several slip rates solve the contact equation (paper, section 3).
         """
         return None
 

@@ -33,5 +33,9 @@ class Coulomb(FrictionLaw):
     def static_excess(self) -> float:
         return self.static - self.dynamic
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """Any step down is too much: static_c = dynamic, under every normal stress."""
+        return "static", self.dynamic
+
     def range(self) -> tuple[float, float]:
         return self.dynamic, self.static

@@ -35,6 +35,15 @@ class ExponentialStribeck(FrictionLaw):
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** law.exponent)) + law.viscosity * v
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """rate_c = k S (static - dynamic) / (Z + S viscosity), irregular below; k = n y^((n-1)/n) exp(-y), y = (n-1)/n, exponent n.
+
+        Friction falls most steeply at (v / rate)^n = y: at rest for n = 1.
+        """
+        n, y = self.exponent, (self.exponent - 1.0) / self.exponent
+        fall = n * y**y * math.exp(-y) * normal * (self.static - self.dynamic)
+        return ("rate", fall / (impedance + normal * self.viscosity)) if fall > 0.0 else None
+
     def range(self) -> tuple[float, float]:
         high = math.inf if self.viscosity > 0.0 else max(self.static, self.dynamic)
         return min(self.static, self.dynamic), high

@@ -35,5 +35,10 @@ class PiecewiseLinearRate(PiecewiseLaw):
     def shape(self) -> tuple[Formula, tuple[str, ...]]:
         return line_along_rate, ("start", "value", "first")
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """S_c = Z / (steepest fall of mu): the law's own numbers have none each, the normal stress has one."""
+        steepest = -float(np.min(self.polynomials()[:, 1]))
+        return ("normal_stress", impedance / steepest) if steepest > 0.0 else None
+
     def polynomials(self) -> NDArray[np.float64]:
         return lines(*self.points)

@@ -34,6 +34,15 @@ class PowerStribeck(FrictionLaw):
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) / (1.0 + (v / law.rate) ** law.exponent) + law.viscosity * v
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """rate_c = k S (static - dynamic) / (Z + S viscosity), irregular below; k = n y^((n-1)/n) / (1 + y)^2, y = (n-1)/(n+1).
+
+        n is the exponent; friction falls most steeply at (v / rate)^n = y: at rest for n = 1, which is paper eq. (15).
+        """
+        n, y = self.exponent, (self.exponent - 1.0) / (self.exponent + 1.0)
+        fall = n * y ** ((n - 1.0) / n) / (1.0 + y) ** 2 * normal * (self.static - self.dynamic)
+        return ("rate", fall / (impedance + normal * self.viscosity)) if fall > 0.0 else None
+
     def range(self) -> tuple[float, float]:
         high = math.inf if self.viscosity > 0.0 else max(self.static, self.dynamic)
         return min(self.static, self.dynamic), high

@@ -27,6 +27,13 @@ class SlipPlusRate(CompositeLaw):
     def static_excess(self) -> float:
         return self.slip.static_excess + self.rate.static_excess
 
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """That of the rate law: what slip adds does not change with the slip rate."""
+        closed = self.rate.critical_value(impedance, normal)
+        if closed is None or closed[0] == "normal_stress":
+            return closed
+        return f"rate.{closed[0]}", closed[1]
+
     def range(self) -> tuple[float, float]:
         (low, high), (least, most) = self.slip.range(), self.rate.range()
         return low + least, high + most

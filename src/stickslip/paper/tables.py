@@ -51,7 +51,7 @@ def cases_table(runs: Runs) -> pd.DataFrame:
             "case": name,
             "reading": reading,
             "duration [s]": solution.duration,
-            "selection rule": solution.problem.selection,
+            "selection rule": solution.problem.rule,
             "largest slip rate [m/s]": events.peak_rate.max(),
             "slip [m]": float(solution.slip(solution.duration)) - solution.problem.initial_slip,
             "events": len(solution.events),

@@ -9,9 +9,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.contact.along_slip import regimes_along_slip
+from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.loop import first_rate
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.friction import FrictionLaw, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.parameters import parameter
 from stickslip.problem import Problem
 from stickslip.quantities import Quantity
 from stickslip.reference.growth_rate import growth_rate
@@ -43,6 +47,9 @@ class Examination:
     start: str
     stability: str
     uniqueness: Uniqueness
+    critical: list[Fact]
+    """Numbers at which the regime changes, one at a time, all else kept."""
+    along_slip: str
     warnings: list[str]
 
 
@@ -56,6 +63,8 @@ def examine(scenario: Scenario) -> Examination:
         start=_start(problem),
         stability=_stability(problem),
         uniqueness=contact,
+        critical=_critical(problem, contact),
+        along_slip=_along_slip(problem, contact),
         warnings=_warnings(scenario, contact),
     )
 
@@ -148,14 +157,18 @@ def loading_rate(problem: Problem) -> float:
 
 def _start(problem: Problem) -> str:
     excess, unit, pulled = problem.excess, problem.load_unit, problem.pull_rate > 0
+    rate = first_rate(problem)
+    jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
     if problem.load < -problem.strength:
         return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
     if excess > 0:
-        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}"
+        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}{jump}"
+    if excess == 0 and pulled:
+        return f"slips at 0+: the load is the static strength and grows{jump}"
+    if rate > 0.0:
+        return f"slips at once, because the rule '{problem.rule}' leaves stick below the static strength{jump}"
     if excess == 0:
-        return (
-            "slips at 0+: the load is the static strength and grows" if pulled else "stays stuck: the load is the static strength"
-        )
+        return "stays stuck: the load is the static strength"
     wait = _wait(problem)
     when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
     return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
@@ -208,6 +221,30 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
     return f"statically stable: {values}"
 
 
+def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
+    """The law's own critical value where it has one, and that of the normal stress."""
+    if contact.resistance is None:
+        return []
+    stress = critical_normal_stress(contact.resistance)
+    named = dict.fromkeys([(contact.critical_parameter, contact.critical_value), ("normal_stress", stress)])
+    found = [(parameter(problem, name), value) for name, value in named if name is not None and value is not None]
+    side = {True: "above", False: "below", None: "at"}
+    return [
+        Fact(one.name, value, one.unit, f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}")
+        for one, value in found
+    ]
+
+
+def _along_slip(problem: Problem, contact: Uniqueness) -> str:
+    """For a law of slip and slip rate, where the regime changes as it slips; "" for others."""
+    law = problem.friction
+    if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
+        return ""
+    stretches = regimes_along_slip(problem)
+    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in stretches]
+    return f"{', '.join(texts)} of slip: the folds move as it slips"
+
+
 def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     problem, found = scenario.problem, []
     steady = isinstance(problem.body, SpringBlock) or math.isinf(problem.body.driver_impedance)
@@ -215,8 +252,9 @@ def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if isinstance(problem.body, ElasticSlab):
         found += _slab_warnings(scenario, problem.body, contact)
-    rule = problem.selection
-    if contact.regime == "regular" and rule != "perfect-delay":
+    rule = problem.rule
+    moving = problem.friction.depends_on_slip and problem.friction.depends_on_rate
+    if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
         found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
     return found
 
@@ -230,8 +268,10 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
         found.append("healing at once on a slab without contact_mass: slowly pulled, it creeps by tiny slips after the first event")
     if scenario.duration < body.two_way_time:
         found.append(f"the run ends before the first echo returns at R = {body.two_way_time:.6g} s")
-    if contact.regime == "irregular":
-        if contact.window is not None and contact.window[1] - contact.window[0] < 1e-9 * problem.strength:
+    if contact.plateaus:
+        found.append("a continuum of slip rates solves the contact equation at one load: no rule picks one of them")
+    if contact.window is not None:
+        if 0.0 < contact.window[1] - contact.window[0] < 1e-9 * problem.strength:
             found.append(
                 "the window of several slip rates is narrower than 1e-9 of the strength: small changes of the numbers matter"
             )
@@ -247,4 +287,5 @@ def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
     gains = [abs(body.reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
     if max(gains, default=0.0) <= 1.0:
         return []
-    return [f"each echo multiplies a disturbance by up to {max(gains):.3g}: long catalogues are chaotic beyond a horizon"]
+    growth = f"each echo multiplies a disturbance by up to {max(gains):.3g} at the rates that the rule jumps to"
+    return [f"{growth}: long catalogues are chaotic beyond a horizon"]

@@ -49,10 +49,10 @@ class Scenario:
         for table, owner in (("body", problem.body), ("friction", problem.friction)):
             tables[table] = to_table(owner)
         given = _without_none({f.name: getattr(problem, f.name) for f in fields(problem) if f.name not in ("body", "friction")})
-        selection = given.pop("selection")
+        given.pop("selection")
         tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
-        tables["run"] = {"duration": self.duration, "rtol": self.rtol, "selection": selection}
+        tables["run"] = {"duration": self.duration, "rtol": self.rtol, "selection": problem.rule}
         return tomli_w.dumps(tables, multiline_strings=True)
 
 

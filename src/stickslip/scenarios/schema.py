@@ -18,11 +18,12 @@ from stickslip.friction import LAWS
 from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import Field as LawField
 from stickslip.friction.fields import Part, fields_of
-from stickslip.problem import SELECTION_RULES, Problem
+from stickslip.problem import Problem
 from stickslip.quantities import Quantity, quantities_of
 from stickslip.scenarios.entries import Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
 from stickslip.scenarios.values import read_quantity, show
+from stickslip.selection import SELECTION_RULES, names, unknown
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 TABLES = ("body", "friction", "loading", "initial", "run")
@@ -143,9 +144,8 @@ def check_rtol(value: float, where: str, name: str = "rtol") -> float:
 
 
 def _selection(value: Any, info: ValidationInfo) -> str:
-    if value not in SELECTION_RULES:
-        hint = nearest(str(value), SELECTION_RULES)
-        raise InputError(f"{info.context['source'].file}: [run] selection {show(value)} is unknown; {hint}")  # type: ignore[index] # as above
+    if value not in names():
+        raise InputError(f"{info.context['source'].file}: [run] selection {show(value)} {unknown(str(value))}")  # type: ignore[index] # as above
     return str(value)
 
 

@@ -11,10 +11,11 @@ from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import NamedNumbers, Part, fields_of
-from stickslip.problem import SELECTION_RULES, normal_load
+from stickslip.problem import normal_load
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of
 from stickslip.scenarios.schema import KINDS, TABLES, build, entries_in, kind_of, read_table
+from stickslip.selection import SELECTION_RULES
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Generic starters, and the bundled scenario whose values they show."""

@@ -14,7 +14,8 @@ from stickslip.evolution.solution import Solution
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict
-from stickslip.problem import SELECTION_RULES, Problem
+from stickslip.problem import Problem
+from stickslip.selection import SELECTION_RULES
 
 SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from a physical regularisation are not in this report."
 

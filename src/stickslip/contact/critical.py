@@ -1,0 +1,148 @@
+"""Critical values: where, along any number of a problem, the contact equation turns from one solution to several.
+
+Source: Campillo et al. 1996, section 3: alpha_c is where g'(0) = Z + S mu'(0) vanishes. In general it is where the smallest g'
+does; the laws' own closed forms are in their `critical_value`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from stickslip.contact.branches import search_grid
+from stickslip.contact.resistance import Resistance, resistance
+from stickslip.contact.roots import sign_change
+from stickslip.errors import InputError
+from stickslip.parameters import Parameter, parameter
+from stickslip.problem import Problem
+
+Regime = Literal["regular", "irregular"]
+
+_DECADES, _PER_DECADE = 9, 4
+"""How far from the present value the search goes, both ways, and in which steps."""
+_LOWEST = 5
+"""How many of the lowest points of g' on the grid are looked at closely."""
+
+
+@dataclass(frozen=True)
+class Critical:
+    """Where the regime changes along one number of a problem, all else kept; values in SI, ascending.
+
+    `regimes` has one more entry than `values`: the regime below the first, between each two, and above the last.
+    """
+
+    parameter: str
+    unit: str
+    present: float
+    values: tuple[float, ...]
+    regimes: tuple[Regime, ...]
+    searched: tuple[float, float]
+    """The values between which a change was looked for: outside nothing is known."""
+
+    @property
+    def value(self) -> float | None:
+        """The critical value nearest to the present one, None where none was found."""
+        return min(self.values, key=lambda one: abs(one - self.present), default=None)
+
+
+def steepest_fall(g: Resistance) -> tuple[float, float]:
+    """The slip rate (m/s) at which g rises least or falls most steeply, and g' there (Pa s/m)."""
+    rates = search_grid(g)
+    slope = g.slope(rates)
+    lowest = np.flatnonzero((slope <= np.append(slope[1:], np.inf)) & (slope <= np.append(np.inf, slope[:-1])))
+    best = (math.inf, 0.0)
+    for i in lowest[np.argsort(slope[lowest])][:_LOWEST].tolist():
+        low, high = float(rates[max(i - 1, 0)]), float(rates[min(i + 1, len(rates) - 1)])
+        best = min(best, (float(slope[i]), float(rates[i])), _lowest_between(g, low, high))
+    return best[1], best[0]
+
+
+def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, float]:
+    """Smallest g' and where it is, to the rounding of g'."""
+    while True:
+        rates = np.linspace(low, high, 33)
+        slope = g.slope(rates)
+        k = int(np.argmin(slope))
+        low, high = float(rates[max(k - 1, 0)]), float(rates[min(k + 1, 32)])
+        if np.ptp(slope[max(k - 1, 0) : k + 2]) <= 4.0 * np.finfo(float).eps * g.impedance or high - low <= 4.0 * np.spacing(high):
+            return float(slope[k]), float(rates[k])
+
+
+def margin(problem: Problem, law_slip: float | None = None) -> float:
+    """Smallest g'/Z over all slip rates: negative in the irregular regime; -inf where friction steps down as slip begins.
+
+    At a law slip (m; default: the start). Raises InputError for a block.
+    """
+    g = resistance(problem, law_slip)
+    if not g.law.depends_on_rate:
+        return 1.0
+    return -math.inf if g.law.static_excess > 0.0 else steepest_fall(g)[1] / g.impedance
+
+
+def critical_normal_stress(g: Resistance) -> float | None:
+    """The normal stress (Pa) beyond which any law of the slip rate is irregular: Z / max(-dmu/dv). None where friction never falls.
+
+    For friction that steps down as slip begins there is none either: it is irregular under every normal stress.
+    """
+    if g.law.static_excess > 0.0 or not g.law.depends_on_rate:
+        return None
+    weakening = (g.impedance - steepest_fall(g)[1]) / g.normal
+    return g.impedance / weakening if weakening > 1e-12 * g.impedance / g.normal else None
+
+
+def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
+    """Where the regime changes along one number of a problem: "alpha", "rate.alpha", "body.normal_stress", "initial.slip".
+
+    Looked for from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 where it is 0), as far as the problem
+    takes them, at a law slip (m; default: the start), then found to rounding. Two changes within a step of 10^(1/4) can
+    hide each other. Raises InputError for a name that is none, for a whole number, and where inertia makes the slip rate a
+    state: the motion is unique then whatever the numbers are.
+    """
+    found = parameter(problem, name)
+    if getattr(problem.body, "contact_mass", 0.0) > 0.0:
+        raise InputError("critical value: the contact mass makes the slip rate a state, the motion is unique whatever the law")
+    if found.declared.whole:
+        raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")
+
+    def margin_at(value: float) -> float:
+        return margin(found.put(value), law_slip)
+
+    here = margin_at(found.value)
+    points = sorted([*_walk(found, margin_at, -1), (found.value, here), *_walk(found, margin_at, 1)])
+    values = [sign_change(margin_at, low[0], high[0]) for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0)]
+    changes = [points[0][1] < 0.0, *(high[1] < 0.0 for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0))]
+    regimes: tuple[Regime, ...] = tuple("irregular" if falls else "regular" for falls in changes)
+    return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]))
+
+
+def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> list[tuple[float, float]]:
+    """Values and margins on one side of the present value, up to where the problem refuses them."""
+    walked: list[tuple[float, float]] = []
+
+    def taken(value: float) -> bool:
+        try:
+            walked.append((value, margin_at(value)))
+        except InputError:
+            return False
+        return True
+
+    refused = next((value for value in _values(found.value, way) if not taken(value)), None)
+    if refused:  # not at 0: the progression has come close enough
+        last = walked[-1][0] if walked else found.value
+        sign_change(lambda value: 1.0 if taken(value) else -1.0, last, refused)
+    return walked
+
+
+def _values(present: float, way: int) -> list[float]:
+    """Where to look: a geometric progression away from the present value; from 0 both ways, down to 0 last."""
+    count = _DECADES * _PER_DECADE
+    if present == 0.0:
+        return [way * 10.0 ** (k / _PER_DECADE) for k in range(-count, count + 1)]
+    towards_zero = way * present < 0.0
+    sign = -1 if towards_zero else 1
+    return [present * 10.0 ** (sign * k / _PER_DECADE) for k in range(1, count + 1)] + ([0.0] if towards_zero else [])

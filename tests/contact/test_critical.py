@@ -1,0 +1,185 @@
+"""Critical values: closed forms against the root finder and against a dense scan of slopes."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.contact.branches import branches_of
+from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
+from stickslip.contact.resistance import resistance
+from stickslip.contact.roots import sign_change
+
+from .laws import S, Z, hyperbolic, slab_problem
+
+F = ss.friction
+
+CLOSED = {
+    "hyperbolic": hyperbolic(1.0),
+    "exponential, n = 1": F.ExponentialStribeck(0.6, 0.4, 0.1, 1),
+    "exponential, n = 2": F.ExponentialStribeck(0.6, 0.4, 0.1, 2, viscosity=0.02),
+    "exponential, n = 5": F.ExponentialStribeck(0.6, 0.4, 9.0, 5),
+    "power, n = 1": F.PowerStribeck(0.6, 0.4, 5.0, 1),
+    "power, n = 2": F.PowerStribeck(0.6, 0.4, 0.1, 2),
+    "power, n = 3": F.PowerStribeck(0.7, 0.1, 0.1, 3, viscosity=0.1),
+    "polyline": F.PiecewiseLinearRate((0.0, 0.01, 1.0, 2.0), (0.6, 0.5, 0.3, 0.4)),
+    "coulomb": F.Coulomb(0.6, 0.5),
+    "sum": F.SlipPlusRate(F.LinearSlipWeakening(0.4, 0.2, 0.4), F.ExponentialStribeck(0.3, 0.2, 0.1)),
+}
+
+
+def steepest_by_scan(law: ss.friction.FrictionLaw) -> float:
+    """Smallest dmu/dv, by differences between slip rates: to 2e-5, where they are neither too far apart nor lost in rounding."""
+    rates = np.concatenate(([0.0], np.geomspace(1e-5, 1e3, 20_001)))
+    return float(np.min(np.diff(law.coefficient(0.0, rates)) / np.diff(rates)))
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_closed_forms_against_the_root_finder(name):
+    problem = slab_problem(CLOSED[name])
+    place, value = CLOSED[name].critical_value(Z, S)
+    found = ss.critical_value(problem, place)
+    assert found.value == pytest.approx(value, rel=1e-12, abs=0)
+    assert found.parameter.endswith(place)
+    assert set(found.regimes) == {"regular", "irregular"}
+    assert len(found.regimes) == len(found.values) + 1
+
+
+@pytest.mark.parametrize("name", [name for name in CLOSED if name not in ("coulomb", "polyline")])
+def test_closed_forms_against_a_dense_scan(name):
+    """At the critical value the steepest fall of friction is Z/S."""
+    place, value = CLOSED[name].critical_value(Z, S)
+    problem = slab_problem(CLOSED[name])
+    at_critical = ss.parameters.parameter(problem, place).put(value).friction
+    assert -S * steepest_by_scan(at_critical) == pytest.approx(Z, rel=2e-5, abs=0)
+
+
+@pytest.mark.parametrize("name", [name for name in CLOSED if name != "coulomb"])
+@pytest.mark.parametrize("step", [-1e-6, 1e-6])
+def test_the_regime_changes_where_it_is_said_to(name, step):
+    place, value = CLOSED[name].critical_value(Z, S)
+    changed = ss.parameters.parameter(slab_problem(CLOSED[name]), place).put(value * (1.0 + step))
+    found = ss.critical_value(changed, place)
+    side = found.regimes[0] if step < 0 else found.regimes[-1]
+    assert ss.uniqueness(changed).regime == side
+    assert (margin(changed) < 0.0) == (side == "irregular")
+
+
+def test_laws_that_have_no_critical_value():
+    strengthening = F.VelocityStrengthening(0.6, 0.01, 1e-6, 0.1)
+    assert strengthening.critical_value(Z, S) is None
+    assert F.ExponentialStribeck(0.4, 0.6, 0.1).critical_value(Z, S) is None
+    assert F.PowerStribeck(0.4, 0.6, 0.1).critical_value(Z, S) is None
+    assert F.PiecewiseLinearRate((0.0, 1.0), (0.4, 0.6)).critical_value(Z, S) is None
+    for law in (strengthening, F.SinusoidalSlip(1.0, 0.5, 5.0), F.Coulomb(0.6, 0.5)):
+        problem = slab_problem(law)
+        assert critical_normal_stress(resistance(problem)) is None
+        found = ss.critical_value(problem, "normal_stress")
+        assert (found.values, found.value) == ((), None)
+        assert found.regimes == ("irregular" if isinstance(law, F.Coulomb) else "regular",)
+        assert found.searched[0] < 1e2 * found.present < 1e4 * found.present < found.searched[1]
+
+
+def test_the_normal_stress_of_a_law_without_closed_form():
+    law = F.FromExpression("b + (a - b) / (1 + alpha*v)", {"a": 0.8, "b": 0.3, "alpha": "1 s/m"})
+    found = ss.uniqueness(slab_problem(law))
+    assert (found.critical_parameter, found.critical_value) == ("normal_stress", pytest.approx(Z / 0.5, rel=1e-14, abs=0))
+    assert "critical value is normal_stress = 19600000 Pa" in found.summary
+    assert ss.critical_value(slab_problem(law), "alpha").value == pytest.approx(0.196, rel=1e-13, abs=0)
+    assert ss.critical_value(slab_problem(law), "a").value == pytest.approx(0.3 + Z / S, rel=1e-13, abs=0)
+
+
+def test_parts_of_a_product_at_the_slip_that_is_reached():
+    law = F.SlipTimesRate(F.LinearSlipWeakening(0.7, 0.5, 0.4), F.HyperbolicRate(1.0, 0.5, 1.0))
+    for slip in (0.0, 0.2, 1.0):
+        factor = max(0.7 - 0.5 * slip, 0.5)
+        found = ss.critical_value(slab_problem(law), "rate.alpha", slip)
+        assert found.value == pytest.approx(Z / (S * factor * 0.5), rel=1e-13, abs=0)
+    along = ss.critical_value(slab_problem(replace(law, slip=F.LinearSlipWeakening(0.7, 0.05, 0.4))), "initial.slip")
+    edge = (0.7 - 0.196) * 0.4 / 0.65  # the path counts: the same backwards
+    assert along.values == pytest.approx((-edge, edge), rel=1e-12, abs=0)
+    assert along.regimes == ("regular", "irregular", "regular")
+
+
+def test_a_number_with_two_critical_values():
+    """Friction falls by 0.5 k exp(-k), steepest at rest: irregular only for k neither too small nor too large."""
+    law = F.FromExpression("0.3 + 0.5 * k * exp(-k) / (1 + v)", {"k": 1.0})
+    found = ss.critical_value(slab_problem(law), "k")
+    assert found.regimes == ("regular", "irregular", "regular")
+    low, high = found.values
+    assert low < 1.0 < high
+    assert [0.5 * k * math.exp(-k) for k in found.values] == pytest.approx([Z / S] * 2, rel=1e-13, abs=0)
+    assert found.value == low  # the nearer one
+
+
+def test_from_zero_the_search_goes_by_orders_of_magnitude():
+    law = F.ExponentialStribeck(0.6, 0.4, 1.0, viscosity=0.0)
+    found = ss.critical_value(slab_problem(law), "viscosity")
+    assert found.value == pytest.approx(0.2 - Z / S, rel=1e-13, abs=0)
+    assert found.regimes == ("irregular", "regular")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("alpa", "parameter 'alpa' is unknown; did you mean 'alpha'?"),
+        ("exponent", "friction.exponent is whole"),
+    ],
+)
+def test_what_has_no_critical_value(name, message):
+    law = hyperbolic(1.0) if name == "alpa" else F.PowerStribeck(0.6, 0.4, 0.1, 2)
+    with pytest.raises(ss.InputError, match=message.replace("?", r"\?")):
+        ss.critical_value(slab_problem(law), name)
+
+
+def test_inertia_has_none():
+    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
+    with pytest.raises(ss.InputError, match="block"):
+        ss.critical_value(block, "alpha")
+    with pytest.raises(ss.InputError, match="contact mass"):
+        ss.critical_value(slab_problem(hyperbolic(1.0), contact_mass=10.0), "alpha")
+
+
+@settings(max_examples=25, deadline=None)
+@given(fall=st.floats(0.01, 0.5), rate=st.floats(1e-6, 1e3), exponent=st.integers(1, 6), viscosity=st.floats(0.0, 1.0))
+def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity):
+    for law in (
+        F.ExponentialStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
+        F.PowerStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
+    ):
+        place, critical = law.critical_value(Z, S)
+        at_rate, slope = steepest_fall(resistance(slab_problem(replace(law, rate=critical))))
+        assert place == "rate"
+        assert abs(slope) < 1e-13 * (Z + S * viscosity) * 4
+        assert (at_rate == 0.0) == (exponent == 1)
+
+
+@settings(max_examples=40, deadline=None)
+@given(factor=st.floats(0.5, 2.0), exponent=st.integers(1, 4))
+def test_margin_says_what_the_branches_say(factor, exponent):
+    assume(abs(factor - 1.0) > 1e-9)
+    law = F.ExponentialStribeck(0.6, 0.4, 1.0, exponent)
+    problem = slab_problem(replace(law, rate=law.critical_value(Z, S)[1] * factor))
+    stable = branches_of(resistance(problem))
+    several = len(stable) > 1 or stable[0].rate_from > 0.0
+    assert (margin(problem) < 0.0, several) == (factor < 1.0, factor < 1.0)
+
+
+@pytest.mark.parametrize(
+    ("function", "low", "high", "root"),
+    [
+        (lambda x: x**3 - 2.0, 0.0, 5.0, 2.0 ** (1 / 3)),
+        (lambda x: -math.inf if x < 0.3 else 1.0, 0.0, 1.0, 0.3),
+        (lambda x: math.copysign(1.0, 0.3 - x), 0.0, 1.0, 0.3),
+        (lambda x: 1e-300 * (x - 0.7) ** 9, 0.0, 1.0, None),
+    ],
+)
+def test_sign_change(function, low, high, root):
+    found = sign_change(function, low, high)
+    assert function(found) >= 0.0
+    if root is not None:
+        assert found == pytest.approx(root, rel=1e-15, abs=0)
