@@ -16,7 +16,8 @@ from tests.friction.drawn import laws
 from .laws import S, Z, slab_problem
 
 SCAN = np.concatenate(([0.0], np.geomspace(1e-6, 2e2, 40_001)))
-KINDS = st.sampled_from(sorted(LAWS)).flatmap(laws)
+KINDS = st.sampled_from(sorted(kind for kind, law in LAWS.items() if law.state is None)).flatmap(laws)
+"""With a state of its own the slip rate does not follow from the load alone."""
 
 
 def problem_of(law, slip=0.0, rule="perfect-delay"):

@@ -9,8 +9,9 @@ import pytest
 from stickslip import ElasticSlab, Problem, SpringBlock
 from stickslip.friction import LAWS, SinusoidalSlip
 from stickslip.scenarios import library
-from stickslip.scenarios.examine import examine, slopes
+from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.scenarios.stability import slopes
 from stickslip.scenarios.templates import template
 
 LAW = SinusoidalSlip(1.0, 0.5, 5.0)
@@ -131,7 +132,7 @@ def test_critical_values_of_every_rate_law() -> None:
     for kind in LAWS:
         problem = read_scenario(template("slab", kind), "new").problem
         found = examine(Scenario(problem, 10.0))
-        weakens = problem.friction.depends_on_rate and kind != "velocity-strengthening"
+        weakens = problem.friction.depends_on_rate and kind != "velocity-strengthening" and problem.friction.state is None
         assert bool(found.critical) == weakens, kind
         assert bool(found.along_slip) == (problem.friction.depends_on_slip and problem.friction.depends_on_rate), kind
         for fact in found.critical:
@@ -164,3 +165,16 @@ def test_healing_at_once_on_a_slab_without_mass_is_warned_of() -> None:
     assert "creeps by tiny slips" in warnings(replace(scenario, problem=bare))
     worn = replace(bare, friction=replace(bare.friction, memory="all"))
     assert "creeps by tiny slips" not in warnings(replace(scenario, problem=worn))
+
+
+def test_rate_and_state_is_told_by_its_stiffness() -> None:
+    """0.4 of the critical stiffness S (b - a)/Dc = 5e7 N/m; the slab's G/h = 3.43e7 against 5e8 Pa/m."""
+    block, slab = (examine(load_scenario(f"rate-and-state-{body}")) for body in ("block", "slab"))
+    assert "unstable: stiffness K = 2e+07 against the critical 5e+07 N/m" in block.stability
+    assert "unstable: stiffness G/h = 3.43e+07 against the critical 5e+08 Pa/m" in slab.stability
+    assert slab.uniqueness.regime == "regular"
+    assert "a given state" in slab.uniqueness.summary
+    assert "never sticks" in slab.start
+    assert not block.warnings + slab.warnings
+    assert {fact.name for fact in slab.derived} >= {"steady friction", "steady state", "b - a"}
+    assert not {fact.name for fact in slab.derived} & {"strength", "excess"}

@@ -49,7 +49,7 @@ class Uniqueness:
     window: tuple[float, float] | None = None
     """Loads between which more than one slip rate is admissible, as excess over the static strength (Pa)."""
     resistance: Resistance | None = None
-    """The contact equation; None where inertia at the contact makes the slip rate a state."""
+    """The contact equation; None where the slip rate follows from inertia or from a state of the law, not from the load alone."""
     branches: tuple[Branch, ...] = ()
     loop: Loop | None = None
     """What the rule walks as the load slowly rises past all folds and comes back; None where the slip rate is a state."""
@@ -95,7 +95,7 @@ class Uniqueness:
 
     def _equation(self) -> Resistance:
         if self.resistance is None:
-            raise InputError("admissible slip rates: inertia makes the slip rate a state of its own, any value is possible")
+            raise InputError("admissible slip rates: here they do not follow from the load alone, but from inertia or a state too")
         return self.resistance
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
@@ -121,6 +121,8 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
         return Uniqueness("regular", problem.rule, _INERTIA.format(body="The block", rule=problem.rule))
     if problem.body.contact_mass > 0.0:
         return Uniqueness("regular", problem.rule, _INERTIA.format(body="The contact mass", rule=problem.rule))
+    if problem.friction.state is not None:
+        return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, law_slip)
     stable = branches_of(g)
     table = table_of(problem, g, stable)
@@ -170,6 +172,10 @@ def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:
 _INERTIA = (
     "{body} has inertia: its slip rate is a state that changes continuously, and the motion is unique (regular) whatever the "
     "friction law. The selection rule ({rule}) has no effect."
+)
+_STATE = (
+    "{law}: regular. The slip rate follows from load and state, and is unique: at a given state friction does not fall with the "
+    "slip rate. The selection rule ({rule}) has no effect."
 )
 
 

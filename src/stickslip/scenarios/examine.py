@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass, fields
-
-import numpy as np
 
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.loop import first_rate
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
-from stickslip.friction import FrictionLaw, SinusoidalSlip
+from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.parameters import parameter
 from stickslip.problem import Problem
 from stickslip.quantities import Quantity
-from stickslip.reference.growth_rate import growth_rate
 from stickslip.reference.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
+from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
 LARGE_STRAIN = 0.01
 """Shear strain beyond which linear elasticity is doubtful."""
@@ -60,8 +56,8 @@ def examine(scenario: Scenario) -> Examination:
     return Examination(
         given=_given(scenario),
         derived=_derived(problem),
-        start=_start(problem),
-        stability=_stability(problem),
+        start=start_of(problem),
+        stability=stability_of(problem),
         uniqueness=contact,
         critical=_critical(problem, contact),
         along_slip=_along_slip(problem, contact),
@@ -111,11 +107,11 @@ def _of_law(law: FrictionLaw, prefix: str = "") -> list[Fact]:
 
 def _derived(problem: Problem) -> list[Fact]:
     body, unit = problem.body, problem.load_unit
-    start = [
-        Fact("strength", problem.strength, unit, "static strength S mu at the start"),
-        Fact("load", problem.load, unit, "shear load on the contact at the start"),
-        Fact("excess", problem.excess, unit, "load minus static strength"),
-    ]
+    start = [Fact("load", problem.load, unit, "shear load on the contact at the start")]
+    if problem.friction.sticks:
+        start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
+        start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
+    start += _steady(problem)
     if isinstance(body, SpringBlock):
         return [
             Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
@@ -135,6 +131,19 @@ def _derived(problem: Problem) -> list[Fact]:
     ]
 
 
+def _steady(problem: Problem) -> list[Fact]:
+    """Steady sliding at the pull rate under rate-and-state friction."""
+    law, rate = problem.friction, problem.pull_rate
+    if not isinstance(law, RateAndState) or rate <= 0.0:
+        return []
+    friction, state = problem.normal * float(law.steady_coefficient(rate)), float(law.steady_state(rate))
+    return [
+        Fact("steady friction", friction, problem.load_unit, "friction of steady sliding at the pull rate"),
+        Fact("steady state", state, "s", "state theta of steady sliding at the pull rate"),
+        Fact("b - a", law.b - law.a, "1", "steady friction falls with slip rate where this is positive"),
+    ]
+
+
 def _pulses(problem: Problem) -> list[Fact]:
     """The period of pulses of a slab whose friction oscillates along slip: 2 pi Z / (omega sqrt((load - mu0 S)^2 - (a S)^2))."""
     law, body = problem.friction, problem.body
@@ -145,80 +154,6 @@ def _pulses(problem: Problem) -> list[Fact]:
         return []
     train = PulseTrain(body.impedance, problem.load, problem.normal, law.mean, abs(law.amplitude), abs(law.wavenumber))
     return [Fact("pulse period", train.period, "s", "time between pulses under the load of the start, until the first echo")]
-
-
-def loading_rate(problem: Problem) -> float:
-    """How fast the load of a stuck contact grows (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
-    body = problem.body
-    if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
-        return problem.far_stress_rate
-    return body.stiffness * problem.pull_rate
-
-
-def _start(problem: Problem) -> str:
-    excess, unit, pulled = problem.excess, problem.load_unit, problem.pull_rate > 0
-    rate = first_rate(problem)
-    jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
-    if problem.load < -problem.strength:
-        return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
-    if excess > 0:
-        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}{jump}"
-    if excess == 0 and pulled:
-        return f"slips at 0+: the load is the static strength and grows{jump}"
-    if rate > 0.0:
-        return f"slips at once, because the rule '{problem.rule}' leaves stick below the static strength{jump}"
-    if excess == 0:
-        return "stays stuck: the load is the static strength"
-    wait = _wait(problem)
-    when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
-    return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
-
-
-def _wait(problem: Problem) -> float:
-    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab."""
-    rate = loading_rate(problem)
-    return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
-
-
-def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:
-    """Derivatives of mu with respect to slip (1/m) and slip rate (s/m) at a law slip (m) and a rate (m/s; 0 means 0+).
-
-    By a complex step, which loses no digits: a law's formula is analytic.
-    """
-    piece = int(law.piece_at(slip, rate))
-    step = 1e-100
-    by_slip = np.imag(law.piece_coefficient(piece, np.complex128(complex(slip, step)), np.complex128(rate)))
-    by_rate = np.imag(law.piece_coefficient(piece, np.complex128(slip), np.complex128(complex(rate, step))))
-    return float(by_slip) / step, float(by_rate) / step
-
-
-def _stability(problem: Problem) -> str:
-    """Static stability at the start and how fast a small disturbance grows."""
-    body = problem.body
-    by_slip, by_rate = slopes(problem.friction, problem.law_slip)
-    if isinstance(body, SpringBlock):
-        return _block_stability(body, by_slip, by_rate)
-    number = -problem.normal * by_slip / body.stiffness
-    if by_slip >= 0:
-        return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
-    if not math.isinf(body.driver_impedance):
-        return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
-    if number < 1:
-        return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
-    rate = growth_rate(body.wave_speed, body.thickness, body.shear_modulus, problem.normal, -by_slip)
-    return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
-
-
-def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
-    spring, dash = body.stiffness + body.normal_force * by_slip, body.damping + body.normal_force * by_rate
-    fastest = max((-dash + sign * cmath.sqrt(dash * dash - 4 * body.mass * spring) for sign in (1, -1)), key=lambda root: root.real)
-    growth = fastest / (2 * body.mass)
-    values = f"K + S mu'(u) = {spring:.6g} N/m, damping + S mu'(v) = {dash:.6g} N s/m"
-    if spring < 0 or (growth.real > 0 and growth.imag == 0):
-        return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
-    if growth.real > 0:
-        return f"swings with growing amplitude and does not run away: {values}; growth {growth.real:.6g} /s"
-    return f"statically stable: {values}"
 
 
 def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
@@ -248,7 +183,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
 def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     problem, found = scenario.problem, []
     steady = isinstance(problem.body, SpringBlock) or math.isinf(problem.body.driver_impedance)
-    if steady and -problem.strength <= problem.load and problem.excess <= 0 and _wait(problem) > scenario.duration:
+    held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
+    if held and steady and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if isinstance(problem.body, ElasticSlab):
         found += _slab_warnings(scenario, problem.body, contact)

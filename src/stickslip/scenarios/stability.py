@@ -1,0 +1,116 @@
+"""What a contact does at the start, and whether it is stable there: sentences for people."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.contact.loop import first_rate
+from stickslip.friction import FrictionLaw, RateAndState
+from stickslip.problem import Problem
+from stickslip.reference.growth_rate import growth_rate
+from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
+
+
+def loading_rate(problem: Problem) -> float:
+    """How fast the load of a stuck contact grows (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
+    body = problem.body
+    if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
+        return problem.far_stress_rate
+    return body.stiffness * problem.pull_rate
+
+
+def start_of(problem: Problem) -> str:
+    """What the contact does at t = 0+, and when it will slip if it does not."""
+    if not problem.friction.sticks:
+        return "creeps from the start, from rest: friction with a state of its own never sticks"
+    excess, unit, pulled = problem.excess, problem.load_unit, problem.pull_rate > 0
+    rate = first_rate(problem)
+    jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
+    if problem.load < -problem.strength:
+        return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
+    if excess > 0:
+        return f"slips at once: the load exceeds the static strength by {excess:.6g} {unit}{jump}"
+    if excess == 0 and pulled:
+        return f"slips at 0+: the load is the static strength and grows{jump}"
+    if rate > 0.0:
+        return f"slips at once, because the rule '{problem.rule}' leaves stick below the static strength{jump}"
+    if excess == 0:
+        return "stays stuck: the load is the static strength"
+    wait = wait_of(problem)
+    when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
+    return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
+
+
+def wait_of(problem: Problem) -> float:
+    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab."""
+    rate = loading_rate(problem)
+    return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
+
+
+def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:
+    """Derivatives of mu with respect to slip (1/m) and slip rate (s/m) at a law slip (m) and a rate (m/s; 0 means 0+).
+
+    By a complex step, which loses no digits: a law's formula is analytic.
+    """
+    piece = int(law.piece_at(slip, rate))
+    step = 1e-100
+    by_slip = np.imag(law.piece_coefficient(piece, np.complex128(complex(slip, step)), np.complex128(rate)))
+    by_rate = np.imag(law.piece_coefficient(piece, np.complex128(slip), np.complex128(complex(rate, step))))
+    return float(by_slip) / step, float(by_rate) / step
+
+
+def stability_of(problem: Problem) -> str:
+    """Static stability at the start and how fast a small disturbance grows."""
+    body, law = problem.body, problem.friction
+    if isinstance(law, RateAndState):
+        return _steady_sliding(problem, law)
+    by_slip, by_rate = slopes(law, problem.law_slip)
+    if isinstance(body, SpringBlock):
+        return _block_stability(body, by_slip, by_rate)
+    number = -problem.normal * by_slip / body.stiffness
+    if by_slip >= 0:
+        return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
+    if not math.isinf(body.driver_impedance):
+        return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
+    if number < 1:
+        return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
+    rate = growth_rate(body.wave_speed, body.thickness, body.shear_modulus, problem.normal, -by_slip)
+    return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
+
+
+def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
+    spring, dash = body.stiffness + body.normal_force * by_slip, body.damping + body.normal_force * by_rate
+    fastest = max((-dash + sign * cmath.sqrt(dash * dash - 4 * body.mass * spring) for sign in (1, -1)), key=lambda root: root.real)
+    growth = fastest / (2 * body.mass)
+    values = f"K + S mu'(u) = {spring:.6g} N/m, damping + S mu'(v) = {dash:.6g} N s/m"
+    if spring < 0 or (growth.real > 0 and growth.imag == 0):
+        return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
+    if growth.real > 0:
+        return f"swings with growing amplitude and does not run away: {values}; growth {growth.real:.6g} /s"
+    return f"statically stable: {values}"
+
+
+def _steady_sliding(problem: Problem, law: RateAndState) -> str:
+    """Whether sliding at the pull rate is stable: the stiffness against the critical one, and how a disturbance grows."""
+    body, rate = problem.body, problem.pull_rate
+    if rate <= 0.0:
+        return "not pulled: it creeps to a halt, ever more slowly"
+    numbers = (problem.normal, law.a, law.b, law.distance, rate)
+    if isinstance(body, SpringBlock):
+        critical = critical_stiffness(*numbers, body.mass, body.damping)
+        growth = block_growth(*numbers, body.stiffness, body.mass, body.damping)
+        text, unit = f"stiffness K = {body.stiffness:.6g}", "N/m"
+    elif math.isinf(body.driver_impedance) and body.contact_mass == 0.0:
+        critical = critical_stiffness(*numbers)
+        growth = slab_growth(*numbers, body.impedance, 0.5 * body.two_way_time)
+        text, unit = f"stiffness G/h = {body.stiffness:.6g}", "Pa/m"
+    else:
+        return f"critical stiffness of slow sliding S (b - a) / Dc = {critical_stiffness(*numbers):.6g} Pa/m"
+    against = f"{text} against the critical {critical:.6g} {unit}"
+    if growth.real <= 0.0:
+        return f"steady sliding at the pull rate is stable: {against}; a small disturbance fades at {-growth.real:.6g} /s"
+    return f"steady sliding at the pull rate is unstable: {against}; a small disturbance grows at {growth.real:.6g} /s"
