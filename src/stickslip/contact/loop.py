@@ -94,9 +94,9 @@ def _against(g: Resistance, jump: Jump, excess: float) -> float:
 
 
 def first_rate(problem: Problem) -> float:
-    """The slip rate (m/s) to which a massless contact jumps forwards at t = 0+; 0 where it is stuck or has inertia."""
+    """The slip rate (m/s) to which a massless contact jumps forwards at t = 0+; 0 where it is stuck, has inertia or a state."""
     body = problem.body
-    if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0:
+    if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0 or problem.friction.state is not None:
         return 0.0
     stable, table = selection_table(problem)
     grows = problem.excess == 0.0 and problem.pull_rate > 0.0
