@@ -64,11 +64,15 @@ def _branch(g: Resistance, low: float, high: float) -> Branch:
 
 
 def _search_grid(g: Resistance) -> NDArray[np.float64]:
-    """0 and slip rates in geometric progression over every scale, refined where g' nearly touches zero between two of them."""
+    """0 and slip rates in geometric progression over every scale, refined where g' nearly touches zero between two of them.
+
+    A law's knots in slip rate belong to it, from both sides: no stretch between two of them is overlooked.
+    """
     low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
     even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)  # a law that waves in v does so up to its fastest scale
-    rates = np.unique(np.concatenate((even, np.logspace(low, high, count))))
+    knots = np.array(g.rate_knots)
+    rates = np.unique(np.concatenate((even, np.logspace(low, high, count), knots, np.nextafter(knots, 0.0))))
     for _ in range(3):
         slope = g.slope(rates)
         left, middle, right = slope[:-2], slope[1:-1], slope[2:]

@@ -59,6 +59,11 @@ class Resistance:
         """The law's formulas."""
         return self.law.trees()
 
+    @property
+    def rate_knots(self) -> tuple[float, ...]:
+        """Slip rates (m/s) at which g has a kink, ascending."""
+        return self.law.knots if self.law.knot_variable == "rate" else ()
+
     def _at_rest(self, piece: int) -> float:
         """What the formula of a piece gives at s = 0, even where the piece holds only at higher rates."""
         return float(self.law.piece_coefficient(piece, self.law_slip, 0.0))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import end_branch, towards
+from stickslip.evolution.branch import end_branch, is_knot, towards
 from stickslip.evolution.compiled import inlined
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import copy, evaluate, fill, restrict
 from stickslip.evolution.record import note_degree, theta_at
-from stickslip.evolution.workspace import Run
+from stickslip.evolution.workspace import EXIT, Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
-APPROACHING, DEPARTING = 1, 2
+APPROACHING, DEPARTING, PASSING = 1, 2, 3
 AT_THE_FOLD = 1e-14
 DEPARTURE = 1e-10
 """Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
@@ -20,12 +22,13 @@ DEPARTURE = 1e-10
 
 @inlined
 def ends_at_fold(run: Run, way: float) -> bool:
-    """Whether the branch ends there because g turns, and not because the rule prefers another solution."""
+    """Whether the branch ends there because g turns smoothly, and not at a knot or because the rule prefers another solution."""
     branch = run.counts[at.BRANCH]
     level = towards(run, evaluate(run.load, run.state[at.XI] + way), run.counts[at.MODE])
     if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
-        return run.keep_to[branch] == run.excess_to[branch]
-    return run.rate_from[branch] > 0.0 and run.keep_from[branch] == run.excess_from[branch]
+        return run.keep_to[branch] == run.excess_to[branch] and not is_knot(run, run.rate_to[branch])
+    starts = run.rate_from[branch]
+    return starts > 0.0 and run.keep_from[branch] == run.excess_from[branch] and not is_knot(run, starts)
 
 
 @inlined
@@ -59,6 +62,8 @@ def set_aside(run: Run, width: float) -> None:
     copy(run.load, run.kept_load, at.TERMS)
     copy(run.state, run.kept, at.STATES)
     run.kept[at.XI] = run.state[at.XI] + width
+    if run.state[at.XI] > 0.0:
+        run.counts[at.ARRIVING] = at.NO_CAUSE
 
 
 @inlined
@@ -78,6 +83,7 @@ def approach_fold(run: Run, width: float) -> float:
     restrict(squared, 1.0, -1.0, run.load)
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
+    run.state[EXIT] = math.nan
     note_degree(run)
     run.counts[at.AT_FOLD] = APPROACHING
     return 0.0
@@ -87,7 +93,8 @@ def approach_fold(run: Run, width: float) -> float:
 def starts_at_fold(run: Run) -> bool:
     """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
     branch = run.counts[at.BRANCH]
-    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or run.rate_from[branch] == 0.0:
+    fold = run.rate_from[branch]
+    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
     return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
@@ -97,8 +104,6 @@ def starts_at_fold(run: Run) -> bool:
 def depart_from_fold(run: Run, left: float) -> None:
     """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
     width, forwards = DEPARTURE * left, run.part
-    if run.state[at.XI] > 0.0:
-        run.counts[at.ARRIVING] = at.NO_CAUSE
     restrict(run.load, run.state[at.XI], width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
@@ -123,4 +128,22 @@ def leave_fold_piece(run: Run) -> None:
     reached = run.counts[at.AT_FOLD] == APPROACHING
     run.counts[at.AT_FOLD] = 0
     if reached:
+        reach_end(run)
+
+
+@inlined
+def reach_end(run: Run) -> None:
+    """The branch ends here: go to another one, at once or when the branches at this slip are known."""
+    if run.counts[at.FOLDS_MOVE] == 1:
+        run.counts[at.LEAVING] = 1
+    else:
         end_branch(run)
+
+
+@inlined
+def leave_moving_branch(run: Run) -> None:
+    """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
+    run.counts[at.LEAVING] = 0
+    end_branch(run)
+    if run.counts[at.AT_FOLD] != 0:
+        run.counts[at.AT_FOLD] = PASSING

@@ -11,6 +11,7 @@ from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET, advance_by_rule, folds_move, renewed
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
@@ -18,8 +19,8 @@ from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 
 STEPS_PER_CALL = 200_000
+STEPS_BY_RULE = 100
 FIRST_CAPACITY = 512
-OUT_OF_BUDGET = -1
 
 Progress = Callable[[float, int, str], None]
 """Called now and then with the simulated time (s), the number of pieces so far, and what the contact does."""
@@ -41,9 +42,13 @@ def simulate(
     scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
     last_row, last_theta = split_time(duration, row_time(problem))
     table = lend(setup, state, count, scratch, store)
+    by_rule = folds_move(problem) and problem.selection != "perfect-delay"
     try:
         while True:
-            code = advance(table, last_row, last_theta, STEPS_PER_CALL)
+            if by_rule:
+                code = advance_by_rule(problem, table, state, count, store, (last_row, last_theta), STEPS_BY_RULE)
+            else:
+                code = advance(table, last_row, last_theta, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
             if progress is not None:
                 time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
@@ -53,6 +58,9 @@ def simulate(
                     code = FULL_HISTORY
                     break
                 store = at.resized(store, length, min(4 * len(store.whole), max_pieces + 16))
+                table = lend(setup, state, count, scratch, store)
+            elif code == at.NEED_BRANCHES:
+                setup = renewed(problem, setup, state, count)
                 table = lend(setup, state, count, scratch, store)
             elif code != OUT_OF_BUDGET:
                 break

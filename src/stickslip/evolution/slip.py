@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, rate_on_branch, towards
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, friction_at, rate_from_here, rate_on_branch, towards
 from stickslip.evolution.compiled import ahead, call_jet, inlined
 from stickslip.evolution.fold import (
     APPROACHING,
@@ -17,8 +17,10 @@ from stickslip.evolution.fold import (
     approach_fold,
     depart_from_fold,
     ends_at_fold,
+    reach_end,
     starts_at_fold,
 )
+from stickslip.evolution.fold_ahead import way_to_fold
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
@@ -31,6 +33,7 @@ from stickslip.evolution.polynomial import (
     restrict_low,
     total,
 )
+from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, settle_piece
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
@@ -65,18 +68,24 @@ def load_ahead(run: Run, guess: float) -> None:
 @inlined
 def series(run: Run, guess: float) -> None:
     """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
-    direction, piece, par, k = run.counts[at.MODE], run.counts[at.PIECE], run.par, run.k
+    direction, par, k = run.counts[at.MODE], run.par, run.k
     load_ahead(run, guess)
+    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
+    if run.counts[at.IS_ALGEBRAIC] == 1:
+        if run.counts[at.FOLDS_MOVE] == 0 or run.state[at.TABLE_SLIP] == run.state[at.LAW_SLIP]:
+            k[at.K_RATE] = rate_on_branch(run, run.seen[0], k[at.K_RATE])
+        else:
+            k[at.K_RATE] = rate_from_here(run, run.seen[0], k[at.K_RATE])
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        settle_piece(run, k[at.K_RATE])
+    piece = run.counts[at.PIECE]
     edge = run.counts[at.EDGE] != 0
     k[at.K_CHI] = direction if par[at.COUNTS_NET] == 1.0 else 1.0
     k[at.K_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI]) * guess
     k[at.K_BEND] = 2.0 * run.state[at.BEND] * guess * guess
     k[at.K_SLIP], k[at.K_OFFSET] = run.state[at.LAW_SLIP] + run.slip_shift[piece], run.offset[piece]
-    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
     k[at.K_FREE] = 0.0 if edge else 1.0
     k[at.K_FORCE] = par[at.NORMAL] * par[at.STATIC_EXCESS] if edge else 0.0
-    if run.counts[at.IS_ALGEBRAIC] == 1:
-        k[at.K_RATE] = rate_on_branch(run, run.seen[0], abs(run.state[at.RATE_NOW]))
     call_jet(run.jet_at[piece], constants_of(run, piece), k, run.seen, run.jet)
 
 
@@ -118,20 +127,62 @@ def knot_crossing(run: Run, rate: Floats, length: float) -> float:
 
 
 @inlined
+def next_knot(run: Run, rate: Floats, length: float) -> tuple[float, int]:
+    """Where on [0, 1] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        return rate_knot_crossing(run, rate)
+    return knot_crossing(run, rate, length), 1 if run.k[at.K_CHI] > 0.0 else -1
+
+
+@inlined
+def pass_knot(run: Run, turn: int) -> None:
+    """Go on in the next piece of the law."""
+    if run.counts[at.KNOTS_IN_RATE] == 0:
+        run.counts[at.PIECE] += turn
+    elif not pass_rate_knot(run, turn):
+        reach_end(run)
+
+
+@inlined
 def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
     """An algebraic contact may leave its branch: how far to go, whether the branch ends there, whether it did so just now."""
-    if math.isnan(run.state[EXIT]):
+    moves = run.counts[at.FOLDS_MOVE] == 1
+    if math.isnan(run.state[EXIT]) and not moves:
         run.state[EXIT] = branch_exit(run)
     way = run.state[EXIT] - run.state[at.XI]
-    if run.state[EXIT] >= xi_to:
+    if not run.state[EXIT] < xi_to:
         return xi_to, False, False
     if way <= 0.0:
-        end_branch(run)
+        reach_end(run)
         return xi_to, False, True
-    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
+    if not moves and run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
         first = approach_fold(run, way)
         return run.state[at.XI] + first, False, first == 0.0
     return run.state[EXIT], True, False
+
+
+@inlined
+def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[float, bool, bool]:
+    """As `end_of_branch`, for a fold that moves with slip: where the series runs into it, if that is before the target."""
+    way = way_to_fold(run, guess)
+    if not way < target - run.state[at.XI]:
+        return target, leaves, False
+    if way <= TIE:
+        run.state[at.RATE_NOW] = run.counts[at.MODE] * run.state[at.FOLD_RATE]
+        reach_end(run)
+        return target, False, True
+    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD:
+        first = approach_fold(run, way)
+        return run.state[at.XI] + first, False, first == 0.0
+    return run.state[at.XI] + way, False, False
+
+
+@inlined
+def last_to_fold(run: Run) -> float:
+    """Share of the root of time, before a fold, that is a straight line: a fold found from a run of low accuracy lies less exactly."""
+    if run.counts[at.FOLDS_MOVE] == 0:
+        return LAST_TO_FOLD
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par[at.TOLERANCE]))
 
 
 @inlined
@@ -143,6 +194,8 @@ def straight_to_fold(run: Run) -> None:
     branch = run.counts[at.BRANCH]
     low, high = run.rate_from[branch], run.rate_to[branch]
     fold = low if run.jet[0] - low < high - run.jet[0] else high
+    if run.counts[at.FOLDS_MOVE] == 1:
+        fold = run.state[at.FOLD_RATE]
     for k in range(2, at.TERMS):
         run.jet[k] = 0.0
     run.jet[1] = fold - run.jet[0]
@@ -152,7 +205,9 @@ def straight_to_fold(run: Run) -> None:
 def straight_from_fold(run: Run) -> None:
     """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
     fold = run.rate_from[run.counts[at.BRANCH]]
-    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]), fold)
+    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    weakened = run.value[2] * run.k[at.K_CHI] * fold * (run.state[at.SPEED] + run.state[at.BEND])
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]) - weakened, fold)
     fill(run.jet, 0.0)
     run.jet[0], run.jet[1] = fold, reached - fold
 
@@ -161,7 +216,7 @@ def straight_from_fold(run: Run) -> None:
 def slip(run: Run, xi_to: float) -> None:
     """Slip for one Taylor step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
-    if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
+    if run.counts[at.IS_ALGEBRAIC] == 1 and (run.counts[at.AT_FOLD] == 0 or run.counts[at.FOLDS_MOVE] == 1):
         target, leaves, done = end_of_branch(run, xi_to)
         if not done and starts_at_fold(run):
             depart_from_fold(run, target - run.state[at.XI])
@@ -169,7 +224,7 @@ def slip(run: Run, xi_to: float) -> None:
     if done:
         return
     guess = first_guess(run, target - run.state[at.XI])
-    at_last = run.counts[at.AT_FOLD] == APPROACHING and target - run.state[at.XI] < LAST_TO_FOLD
+    at_last = run.counts[at.AT_FOLD] == APPROACHING and 1.0 - run.state[at.XI] < last_to_fold(run)
     if at_last:
         guess = target - run.state[at.XI]
     series(run, guess)
@@ -180,6 +235,10 @@ def slip(run: Run, xi_to: float) -> None:
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)
+    if run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.AT_FOLD] not in (APPROACHING, DEPARTING):
+        target, leaves, done = look_for_fold(run, guess, target, leaves)
+        if done:
+            return
     if run.state[at.XI] == 0.0 and run.counts[at.ARRIVING] != at.NO_CAUSE:
         note_jump(run, run.counts[at.MODE] * run.jet[0], run.counts[at.ARRIVING])
     elif run.counts[at.EDGE] != 0 and run.counts[at.HAS_INERTIA] == 0:
@@ -202,9 +261,9 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
     stretch(run, length, rate)
     arrest = NONE
-    if run.counts[at.IS_ALGEBRAIC] == 0 and rate[0] <= magnitude(rate):
+    if (run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
-    knot = knot_crossing(run, rate, length) if run.pieces > 1 else NONE
+    knot, turn = next_knot(run, rate, length) if run.pieces > 1 else (NONE, 0)
     end = min(arrest, knot)
     if end > 1.0 - TIE:
         arrest, knot, end = NONE, NONE, 1.0
@@ -216,9 +275,9 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     if arrest == end:
         come_to_rest(run)
     elif knot == end:
-        run.counts[at.PIECE] += 1 if run.k[at.K_CHI] > 0.0 else -1
+        pass_knot(run, turn)
     elif leaves and (reached or target - run.state[at.XI] < TIE):
-        end_branch(run)
+        reach_end(run)
 
 
 @inlined

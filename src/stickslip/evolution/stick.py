@@ -16,7 +16,9 @@ def arrive(run: Run) -> None:
     load = run.load[0]
     limit = rest_limit(run)
     mode = run.counts[at.MODE]
-    if mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
+    if mode != 0 and run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.ARRIVING] == at.NO_CAUSE:
+        pass  # the load goes on as it was, and so does the slip rate
+    elif mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
         seen, branch = towards(run, load, mode), run.counts[at.BRANCH]
         if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
             leave_branch(run, seen)
@@ -67,7 +69,7 @@ def come_to_rest(run: Run) -> None:
     run.state[at.RATE_NOW] = 0.0
     run.counts[at.MODE] = 0
     if run.counts[at.HAS_INERTIA] == 0:
-        run.counts[at.EDGE] = before
+        run.counts[at.EDGE] = before if run.par[at.STATIC_EXCESS] == 0.0 else 0
         return
     load = evaluate(run.load, run.state[at.XI])
     limit = rest_limit(run)
