@@ -187,6 +187,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
         if run.counts[at.READY] == at.BROUGHT:
             arrive(run)
             run.counts[at.READY] = at.MET
+            if run.counts[at.FOLDS_MOVE] == 1:
+                continue  # a step that the caller may take back stands alone
         is_last = run.counts[at.ROW] == last_row and run.counts[at.AT_FOLD] == 0 and run.state[at.THETA_TO] >= last_theta
         xi_to = min(xi_at(run, last_theta), 1.0) if is_last and run.state[at.THETA_TO] > last_theta else 1.0
         if run.state[at.XI] < xi_to:

@@ -144,6 +144,7 @@ def reach_end(run: Run) -> None:
 def leave_moving_branch(run: Run) -> None:
     """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
     run.counts[at.LEAVING] = 0
+    run.counts[at.STALLED] += 1
     end_branch(run)
     if run.counts[at.AT_FOLD] != 0:
         run.counts[at.AT_FOLD] = PASSING

@@ -7,8 +7,9 @@ the branches at a slip are worked out only where a choice is due. A rule other t
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,8 +27,14 @@ OUT_OF_BUDGET = -1
 """What `advance` returns when it has made as many steps as it was asked for."""
 ROUNDING = 1e-11
 """Loads nearer to a level, relative to the strength, have not crossed it."""
+EXACT, SHORTEST = 1e-14, 1e-15
+"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step is so well known."""
 PLACES = (0.5, 1.0)
 """Where in a step the rule is looked at."""
+NEXT = 1e-4
+"""Share of a step: outside the level there too, a load that starts at the level leaves it at once."""
+STORM_OF, STORM_IN = 30, 1e-6
+"""So many crossings within this share of a round trip are a storm."""
 
 
 def has_inertia(problem: Problem) -> bool:
@@ -113,38 +120,69 @@ class Step:
 
     def crossing(self) -> float | None:
         """Where the load first leaves that interval; None if it stays in it."""
-        before = 0.0
+        before, slack = 0.0, ROUNDING * self.problem.strength
         for place in PLACES:
-            if self.room(place) < -ROUNDING * self.problem.strength:
-                return bisection(self.room, before, place)
+            if self.room(place) < -slack:
+                starts_outside = self.room(before) <= slack and self.room(before + NEXT * (place - before)) <= 0.0
+                return before if starts_outside else root_between(self.room, before, place, EXACT * self.problem.strength)
             before = place
         return None
 
 
-def bisection(room: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function positive at low (or 0 to rounding) turns negative, to 1e-14."""
-    if room(low) <= 0.0:
-        return low
-    while high - low > 1e-14:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if room(middle) > 0.0 else (low, middle)
-    return high
+def root_between(room: Callable[[float], float], low: float, high: float, slack: float) -> float:
+    """Where a function, not negative at low and negative at high, falls through zero: false position, kept from standing still.
+
+    Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
+    """
+    above, below, side, x = max(room(low), slack), room(high), 0, high
+    for _ in range(100):
+        x = (low * below - high * above) / (below - above)
+        value = room(x)
+        if abs(value) <= slack or high - low < SHORTEST:
+            break
+        if value > 0.0:
+            low, above = x, value
+            below *= 0.5 if side > 0 else 1.0
+        else:
+            high, below = x, value
+            above *= 0.5 if side < 0 else 1.0
+        side = 1 if value > 0.0 else -1
+    return x
 
 
-def advance_by_rule(
-    problem: Problem, table: Integers, state: Floats, count: Integers, store: Store, last: tuple[int, float], budget: int
-) -> int:
-    """As `advance`, for a rule whose levels move: a step over a level is taken back, and made again up to it."""
-    for _ in range(budget):
-        state_before, count_before = state.copy(), count.copy()
-        code = advance(table, *last, 1)
-        length = int(count[at.LENGTH])
-        stepped = length > count_before[at.LENGTH] and store.mode[length - 1] != 0 and count[at.LEAVING] == 0
-        place = Step(problem, store, length - 1).crossing() if stepped else None
-        if place is not None:
-            start, end = state_before[at.XI], state[at.XI]
-            state[:], count[:] = state_before, count_before
-            state[EXIT] = start + place * (end - start)
-        elif code != OUT_OF_BUDGET:
-            return code
-    return OUT_OF_BUDGET
+@dataclass
+class RuleFollower:
+    """Runs the engine step by step, for a rule whose levels move: a step over a level is taken back, and made again up to it."""
+
+    problem: Problem
+    row_time: float
+    state: Floats
+    count: Integers
+    times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
+
+    def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
+        """As `engine.advance`. at.STORM where the contact goes to and fro across a level, which slip moves against the load."""
+        for _ in range(budget):
+            state, count = self.state.copy(), self.count.copy()
+            code = advance(table, *last, 1)
+            place = self._crossing(store, int(count[at.LENGTH]))
+            if place is not None:
+                state[EXIT] = state[at.XI] + place * (self.state[at.XI] - state[at.XI])
+                self.state[:], self.count[:] = state, count
+                if self._storms():
+                    return at.STORM
+            elif code != OUT_OF_BUDGET:
+                return code
+        return OUT_OF_BUDGET
+
+    def _crossing(self, store: Store, length: int) -> float | None:
+        """Where a step in slip that has just been made crosses a level of the rule."""
+        stepped = self.count[at.LENGTH] > length and store.mode[length] != 0 and self.count[at.LEAVING] == 0
+        return Step(self.problem, store, length).crossing() if stepped else None
+
+    def _storms(self) -> bool:
+        """Note the time of a crossing: whether many have come with hardly any time between them."""
+        whole, theta = float(self.count[at.ROW]), float(self.state[at.THETA_FROM])
+        xi = float(self.state[EXIT])
+        self.times.append(whole * self.row_time + theta + xi * (self.state[at.SPEED] + xi * self.state[at.BEND]))
+        return len(self.times) == STORM_OF and self.times[-1] - self.times[0] <= STORM_IN * self.row_time

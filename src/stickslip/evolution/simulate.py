@@ -11,7 +11,7 @@ from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET, advance_by_rule, folds_move, renewed
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, folds_move, renewed
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
@@ -43,10 +43,11 @@ def simulate(
     last_row, last_theta = split_time(duration, row_time(problem))
     table = lend(setup, state, count, scratch, store)
     by_rule = folds_move(problem) and problem.selection != "perfect-delay"
+    follower = RuleFollower(problem, row_time(problem), state, count)
     try:
         while True:
             if by_rule:
-                code = advance_by_rule(problem, table, state, count, store, (last_row, last_theta), STEPS_BY_RULE)
+                code = follower.advance(table, store, (last_row, last_theta), STEPS_BY_RULE)
             else:
                 code = advance(table, last_row, last_theta, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
