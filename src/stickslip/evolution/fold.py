@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import end_branch, is_knot, towards
+from stickslip.evolution.branch import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.evolution.compiled import inlined
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import copy, evaluate, fill, restrict
+from stickslip.evolution.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.evolution.record import note_degree, theta_at
 from stickslip.evolution.workspace import EXIT, Run
 
@@ -16,6 +16,7 @@ SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
 APPROACHING, DEPARTING, PASSING = 1, 2, 3
 AT_THE_FOLD = 1e-14
+LAST_TO_FOLD = 1e-4
 DEPARTURE = 1e-10
 """Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
 
@@ -112,6 +113,41 @@ def depart_from_fold(run: Run, left: float) -> None:
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 0.0, theta_to - theta_from, 0.0
     note_degree(run)
     run.counts[at.AT_FOLD] = DEPARTING
+
+
+@inlined
+def last_to_fold(run: Run) -> float:
+    """Share of the root of time before a fold that is a straight line: a moving fold is known as well as the run is accurate."""
+    if run.counts[at.FOLDS_MOVE] == 0:
+        return LAST_TO_FOLD
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par[at.TOLERANCE]))
+
+
+@inlined
+def straight_to_fold(run: Run) -> None:
+    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
+
+    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
+    """
+    branch = run.counts[at.BRANCH]
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    fold = low if run.jet[0] - low < high - run.jet[0] else high
+    if run.counts[at.FOLDS_MOVE] == 1:
+        fold = run.state[at.FOLD_RATE]
+    for k in range(2, at.TERMS):
+        run.jet[k] = 0.0
+    run.jet[1] = fold - run.jet[0]
+
+
+@inlined
+def straight_from_fold(run: Run) -> None:
+    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
+    fold = run.rate_from[run.counts[at.BRANCH]]
+    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    weakened = run.value[2] * run.k[at.K_CHI] * fold * (run.state[at.SPEED] + run.state[at.BEND])
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]) - weakened, fold)
+    fill(run.jet, 0.0)
+    run.jet[0], run.jet[1] = fold, reached - fold
 
 
 @inlined

@@ -57,7 +57,7 @@ def reversed_series(jet: Floats, time: float, out: Floats) -> None:
 
 @kernel
 def fold_ahead(jet: Floats) -> tuple[float, float]:
-    """Time to the fold that the series of the slip rate runs into, in its own unit, and the slip rate there; NONE if none is seen."""
+    """Time to the fold that the series of the slip rate runs into, in its unit, and the rate there; NONE if none is seen."""
     time = time_to_root(jet)
     if time == NONE:
         return NONE, 0.0

@@ -63,7 +63,7 @@ class Setup(NamedTuple):
     par: Floats
     address: Integers  # (2, pieces of the law): of the functions `value` and `rate_jet` or `motion_jet`
     constants: Floats  # (pieces, size): what `prepare` filled for them
-    law: Floats  # (3, pieces): slip shift and offset to the piece's own reference; law slip (minus the initial one) or rate at its end
+    law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end
     branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
     first: Floats  # (4, pieces + 1): the load of the first round trip, linear between the thetas
 

@@ -28,7 +28,7 @@ OUT_OF_BUDGET = -1
 ROUNDING = 1e-11
 """Loads nearer to a level, relative to the strength, have not crossed it."""
 EXACT, SHORTEST = 1e-14, 1e-15
-"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step is so well known."""
+"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step so well known."""
 PLACES = (0.5, 1.0)
 """Where in a step the rule is looked at."""
 NEXT = 1e-4

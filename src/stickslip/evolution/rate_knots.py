@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import NEAR_KNOT, friction_of, piece_at
+from stickslip.evolution.branch import NEAR_KNOT, friction_of, is_knot, piece_at
 from stickslip.evolution.compiled import inlined, kernel
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, first_descent
 from stickslip.evolution.workspace import Run
 
 
-@inlined
+@kernel
 def settle_piece(run: Run, rate: float) -> None:
-    """Take the piece of the law that holds at the slip rate. At a knot the present one goes on: the way there has chosen it."""
+    """Take the piece of the law that holds at the slip rate. At a knot the present one goes on: the way there has chosen it.
+
+    But where a branch starts or ends at the knot, it is the piece on which g rises.
+    """
     piece = run.counts[at.PIECE]
     below = piece > 0 and rate < run.knot[piece - 1] * (1.0 - NEAR_KNOT)
     if below or rate > run.knot[piece] * (1.0 + NEAR_KNOT):
-        run.counts[at.PIECE] = piece_at(run, rate)
+        piece = piece_at(run, rate)
+    if run.counts[at.IS_ALGEBRAIC] == 1 and is_knot(run, rate):
+        friction_of(run, piece, run.state[at.LAW_SLIP], rate, run.value)
+        if run.par[at.IMPEDANCE] + run.value[1] <= 0.0:
+            piece += 1 if abs(run.knot[piece] - rate) <= NEAR_KNOT * rate else -1
+    run.counts[at.PIECE] = piece
 
 
 @inlined

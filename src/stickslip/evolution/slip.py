@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, branch_exit, constants_of, friction_at, rate_from_here, rate_on_branch, towards
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, rate_from_here, rate_on_branch, towards
 from stickslip.evolution.compiled import ahead, call_jet, inlined
 from stickslip.evolution.fold import (
     APPROACHING,
@@ -17,15 +17,17 @@ from stickslip.evolution.fold import (
     approach_fold,
     depart_from_fold,
     ends_at_fold,
+    last_to_fold,
     reach_end,
     starts_at_fold,
+    straight_from_fold,
+    straight_to_fold,
 )
 from stickslip.evolution.fold_ahead import way_to_fold
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
     RECIPROCAL,
-    fill,
     first_descent,
     integral,
     magnitude,
@@ -40,7 +42,6 @@ from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.workspace import DEGREE, EXIT, Run
 
 LONGEST_GUESS = 2.0
-LAST_TO_FOLD = 1e-4
 
 
 @inlined
@@ -175,41 +176,6 @@ def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[
         first = approach_fold(run, way)
         return run.state[at.XI] + first, False, first == 0.0
     return run.state[at.XI] + way, False, False
-
-
-@inlined
-def last_to_fold(run: Run) -> float:
-    """Share of the root of time, before a fold, that is a straight line: a fold found from a run of low accuracy lies less exactly."""
-    if run.counts[at.FOLDS_MOVE] == 0:
-        return LAST_TO_FOLD
-    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par[at.TOLERANCE]))
-
-
-@inlined
-def straight_to_fold(run: Run) -> None:
-    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
-
-    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
-    """
-    branch = run.counts[at.BRANCH]
-    low, high = run.rate_from[branch], run.rate_to[branch]
-    fold = low if run.jet[0] - low < high - run.jet[0] else high
-    if run.counts[at.FOLDS_MOVE] == 1:
-        fold = run.state[at.FOLD_RATE]
-    for k in range(2, at.TERMS):
-        run.jet[k] = 0.0
-    run.jet[1] = fold - run.jet[0]
-
-
-@inlined
-def straight_from_fold(run: Run) -> None:
-    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
-    fold = run.rate_from[run.counts[at.BRANCH]]
-    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
-    weakened = run.value[2] * run.k[at.K_CHI] * fold * (run.state[at.SPEED] + run.state[at.BEND])
-    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]) - weakened, fold)
-    fill(run.jet, 0.0)
-    run.jet[0], run.jet[1] = fold, reached - fold
 
 
 @inlined
