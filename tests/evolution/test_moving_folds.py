@@ -196,7 +196,14 @@ def test_contact_mass_tends_to_perfect_delay() -> None:
     assert orders == pytest.approx([2 / 3, 2 / 3], rel=0.0, abs=0.1)
 
 
-def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang() -> None:
-    """Under the minimal rule hardening sends slip back to stick as soon as it starts, at the same load."""
-    run = ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=1e-3, initial_excess=-1e3, selection="minimal"), 5.0)
+@pytest.mark.parametrize(("selection", "excess"), [("minimal", -1e3), ("maximal", -1.6e7), ("maxwell", -1.29e7)])
+def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang(selection: str, excess: float) -> None:
+    """Hardening sends slip back to stick as soon as it starts, at the same load."""
+    run = ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=excess, selection=selection), 20.0)
     assert run.status.name == "event storm"
+    assert float(run.slip(run.history.end[-1])) < 1e-6
+
+
+def test_a_storm_from_the_very_start_is_said_in_one_line() -> None:
+    with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another selection rule$"):
+        ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=0.0, selection="minimal"), 20.0)

@@ -102,6 +102,16 @@ def starts_at_fold(run: Run) -> bool:
 
 
 @inlined
+def load_outruns_fold(run: Run) -> bool:
+    """Whether the load grows faster than the friction at the fold does as the contact slips there."""
+    fold, xi, direction = run.rate_from[run.counts[at.BRANCH]], run.state[at.XI], run.counts[at.MODE]
+    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    restrict(run.load, xi, 1.0, run.part)
+    sense = direction if run.par[at.COUNTS_NET] == 1.0 else 1
+    return direction * run.part[1] > run.value[2] * sense * fold * (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * xi)
+
+
+@inlined
 def depart_from_fold(run: Run, left: float) -> None:
     """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
     width, forwards = DEPARTURE * left, run.part

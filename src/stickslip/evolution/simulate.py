@@ -32,7 +32,7 @@ def simulate(
     """Run a problem from t = 0 to `duration` (s) with relative tolerance `rtol` (1e-15 to 1e-2).
 
     Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time.
-    Raises InputError for a duration that is not positive and finite, or an rtol out of range.
+    Raises InputError for a duration that is not positive and finite, an rtol out of range, or a contact that cannot even start.
     """
     if not (math.isfinite(duration) and duration > 0):
         raise InputError(f"simulate: duration must be a positive time in s, got {duration!r}")
@@ -69,6 +69,8 @@ def simulate(
         code = INTERRUPTED
     length = int(count[at.LENGTH])
     status, kept = STATUSES[code], at.trimmed(store, length)
+    if length == 0:
+        raise InputError(f"simulate: the run ends where it starts: {status.message}")
     reached = duration if status.ok else float(kept.row[-1] * row_time(problem) + kept.theta_to[-1])
     history = History(kept, problem, row_time(problem), float(setup.par[at.RAMP]), reached)
     return Solution(problem, duration, rtol, status, history)

@@ -18,6 +18,7 @@ from stickslip.evolution.fold import (
     depart_from_fold,
     ends_at_fold,
     last_to_fold,
+    load_outruns_fold,
     reach_end,
     starts_at_fold,
     straight_from_fold,
@@ -185,7 +186,10 @@ def slip(run: Run, xi_to: float) -> None:
     if run.counts[at.IS_ALGEBRAIC] == 1 and (run.counts[at.AT_FOLD] == 0 or run.counts[at.FOLDS_MOVE] == 1):
         target, leaves, done = end_of_branch(run, xi_to)
         if not done and starts_at_fold(run):
-            depart_from_fold(run, target - run.state[at.XI])
+            if run.counts[at.FOLDS_MOVE] == 0 or load_outruns_fold(run):
+                depart_from_fold(run, target - run.state[at.XI])
+            else:
+                run.counts[at.STALLED] += 1  # slip would end where it starts, again and again
             return
     if done:
         return
