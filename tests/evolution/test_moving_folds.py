@@ -207,3 +207,15 @@ def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang(selection: str, e
 def test_a_storm_from_the_very_start_is_said_in_one_line() -> None:
     with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another selection rule$"):
         ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=0.0, selection="minimal"), 20.0)
+
+
+def test_a_step_at_rest_added_to_a_slip_law_changes_where_slip_begins_and_nothing_in_slip() -> None:
+    """Slip law + Coulomb slips as the slip law plus the dynamic coefficient does under the same load, to its arrest."""
+    weakening = F.LinearSlipWeakening(0.4, 0.2, 0.3)
+    stepped = ss.Problem(SLAB, F.SlipPlusRate(slip=weakening, rate=F.Coulomb(0.3, 0.2)), initial_excess=1e5)
+    smooth = ss.Problem(SLAB, F.LinearSlipWeakening(0.6, 0.4, 0.3), initial_excess=1e5 + 0.1 * S)
+    ours, theirs = (ss.simulate(problem, 5.0) for problem in (stepped, smooth))
+    times = np.linspace(0.0, 5.0, 101)
+    assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=0.0, abs=1e-11)
+    assert ours.catalogue(0.0).end.iloc[0] == pytest.approx(theirs.catalogue(0.0).end.iloc[0], rel=1e-11, abs=0.0)
+    assert float(theirs.slip(5.0)) > 1.0

@@ -33,6 +33,8 @@ PLACES = (0.5, 1.0)
 """Where in a step the rule is looked at."""
 NEXT = 1e-4
 """Share of a step: outside the level there too, a load that starts at the level leaves it at once."""
+AT_A_TIME = 100
+"""Steps looked at before the caller may say how far the run is."""
 STORM_OF, STORM_IN = 30, 1e-6
 """So many crossings within this share of a round trip are a storm."""
 
@@ -152,7 +154,7 @@ def root_between(room: Callable[[float], float], low: float, high: float, slack:
 
 @dataclass
 class RuleFollower:
-    """Runs the engine step by step, for a rule whose levels move: a step over a level is taken back, and made again up to it."""
+    """Runs the engine; step by step for a rule whose levels move: a step over a level is taken back, and made again up to it."""
 
     problem: Problem
     row_time: float
@@ -162,7 +164,9 @@ class RuleFollower:
 
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
         """As `engine.advance`. at.STORM where the contact goes to and fro across a level, which slip moves against the load."""
-        for _ in range(budget):
+        if not folds_move(self.problem) or self.problem.selection == "perfect-delay":
+            return advance(table, *last, budget)
+        for _ in range(min(budget, AT_A_TIME)):
             state, count = self.state.copy(), self.count.copy()
             code = advance(table, *last, 1)
             place = self._crossing(store, int(count[at.LENGTH]))

@@ -9,9 +9,8 @@ import numpy as np
 
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
-from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, folds_move, renewed
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
@@ -19,7 +18,6 @@ from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 
 STEPS_PER_CALL = 200_000
-STEPS_BY_RULE = 100
 FIRST_CAPACITY = 512
 
 Progress = Callable[[float, int, str], None]
@@ -40,16 +38,12 @@ def simulate(
         raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
     setup, state, count = prepare(problem, rtol)
     scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY)
-    last_row, last_theta = split_time(duration, row_time(problem))
+    last = split_time(duration, row_time(problem))
     table = lend(setup, state, count, scratch, store)
-    by_rule = folds_move(problem) and problem.selection != "perfect-delay"
     follower = RuleFollower(problem, row_time(problem), state, count)
     try:
         while True:
-            if by_rule:
-                code = follower.advance(table, store, (last_row, last_theta), STEPS_BY_RULE)
-            else:
-                code = advance(table, last_row, last_theta, STEPS_PER_CALL)
+            code = follower.advance(table, store, last, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
             if progress is not None:
                 time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
