@@ -1,4 +1,4 @@
-"""Every registered law under every body that carries it, against scipy; what is not carried is refused in one line."""
+"""Every registered law under every body, against scipy and by the balance of energy."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 import tomli_w
 
 import stickslip as ss
-from stickslip.evolution.setup import check_carried
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.reference.method_of_steps import method_of_steps
 from stickslip.scenarios import read_scenario
@@ -42,38 +41,19 @@ def example_problem(kind: str, body: str) -> ss.Problem:
     return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_load=law.start["coefficient"] * normal, initial_state=1.0)
 
 
-def carried(problem: ss.Problem) -> bool:
-    """Whether the engine takes the problem: not yet kinks in slip rate, nor slip and rate together on a massless slab."""
-    try:
-        check_carried(problem)
-    except ss.InputError:
-        return False
-    return True
-
-
-def test_most_laws_are_carried_everywhere() -> None:
-    refused = [(kind, name) for kind in LAWS for name in BODIES if not carried(example_problem(kind, name))]
-    kinked = [("piecewise-linear-rate", name) for name in BODIES]
-    assert sorted(refused) == sorted([*kinked, ("sum", "slab"), ("product", "slab")])
-
-
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_law_under_body(kind: str, body: str) -> None:
     problem = example_problem(kind, body)
     law = problem.friction
     duration = 2.2 * (problem.body.period if isinstance(problem.body, ss.SpringBlock) else SLAB.two_way_time)
-    if not carried(problem):
-        with pytest.raises(ss.InputError, match=r"^[^\n]*so far[^\n]*$"):
-            ss.simulate(problem, duration)
-        return
     run = ss.simulate(problem, duration, rtol=1e-11)
     assert run.status.ok
     energy = run.energy(np.linspace(0, duration, 23))
     assert float(np.abs(energy.balance).max() / energy.heat[-1]) < 1e-8
-    slow = body == "slab" and law.depends_on_rate and kind not in ("coulomb", "hyperbolic-rate")
-    if slow or law.state or kind == "velocity-strengthening":
-        return  # beyond the slow method; the balance has spoken
+    massless = body == "slab" and law.depends_on_rate and kind not in ("coulomb", "hyperbolic-rate")
+    if massless or law.state or kind == "velocity-strengthening" or (law.knots and law.knot_variable == "rate"):
+        return  # beyond the slow method; the balance has spoken, and other tests look at each of these
     times = np.linspace(0.0, duration, 101)
     theirs = method_of_steps(problem, duration, rtol=1e-10).slip(times)
     assert np.ptp(theirs) > 0

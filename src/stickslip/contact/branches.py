@@ -64,12 +64,16 @@ def _branch(g: Resistance, low: float, high: float) -> Branch:
 
 
 def search_grid(g: Resistance) -> NDArray[np.float64]:
-    """0 and slip rates (m/s) in geometric progression over every scale, evenly up to the fastest, and where pieces meet."""
+    """0 and slip rates (m/s) in geometric progression over every scale, evenly up to the fastest, and where pieces meet.
+
+    A law's knots in slip rate belong to it, from both sides: no stretch between two of them is overlooked.
+    """
     low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
     knots = np.array([0.0, *g.rate_knots])
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
     even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)  # a law that waves in v does so up to its fastest scale
-    return np.unique(np.concatenate((even, np.logspace(low, high, count), knots, 0.5 * (knots[1:] + knots[:-1]))))
+    between = 0.5 * (knots[1:] + knots[:-1])
+    return np.unique(np.concatenate((even, np.logspace(low, high, count), knots, np.nextafter(knots[1:], 0.0), between)))
 
 
 def _refined_grid(g: Resistance) -> NDArray[np.float64]:

@@ -68,15 +68,16 @@ def _rate(g: Resistance, branch: Branch, excess: float) -> float:
 def area(g: Resistance, start: float, end: float, excess: float) -> float:
     """Integral from start to end (m/s) of g - load, in Pa m/s.
 
-    Gauss's rule on panels that double in width away from rate 0: a friction law smooth in log s is met to rounding.
+    Gauss's rule on panels that double in width away from rate 0, and end at kinks: a friction law that is smooth in log s between
+    its kinks is met to rounding.
     """
     if end <= start:
         return 0.0
     first = max(start, min(1e-3 * min(g.scales), end))
     count = max(1, math.ceil(math.log2(end / first)))
     inner = first * (end / first) ** (np.arange(count + 1) / count)
-    edges = np.concatenate(([start], inner)) if first > start else inner
-    edges = np.union1d(edges, [knot for knot in g.rate_knots if start < knot < end])
+    kinks = [knot for knot in g.rate_knots if start < knot < end]
+    edges = np.unique(np.concatenate(([start], inner, kinks)))
     half = 0.5 * np.diff(edges)
     rates = edges[:-1, None] + half[:, None] * (1.0 + _NODES)
     return float(np.sum(half * ((g.excess(rates) - excess) @ _WEIGHTS)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined
+from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined, kernel
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.evolution.record import note_jump
@@ -13,6 +13,8 @@ from stickslip.evolution.workspace import DEGREE, EXIT, Run
 
 TIE = 1e-13
 """Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
+NEAR_KNOT = 1e-12
+"""Relative distance within which a slip rate stands at a knot."""
 
 
 @inlined
@@ -22,9 +24,35 @@ def constants_of(run: Run, piece: int) -> Floats:
 
 
 @inlined
+def piece_at(run: Run, rate: float) -> int:
+    """The piece of the law at a slip rate: with knots in slip, the one to which slip has come."""
+    if run.counts[at.KNOTS_IN_RATE] == 0:
+        return run.counts[at.PIECE]
+    piece = 0
+    while piece < run.pieces - 1 and rate >= run.knot[piece]:
+        piece += 1
+    return piece
+
+
+@inlined
+def is_knot(run: Run, rate: float) -> bool:
+    """Whether the law has a knot at this slip rate."""
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        for knot in range(run.pieces - 1):
+            if abs(run.knot[knot] - rate) <= NEAR_KNOT * rate:
+                return True
+    return False
+
+
+@inlined
 def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
     """out: S (mu - mu_reference), its derivatives with respect to rate and slip times S, and mu - mu_reference."""
-    piece = run.counts[at.PIECE]
+    friction_of(run, piece_at(run, rate), law_slip, rate, out)
+
+
+@inlined
+def friction_of(run: Run, piece: int, law_slip: float, rate: float, out: Floats) -> None:
+    """As `friction_at`, by the formula of a piece."""
     slip = law_slip + run.slip_shift[piece]
     if run.counts[at.HAS_STATE] == 1:
         call_state_value(run.state_at[piece], constants_of(run, piece), slip, rate, run.state[at.STATE_NOW], out)
@@ -94,6 +122,32 @@ def rate_on_branch(run: Run, load: float, guess: float) -> float:
             return step
         s = step
     return s
+
+
+@kernel
+def rate_from_here(run: Run, load: float, guess: float) -> float:
+    """The slip rate that solves g(s) = load next to the guess: Newton's method as long as it gains; branches need not be known."""
+    s = best = guess
+    least = math.inf
+    for _ in range(20):
+        friction_at(run, run.state[at.LAW_SLIP], s, run.value)
+        error = run.par[at.IMPEDANCE] * s + run.value[0] - load
+        slope = run.par[at.IMPEDANCE] + run.value[1]
+        if abs(error) >= least:
+            return best
+        best, least = s, abs(error)
+        if error == 0.0 or slope <= 0.0:
+            return best
+        s = max(s - error / slope, 0.0)
+    return best
+
+
+@inlined
+def needs_branches(run: Run) -> bool:
+    """Whether a choice among branches is due, and the table of branches is that of another slip."""
+    meets_jump = run.counts[at.READY] == at.BROUGHT and run.counts[at.ARRIVING] != at.NO_CAUSE
+    due = run.counts[at.LEAVING] == 1 or run.counts[at.MODE] == 0 or meets_jump
+    return due and run.state[at.TABLE_SLIP] != run.state[at.LAW_SLIP]
 
 
 @inlined

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import rest_limit
+from stickslip.evolution.branch import needs_branches, rest_limit
 from stickslip.evolution.compiled import ahead, kernel
-from stickslip.evolution.fold import leave_fold_piece
+from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
 from stickslip.evolution.polynomial import fill, maximum, total
@@ -73,7 +73,7 @@ def echo_piece(run: Run) -> bool:
 
 @kernel
 def next_piece(run: Run) -> bool:
-    """Bring the next piece of load and let the contact meet its start; False at the end of the round trip."""
+    """Bring the next piece of load; False at the end of the round trip."""
     first = run.counts[at.IS_BLOCK] == 1 or run.counts[at.ROW] == 0
     if not (first_piece(run) if first else echo_piece(run)):
         return False
@@ -81,8 +81,7 @@ def next_piece(run: Run) -> bool:
     run.state[at.XI], run.state[EXIT] = 0.0, math.nan
     note_degree(run)
     run.counts[at.JUMP] = 1 if run.counts[at.ARRIVING] != at.NO_CAUSE else run.counts[at.JUMP]
-    run.counts[at.READY] = 1
-    arrive(run)
+    run.counts[at.READY] = at.BROUGHT
     return True
 
 
@@ -156,6 +155,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
 
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
+    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """
@@ -171,6 +171,11 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
         budget -= 1
         if budget < 0:
             return -1
+        if run.counts[at.FOLDS_MOVE] == 1:
+            if needs_branches(run):
+                return at.NEED_BRANCHES
+            if run.counts[at.LEAVING] == 1:
+                leave_moving_branch(run)
         if run.counts[at.READY] == 0:
             if run.counts[at.ROW] > last_row:
                 return at.LOCKED if locked else at.FINISHED
@@ -178,6 +183,13 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 limit = rest_limit(run)
                 locked = end_row(run, limit, last_row) == at.LOCKED
                 continue
+            if run.counts[at.FOLDS_MOVE] == 1:
+                continue
+        if run.counts[at.READY] == at.BROUGHT:
+            arrive(run)
+            run.counts[at.READY] = at.MET
+            if run.counts[at.FOLDS_MOVE] == 1:
+                continue  # a step that the caller may take back stands alone
         is_last = run.counts[at.ROW] == last_row and run.counts[at.AT_FOLD] == 0 and run.state[at.THETA_TO] >= last_theta
         xi_to = min(xi_at(run, last_theta), 1.0) if is_last and run.state[at.THETA_TO] > last_theta else 1.0
         if run.state[at.XI] < xi_to:

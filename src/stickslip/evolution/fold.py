@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
+import math
+
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import end_branch, towards
+from stickslip.evolution.branch import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.evolution.compiled import inlined
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import copy, evaluate, fill, restrict
+from stickslip.evolution.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.evolution.record import note_degree, theta_at
-from stickslip.evolution.workspace import Run
+from stickslip.evolution.workspace import EXIT, Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
-APPROACHING, DEPARTING = 1, 2
+APPROACHING, DEPARTING, PASSING = 1, 2, 3
 AT_THE_FOLD = 1e-14
+LAST_TO_FOLD = 1e-4
 DEPARTURE = 1e-10
 """Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
 
 
 @inlined
 def ends_at_fold(run: Run, way: float) -> bool:
-    """Whether the branch ends there because g turns, and not because the rule prefers another solution."""
+    """Whether the branch ends there because g turns smoothly, and not at a knot or because the rule prefers another solution."""
     branch = run.counts[at.BRANCH]
     level = towards(run, evaluate(run.load, run.state[at.XI] + way), run.counts[at.MODE])
     if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
-        return run.keep_to[branch] == run.excess_to[branch]
-    return run.rate_from[branch] > 0.0 and run.keep_from[branch] == run.excess_from[branch]
+        return run.keep_to[branch] == run.excess_to[branch] and not is_knot(run, run.rate_to[branch])
+    starts = run.rate_from[branch]
+    return starts > 0.0 and run.keep_from[branch] == run.excess_from[branch] and not is_knot(run, starts)
 
 
 @inlined
@@ -59,6 +63,8 @@ def set_aside(run: Run, width: float) -> None:
     copy(run.load, run.kept_load, at.TERMS)
     copy(run.state, run.kept, at.STATES)
     run.kept[at.XI] = run.state[at.XI] + width
+    if run.state[at.XI] > 0.0:
+        run.counts[at.ARRIVING] = at.NO_CAUSE
 
 
 @inlined
@@ -78,6 +84,7 @@ def approach_fold(run: Run, width: float) -> float:
     restrict(squared, 1.0, -1.0, run.load)
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
+    run.state[EXIT] = math.nan
     note_degree(run)
     run.counts[at.AT_FOLD] = APPROACHING
     return 0.0
@@ -87,18 +94,27 @@ def approach_fold(run: Run, width: float) -> float:
 def starts_at_fold(run: Run) -> bool:
     """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
     branch = run.counts[at.BRANCH]
-    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or run.rate_from[branch] == 0.0:
+    fold = run.rate_from[branch]
+    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
     return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
 
 
 @inlined
+def load_outruns_fold(run: Run) -> bool:
+    """Whether the load grows faster than the friction at the fold does as the contact slips there."""
+    fold, xi, direction = run.rate_from[run.counts[at.BRANCH]], run.state[at.XI], run.counts[at.MODE]
+    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    restrict(run.load, xi, 1.0, run.part)
+    sense = direction if run.par[at.COUNTS_NET] == 1.0 else 1
+    return direction * run.part[1] > run.value[2] * sense * fold * (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * xi)
+
+
+@inlined
 def depart_from_fold(run: Run, left: float) -> None:
     """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
     width, forwards = DEPARTURE * left, run.part
-    if run.state[at.XI] > 0.0:
-        run.counts[at.ARRIVING] = at.NO_CAUSE
     restrict(run.load, run.state[at.XI], width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
@@ -107,6 +123,41 @@ def depart_from_fold(run: Run, left: float) -> None:
     run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 0.0, theta_to - theta_from, 0.0
     note_degree(run)
     run.counts[at.AT_FOLD] = DEPARTING
+
+
+@inlined
+def last_to_fold(run: Run) -> float:
+    """Share of the root of time before a fold that is a straight line: a moving fold is known as well as the run is accurate."""
+    if run.counts[at.FOLDS_MOVE] == 0:
+        return LAST_TO_FOLD
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par[at.TOLERANCE]))
+
+
+@inlined
+def straight_to_fold(run: Run) -> None:
+    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
+
+    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
+    """
+    branch = run.counts[at.BRANCH]
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    fold = low if run.jet[0] - low < high - run.jet[0] else high
+    if run.counts[at.FOLDS_MOVE] == 1:
+        fold = run.state[at.FOLD_RATE]
+    for k in range(2, at.TERMS):
+        run.jet[k] = 0.0
+    run.jet[1] = fold - run.jet[0]
+
+
+@inlined
+def straight_from_fold(run: Run) -> None:
+    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
+    fold = run.rate_from[run.counts[at.BRANCH]]
+    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    weakened = run.value[2] * run.k[at.K_CHI] * fold * (run.state[at.SPEED] + run.state[at.BEND])
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]) - weakened, fold)
+    fill(run.jet, 0.0)
+    run.jet[0], run.jet[1] = fold, reached - fold
 
 
 @inlined
@@ -123,4 +174,23 @@ def leave_fold_piece(run: Run) -> None:
     reached = run.counts[at.AT_FOLD] == APPROACHING
     run.counts[at.AT_FOLD] = 0
     if reached:
+        reach_end(run)
+
+
+@inlined
+def reach_end(run: Run) -> None:
+    """The branch ends here: go to another one, at once or when the branches at this slip are known."""
+    if run.counts[at.FOLDS_MOVE] == 1:
+        run.counts[at.LEAVING] = 1
+    else:
         end_branch(run)
+
+
+@inlined
+def leave_moving_branch(run: Run) -> None:
+    """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
+    run.counts[at.LEAVING] = 0
+    run.counts[at.STALLED] += 1
+    end_branch(run)
+    if run.counts[at.AT_FOLD] != 0:
+        run.counts[at.AT_FOLD] = PASSING

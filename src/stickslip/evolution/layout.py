@@ -28,21 +28,25 @@ PARAMETERS = 20
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
 THETA_FROM, THETA_TO, SPEED, BEND = range(6, 10)  # theta = THETA_FROM + SPEED xi + BEND xi^2, xi from 0 to 1
-STATE_NOW = 10  # of the friction law, as its formulas see it
-STATES = 11
+TABLE_SLIP, FOLD_RATE = range(10, 12)  # law slip at which Setup.branch holds; slip rate at the moving fold that is approached
+STATE_NOW = 12  # of the friction law, as its formulas see it
+STATES = 13
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
 MOVED, READY, JUMP, CAUSE, LEAP, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
-HAS_STATE, STICKS, STIFF, STEPS = range(22, 26)
-COUNTS = 26
+HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
+COUNTS = 29
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
 
+# ---- READY: what has become of the next piece of load ------------------------------------------------------------------------
+MET, BROUGHT = 1, 2
+
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED = range(6)
+FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED, NEED_BRANCHES = range(7)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
@@ -57,12 +61,12 @@ S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP = range(6)
 
 
 class Setup(NamedTuple):
-    """A problem as the engine sees it; nothing here changes during a run."""
+    """A problem as the engine sees it. Nothing here changes during a run, but the branches of a law of slip and slip rate."""
 
     par: Floats
     address: Integers  # (3, pieces of the law): of the functions `value`, `rate_jet` or `motion_jet`, and `state_value`
     constants: Floats  # (pieces, size): what `prepare` filled for them
-    law: Floats  # (3, pieces): slip shift and offset to the piece's own reference, law slip (minus the initial one) where it ends
+    law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end
     branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
     first: Floats  # (4, pieces + 1): the load of the first round trip, linear between the thetas
 

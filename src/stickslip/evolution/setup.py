@@ -9,11 +9,11 @@ from functools import lru_cache
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.selection import rule_of, selection_table
-from stickslip.errors import InputError
+from stickslip.contact.selection import rule_of
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Setup
+from stickslip.evolution.moving_branches import branch_rows, folds_move, has_inertia, is_algebraic
 from stickslip.evolution.workspace import COUNTS, STATES
 from stickslip.problem import Problem
 from stickslip.selection import SelectionRule
@@ -30,17 +30,6 @@ def row_time(problem: Problem) -> float:
     return body.period if problem.friction.sticks else max(body.period, DAY)
 
 
-def has_inertia(problem: Problem) -> bool:
-    """Whether the contact itself has mass, so that its slip rate cannot jump."""
-    return not isinstance(problem.body, ElasticSlab) or problem.body.contact_mass > 0.0
-
-
-def is_algebraic(problem: Problem) -> bool:
-    """Whether the slip rate follows from the load alone: a massless contact under a law of rate only."""
-    law = problem.friction
-    return not has_inertia(problem) and law.depends_on_rate and not law.depends_on_slip and law.state is None
-
-
 def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integers]:
     """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
 
@@ -54,32 +43,12 @@ def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integer
 
 @lru_cache(maxsize=256)
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
-    check_carried(problem)
     par = _parameters(problem)
-    branches, stick_to = _branches(problem)
-    par[at.STICK_TO] = stick_to
+    branches, par[at.STICK_TO] = branch_rows(problem, 0.0)
     setup = Setup(par, *_formulas(problem), branches, _first_load(problem))
     for shared in setup:
         shared.flags.writeable = False
     return setup, *_start(problem)
-
-
-def check_carried(problem: Problem) -> None:
-    """Refuse what the engine cannot compute yet. Raises InputError."""
-    law, name = problem.friction, type(problem.friction).__name__
-    if not has_inertia(problem) and law.depends_on_rate and law.depends_on_slip:
-        raise InputError(f"{name} depends on slip and on slip rate: a slab carries it only with a contact_mass so far")
-    if len(law.pieces) > 1 and law.knot_variable == "rate":
-        raise InputError(f"{name} has kinks in slip rate, which no body carries so far: use a smooth law of the rate")
-
-
-def _branches(problem: Problem) -> tuple[at.Floats, float]:
-    """The branches of slip rates and when the selection rule keeps them; one, kept for ever, where the solution is unique."""
-    if not is_algebraic(problem):
-        return np.array([[0.0], [math.inf], [-math.inf], [math.inf], [-math.inf], [math.inf]]), 0.0
-    branches, table = selection_table(problem)
-    ends = [[getattr(branch, name) for branch in branches] for name in ("rate_from", "rate_to", "excess_from", "excess_to")]
-    return np.array([*ends[:2], table.keep_from, table.keep_to, *ends[2:]]), table.stick_to
 
 
 def _parameters(problem: Problem) -> at.Floats:
@@ -160,7 +129,8 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
     home = int(law.piece_at(start))
     # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
-    references = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
+    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
+    references = near if law.knot_variable == "slip" else [start] * len(formulas)
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
     for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):
         _fill(formula, np.array(law.piece_values(i)), references[i], row)
@@ -168,7 +138,7 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
     address = np.array([_addresses(formula, problem) for formula in formulas], np.int64).T.copy()
-    knots = [*(knot - start for knot in law.knots), math.inf]
+    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
     return address, constants, np.array([[start - reference for reference in references], offsets, knots])
 
 
@@ -188,7 +158,7 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     """State and counts at t = 0: at rest, the load not yet met."""
     state, count = np.zeros(STATES), np.zeros(COUNTS, np.int64)
     state[at.LAST_STEP] = math.inf
-    count[at.PIECE] = int(np.searchsorted(np.asarray(problem.friction.knots), problem.law_slip, side="right"))
+    count[at.PIECE] = int(problem.friction.piece_at(problem.law_slip))
     count[at.IS_BLOCK] = not isinstance(problem.body, ElasticSlab)
     count[at.HAS_INERTIA] = has_inertia(problem)
     count[at.IS_ALGEBRAIC] = is_algebraic(problem)
@@ -196,4 +166,6 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     state[at.STATE_NOW] = problem.state
     if not problem.friction.sticks:
         count[at.MODE] = 1 if problem.load >= 0.0 else -1
+    count[at.FOLDS_MOVE] = folds_move(problem)
+    count[at.KNOTS_IN_RATE] = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

@@ -9,8 +9,8 @@ import numpy as np
 
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
-from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
@@ -19,7 +19,6 @@ from stickslip.problem import Problem
 
 STEPS_PER_CALL = 200_000
 FIRST_CAPACITY = 512
-OUT_OF_BUDGET = -1
 
 Progress = Callable[[float, int, str], None]
 """Called now and then with the simulated time (s), the number of pieces so far, and what the contact does."""
@@ -31,7 +30,7 @@ def simulate(
     """Run a problem from t = 0 to `duration` (s) with relative tolerance `rtol` (1e-15 to 1e-2).
 
     Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time.
-    Raises InputError for a duration that is not positive and finite, or an rtol out of range.
+    Raises InputError for a duration that is not positive and finite, an rtol out of range, or a contact that cannot even start.
     """
     if not (math.isfinite(duration) and duration > 0):
         raise InputError(f"simulate: duration must be a positive time in s, got {duration!r}")
@@ -39,11 +38,12 @@ def simulate(
         raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
     setup, state, count = prepare(problem, rtol)
     scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
-    last_row, last_theta = split_time(duration, row_time(problem))
+    last = split_time(duration, row_time(problem))
     table = lend(setup, state, count, scratch, store)
+    follower = RuleFollower(problem, row_time(problem), state, count)
     try:
         while True:
-            code = advance(table, last_row, last_theta, STEPS_PER_CALL)
+            code = follower.advance(table, store, last, STEPS_PER_CALL)
             length = int(count[at.LENGTH])
             if progress is not None:
                 time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
@@ -54,12 +54,17 @@ def simulate(
                     break
                 store = at.resized(store, length, min(4 * len(store.whole), max_pieces + 16))
                 table = lend(setup, state, count, scratch, store)
+            elif code == at.NEED_BRANCHES:
+                setup = renewed(problem, setup, state, count)
+                table = lend(setup, state, count, scratch, store)
             elif code != OUT_OF_BUDGET:
                 break
     except KeyboardInterrupt:
         code = INTERRUPTED
     length = int(count[at.LENGTH])
     status, kept = STATUSES[code], at.trimmed(store, length)
+    if length == 0:
+        raise InputError(f"simulate: the run ends where it starts: {status.message}")
     reached = duration if status.ok else float(kept.row[-1] * row_time(problem) + kept.theta_to[-1])
     history = History(kept, problem, row_time(problem), float(setup.par[at.RAMP]), reached)
     return Solution(problem, duration, rtol, status, history)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, branch_exit, constants_of, end_branch, load_ahead, rate_on_branch, towards
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.evolution.compiled import ahead, call_jet, inlined, kernel
 from stickslip.evolution.fold import (
     APPROACHING,
@@ -17,27 +17,32 @@ from stickslip.evolution.fold import (
     approach_fold,
     depart_from_fold,
     ends_at_fold,
+    last_to_fold,
+    load_outruns_fold,
+    reach_end,
     starts_at_fold,
+    straight_from_fold,
+    straight_to_fold,
 )
+from stickslip.evolution.fold_ahead import way_to_fold
 from stickslip.evolution.implicit import NOT_STIFF, collocate, judge_stiffness, keep_state, settling_rate
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
     RECIPROCAL,
-    fill,
     first_descent,
     integral,
     magnitude,
     powers_of,
     total,
 )
+from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, settle_piece
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
-LAST_TO_FOLD = 1e-4
 
 
 @inlined
@@ -50,18 +55,24 @@ def first_guess(run: Run, left: float) -> float:
 @inlined
 def series(run: Run, guess: float) -> None:
     """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
-    direction, piece, par, k = run.counts[at.MODE], run.counts[at.PIECE], run.par, run.k
+    direction, par, k = run.counts[at.MODE], run.par, run.k
     load_ahead(run, guess)
+    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
+    if run.counts[at.IS_ALGEBRAIC] == 1:
+        if run.counts[at.FOLDS_MOVE] == 0 or run.state[at.TABLE_SLIP] == run.state[at.LAW_SLIP]:
+            k[at.K_RATE] = rate_on_branch(run, run.seen[0], k[at.K_RATE])
+        else:
+            k[at.K_RATE] = rate_from_here(run, run.seen[0], k[at.K_RATE])
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        settle_piece(run, k[at.K_RATE])
+    piece = run.counts[at.PIECE]
     edge = run.counts[at.EDGE] != 0
     k[at.K_CHI] = direction if par[at.COUNTS_NET] == 1.0 else 1.0
     k[at.K_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI]) * guess
     k[at.K_BEND] = 2.0 * run.state[at.BEND] * guess * guess
     k[at.K_SLIP], k[at.K_OFFSET] = run.state[at.LAW_SLIP] + run.slip_shift[piece], run.offset[piece]
-    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
     k[at.K_FREE] = 0.0 if edge else 1.0
     k[at.K_FORCE] = par[at.NORMAL] * par[at.STATIC_EXCESS] if edge else 0.0
-    if run.counts[at.IS_ALGEBRAIC] == 1:
-        k[at.K_RATE] = rate_on_branch(run, run.seen[0], abs(run.state[at.RATE_NOW]))
     call_jet(run.jet_at[piece], constants_of(run, piece), k, run.seen, run.jet)
 
 
@@ -103,58 +114,72 @@ def knot_crossing(run: Run, rate: Floats, length: float) -> float:
 
 
 @inlined
+def next_knot(run: Run, rate: Floats, length: float) -> tuple[float, int]:
+    """Where on [0, 1] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        return rate_knot_crossing(run, rate)
+    return knot_crossing(run, rate, length), 1 if run.k[at.K_CHI] > 0.0 else -1
+
+
+@inlined
+def pass_knot(run: Run, turn: int) -> None:
+    """Go on in the next piece of the law."""
+    if run.counts[at.KNOTS_IN_RATE] == 0:
+        run.counts[at.PIECE] += turn
+    elif not pass_rate_knot(run, turn):
+        reach_end(run)
+
+
+@inlined
 def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
     """An algebraic contact may leave its branch: how far to go, whether the branch ends there, whether it did so just now."""
-    if math.isnan(run.state[EXIT]):
+    moves = run.counts[at.FOLDS_MOVE] == 1
+    if math.isnan(run.state[EXIT]) and not moves:
         run.state[EXIT] = branch_exit(run)
     way = run.state[EXIT] - run.state[at.XI]
-    if run.state[EXIT] >= xi_to:
+    if not run.state[EXIT] < xi_to:
         return xi_to, False, False
     if way <= 0.0:
-        end_branch(run)
+        reach_end(run)
         return xi_to, False, True
-    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
+    if not moves and run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
         first = approach_fold(run, way)
         return run.state[at.XI] + first, False, first == 0.0
     return run.state[EXIT], True, False
 
 
 @inlined
-def straight_to_fold(run: Run) -> None:
-    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
-
-    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
-    """
-    branch = run.counts[at.BRANCH]
-    low, high = run.rate_from[branch], run.rate_to[branch]
-    fold = low if run.jet[0] - low < high - run.jet[0] else high
-    for k in range(2, at.TERMS):
-        run.jet[k] = 0.0
-    run.jet[1] = fold - run.jet[0]
-
-
-@inlined
-def straight_from_fold(run: Run) -> None:
-    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
-    fold = run.rate_from[run.counts[at.BRANCH]]
-    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]), fold)
-    fill(run.jet, 0.0)
-    run.jet[0], run.jet[1] = fold, reached - fold
+def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[float, bool, bool]:
+    """As `end_of_branch`, for a fold that moves with slip: where the series runs into it, if that is before the target."""
+    way = way_to_fold(run, guess)
+    if not way < target - run.state[at.XI]:
+        return target, leaves, False
+    if way <= TIE:
+        run.state[at.RATE_NOW] = run.counts[at.MODE] * run.state[at.FOLD_RATE]
+        reach_end(run)
+        return target, False, True
+    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD:
+        first = approach_fold(run, way)
+        return run.state[at.XI] + first, False, first == 0.0
+    return run.state[at.XI] + way, False, False
 
 
 @inlined
 def slip(run: Run, xi_to: float) -> None:
     """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
-    if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.AT_FOLD] == 0:
+    if run.counts[at.IS_ALGEBRAIC] == 1 and (run.counts[at.AT_FOLD] == 0 or run.counts[at.FOLDS_MOVE] == 1):
         target, leaves, done = end_of_branch(run, xi_to)
         if not done and starts_at_fold(run):
-            depart_from_fold(run, target - run.state[at.XI])
+            if run.counts[at.FOLDS_MOVE] == 0 or load_outruns_fold(run):
+                depart_from_fold(run, target - run.state[at.XI])
+            else:
+                run.counts[at.STALLED] += 1  # slip would end where it starts, again and again
             return
     if done:
         return
     guess = first_guess(run, target - run.state[at.XI])
-    at_last = run.counts[at.AT_FOLD] == APPROACHING and target - run.state[at.XI] < LAST_TO_FOLD
+    at_last = run.counts[at.AT_FOLD] == APPROACHING and 1.0 - run.state[at.XI] < last_to_fold(run)
     if at_last:
         guess = target - run.state[at.XI]
     series(run, guess)
@@ -165,6 +190,10 @@ def slip(run: Run, xi_to: float) -> None:
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)
+    if run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.AT_FOLD] not in (APPROACHING, DEPARTING):
+        target, leaves, done = look_for_fold(run, guess, target, leaves)
+        if done:
+            return
     note_shock(run)
     take_step(run, target, guess, leaves)
     if run.counts[at.HAS_INERTIA] == 1:
@@ -183,6 +212,8 @@ def note_shock(run: Run) -> None:
 @kernel
 def slip_implicitly(run: Run, xi_to: float) -> None:
     """Slip for one implicit step, or up to what ends it."""
+    if run.counts[at.KNOTS_IN_RATE] == 1:
+        settle_piece(run, abs(run.state[at.RATE_NOW]))
     guess = collocate(run, xi_to - run.state[at.XI])
     note_shock(run)
     length = 1.0
@@ -214,9 +245,9 @@ def finish_step(run: Run, target: float, guess: float, length: float, reached: b
     """Cut the step (of so many guesses) at the first event, record it, and do what the event asks for."""
     rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
     arrest = NONE
-    if run.counts[at.IS_ALGEBRAIC] == 0 and rate[0] <= magnitude(rate):
+    if (run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
-    knot = knot_crossing(run, rate, length) if run.pieces > 1 else NONE
+    knot, turn = next_knot(run, rate, length) if run.pieces > 1 else (NONE, 0)
     end = min(arrest, knot)
     if end > 1.0 - TIE:
         arrest, knot, end = NONE, NONE, 1.0
@@ -230,9 +261,9 @@ def finish_step(run: Run, target: float, guess: float, length: float, reached: b
     if arrest == end:
         come_to_rest(run)
     elif knot == end:
-        run.counts[at.PIECE] += 1 if run.k[at.K_CHI] > 0.0 else -1
+        pass_knot(run, turn)
     elif leaves and (reached or target - run.state[at.XI] < TIE):
-        end_branch(run)
+        reach_end(run)
 
 
 @inlined

@@ -27,7 +27,7 @@ STATUSES = {
     LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
     STORM: Status(
         "event storm",
-        "events follow each other without any time between them: the run stops here; try a contact_mass, or another law",
+        "events follow each other without any time between them: try a contact_mass, another law or another selection rule",
         False,
     ),
     FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),

@@ -27,7 +27,9 @@ def arrive(run: Run) -> None:
         return
     limit = rest_limit(run)
     mode = run.counts[at.MODE]
-    if mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
+    if mode != 0 and run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.ARRIVING] == at.NO_CAUSE:
+        pass  # the load goes on as it was, and so does the slip rate
+    elif mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
         seen, branch = towards(run, load, mode), run.counts[at.BRANCH]
         if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
             leave_branch(run, seen)
@@ -79,6 +81,8 @@ def heal(run: Run, load: float) -> None:
     if limit == before:
         return
     run.counts[at.EDGE] = 0
+    if run.counts[at.FOLDS_MOVE] == 1:
+        return  # the branches at the healed slip have to be found first
     for direction in (1, -1):
         beyond = towards(run, load, direction) - limit
         if beyond > 0.0:
@@ -98,7 +102,8 @@ def stick(run: Run, xi_to: float) -> None:
     onset, direction = onset_of_slip(run, load)
     if run.par[at.HEALED_PIECE] >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state[at.SPEED]):
         heal(run, load[0])
-        if run.counts[at.MODE] != 0:
+        stale = run.counts[at.FOLDS_MOVE] == 1 and run.state[at.TABLE_SLIP] != run.state[at.LAW_SLIP]
+        if run.counts[at.MODE] != 0 or stale:
             return
         onset, direction = onset_of_slip(run, load)
     slips = onset <= 1.0 - TIE
@@ -124,7 +129,7 @@ def come_to_rest(run: Run) -> None:
         return
     run.counts[at.MODE] = 0
     if run.counts[at.HAS_INERTIA] == 0:
-        run.counts[at.EDGE] = before
+        run.counts[at.EDGE] = before if run.par[at.STATIC_EXCESS] == 0.0 else 0
         return
     load = evaluate(run.load, run.state[at.XI])
     limit = rest_limit(run)
