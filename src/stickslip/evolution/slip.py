@@ -93,7 +93,7 @@ def growth(run: Run, rate: Floats, length: float, end: float) -> float:
     return straight + run.k[at.K_BEND] * length * length * integral(rate, end, 2)
 
 
-@inlined
+@kernel
 def knot_crossing(run: Run, rate: Floats, length: float) -> float:
     """Where on [0, 1] the slip reaches the next knot of the law; NONE if it does not. Slip is monotone within a step."""
     grown = run.k[at.K_CHI] * growth(run, rate, length, 1.0)
@@ -121,7 +121,7 @@ def next_knot(run: Run, rate: Floats, length: float) -> tuple[float, int]:
     return knot_crossing(run, rate, length), 1 if run.k[at.K_CHI] > 0.0 else -1
 
 
-@inlined
+@kernel
 def pass_knot(run: Run, turn: int) -> None:
     """Go on in the next piece of the law."""
     if run.counts[at.KNOTS_IN_RATE] == 0:
@@ -148,7 +148,7 @@ def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
     return run.state[EXIT], True, False
 
 
-@inlined
+@kernel
 def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[float, bool, bool]:
     """As `end_of_branch`, for a fold that moves with slip: where the series runs into it, if that is before the target."""
     way = way_to_fold(run, guess)
