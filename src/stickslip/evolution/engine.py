@@ -112,9 +112,14 @@ def is_ramp(run: Run) -> bool:
     reflection = run.par[at.REFLECTION]
     if reflection == -1.0:
         return True
-    if reflection == 1.0:
-        return run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
-    return abs(reflection) ** run.counts[at.STUCK_ROWS] < FORGOTTEN
+    # what the last round trip differs from the next one by fades from there on: the first at rest still differs in full
+    return abs(reflection) ** (run.counts[at.STUCK_ROWS] - 1) < FORGOTTEN
+
+
+@kernel
+def swings_for_ever(run: Run) -> bool:
+    """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
+    return run.par[at.REFLECTION] == 1.0 and run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
 
 
 @kernel
@@ -125,7 +130,7 @@ def end_row(run: Run, limit: float, end_row: int) -> int:
     if run.counts[at.MOVED] == 0:
         run.counts[at.STUCK_ROWS] += 1
         leap = rows_at_rest(run, limit)
-        if leap == FOREVER:
+        if leap == FOREVER or swings_for_ever(run):
             outcome = at.LOCKED
         leap = min(leap, end_row - run.counts[at.ROW] - 1)
         leap = max(leap, 0)
