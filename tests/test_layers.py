@@ -23,6 +23,7 @@ LAYERS = (
     ("contact", "reference"),
     ("evolution",),
     ("observables",),
+    ("studies",),
     ("scenarios",),
     ("storage",),
     ("figures",),

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
+    from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
 
@@ -32,9 +33,11 @@ YEAR = 31_557_600.0
 """Julian year, s."""
 
 _LATER = {
+    "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
+    "regularise": "stickslip.studies.regularise",
     "save": "stickslip.storage",
     "simulate": "stickslip.evolution.simulate",
     "uniqueness": "stickslip.contact.uniqueness",
@@ -46,11 +49,13 @@ __all__ = [
     "ElasticSlab",
     "InputError",
     "Problem",
+    "Regularisation",
     "Solution",
     "SpringBlock",
     "friction",
     "load",
     "load_scenario",
+    "regularise",
     "save",
     "simulate",
     "uniqueness",
