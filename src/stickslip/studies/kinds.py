@@ -2,7 +2,7 @@
 
 The time, the *size* of a regularisation, is how long the slip rate takes to settle (s). A contact mass of Z size and a lag of
 `size` obey the same equation, Z size dy/dt = load - g(y), for the slip rate v and for the rate w that friction has caught up
-with: their sizes can be compared. Source: Campillo et al. 1996, section 3; DESIGN of `friction.lagged`.
+with: their sizes can be compared. Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip import YEAR
 from stickslip.errors import InputError, nearest
 from stickslip.evolution.setup import prepare
 from stickslip.evolution.simulate import simulate
@@ -75,12 +76,13 @@ class Regularisation:
         return {(a, b): difference(self.exact[a], self.exact[b], self.until).mean if a != b else 0.0 for a, b in pairs}
 
     @cached_property
-    def _against(self) -> dict[tuple[str, ...], list[Difference]]:
+    def differences(self) -> dict[tuple[str, ...], list[Difference]]:
+        """Of the slip (m) of each run from the exact answer of each group of rules."""
         return {group: [difference(run, self.exact[group[0]], self.until) for run in self.runs] for group in self.groups}
 
     def errors(self, rule: str) -> Floats:
         """Mean magnitude of the slip difference (m) from the exact answer of a rule, for each size."""
-        return np.array([found.mean for found in self._against[self._group(rule)]])
+        return np.array([found.mean for found in self.differences[self._group(rule)]])
 
     def _group(self, rule: str) -> tuple[str, ...]:
         if rule not in self.exact:
@@ -110,7 +112,8 @@ class Regularisation:
         """Why the comparison ends before the duration that was asked for; empty if it does not."""
         early = [run for run in (*self.exact.values(), *self.runs) if not run.status.ok]
         reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
-        return f"compared up to {self.until:.9g} s only, where the first run ended ({reasons})" if early else ""
+        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
+        return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if early else ""
 
     @cached_property
     def jumps(self) -> pd.DataFrame:

@@ -19,7 +19,7 @@ def sizes_table(study: Regularisation) -> pd.DataFrame:
     columns: dict[str, object] = {"size": study.sizes}
     if kind.parameter != "time":
         columns[kind.parameter] = [kind.value(study.problem, size) for size in study.sizes.tolist()]
-    for group, found in study._against.items():
+    for group, found in study.differences.items():
         for rule in group:
             name = rule.replace("-", "_")
             columns[f"mean_{name}"] = [one.mean for one in found]
