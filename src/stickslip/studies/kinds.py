@@ -62,7 +62,7 @@ def _with_direct_effect(problem: Problem, size: float) -> Problem:
 KINDS = {
     "contact-mass": Kind("contact mass", "contact_mass", "kg/m^2", _mass, _with_mass),
     "lag": Kind("lagged friction", "time", "s", lambda problem, size: size, _with_lag),
-    "direct-effect": Kind("lagged friction with a direct effect", "direct", "1", _direct, _with_direct_effect),
+    "direct-effect": Kind("lag and direct effect", "direct", "1", _direct, _with_direct_effect),
 }
 """Every kind by its name: `by` of `stickslip.regularise`."""
 
