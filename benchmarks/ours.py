@@ -26,7 +26,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
     first_state, first_count = state.copy(), count.copy()
-    store, scratch = at.new_store(CAPACITY), np.zeros((WORK_ROWS, at.TERMS))
+    store, scratch = at.new_store(CAPACITY, case.problem.friction.state is not None), np.zeros((WORK_ROWS, at.TERMS))
     table = lend(setup, state, count, scratch, store)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 

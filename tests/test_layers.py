@@ -24,6 +24,7 @@ LAYERS = (
     ("contact", "reference"),
     ("evolution",),
     ("observables",),
+    ("studies",),
     ("scenarios",),
     ("storage",),
     ("figures",),

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
+    from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
 
@@ -33,10 +34,12 @@ YEAR = 31_557_600.0
 """Julian year, s."""
 
 _LATER = {
+    "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
+    "regularise": "stickslip.studies.regularise",
     "save": "stickslip.storage",
     "simulate": "stickslip.evolution.simulate",
     "uniqueness": "stickslip.contact.uniqueness",
@@ -48,6 +51,7 @@ __all__ = [
     "ElasticSlab",
     "InputError",
     "Problem",
+    "Regularisation",
     "Solution",
     "SpringBlock",
     "critical_value",
@@ -55,6 +59,7 @@ __all__ = [
     "load",
     "load_scenario",
     "parameters",
+    "regularise",
     "save",
     "selection",
     "simulate",
