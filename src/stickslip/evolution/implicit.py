@@ -66,8 +66,8 @@ def judge_stiffness(run: Run) -> None:
 def growth_rate(run: Run) -> float:
     """How fast (1/s) a disturbance of slip rate and state grows at the start of the step; 0 where none does.
 
-    An implicit step far longer than that would walk along an unstable solution as if it were stable. What the spring and the
-    slip do to a disturbance is left out: it can only be slower.
+    An implicit step far longer than that would walk along an unstable solution as if it were stable. What slip does to a
+    disturbance is left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with it.
     """
     par, value = run.par, run.value
     contact_at(run, run.state[at.LAW_SLIP], run.stage_rate[0], run.stage_state[0])

@@ -116,6 +116,7 @@ def stick(run: Run, xi_to: float) -> None:
     run.counts[at.EDGE] = 0
     if slips:
         run.counts[at.MODE], run.counts[at.EDGE] = direction, direction
+        run.counts[at.STIFF] = run.counts[at.STEPS] = 0
         choose_branch(run, rest_limit(run))
 
 
