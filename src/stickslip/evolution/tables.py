@@ -41,10 +41,10 @@ EVENT_COLUMNS = {
 ENERGY_COLUMNS = {
     "released": ("energy", "elastic and kinetic energy that the event takes from the body"),
     "work": ("energy", "work of the driver in the meantime, net of what radiates through it"),
-    "heat": ("energy", "friction heat, from the law"),
     "damped": ("energy", "dissipated by the block's damping"),
+    "trapped": ("energy", "of the waves that bounce in the slab at the end, beyond the same mean stress at rest"),
+    "heat": ("energy", "friction heat, from the law"),
     "balance": ("energy", "released + work - heat - damped: zero for an exact solution"),
-    "trapped": ("energy", "of the waves that bounce in the slab at the end, beyond the state of uniform stress"),
 }
 
 Energies = Callable[[History, Moments, Moments], Mapping[str, Floats]]

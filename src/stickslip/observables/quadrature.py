@@ -47,3 +47,15 @@ def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[n
     if cut.any():
         total[cut] += over(history, at.piece[cut], np.zeros(int(cut.sum())), at.xi[cut], integrand)
     return total
+
+
+def between(history: History, first: Moments, last: Moments, integrand: Integrand) -> Floats:
+    """Integrals from each first moment to the last one of the same slip event: nothing outside of it enters."""
+
+    def one(begin: int, end: int, low: float, high: float) -> float:
+        pieces = np.arange(begin, end + 1)
+        lows, highs = np.zeros(len(pieces)), np.ones(len(pieces))
+        lows[0], highs[-1] = low, high
+        return float(over(history, pieces, lows, highs, integrand).sum())
+
+    return np.array([one(*ends) for ends in zip(first.piece, last.piece, first.xi, last.xi, strict=True)])

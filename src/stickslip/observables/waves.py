@@ -90,6 +90,12 @@ class Waves:
         total += float(sums[k] + leaped * once[k] + growth[k] * leaped * (leaped - 1) / 2.0)
         return total + self._in_row(int(first[k]), int(past[k]), leaped, 0.0, end.offset, self._of(self.power))
 
+    def work_between(self, first: Epoch, last: Epoch) -> float:
+        """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
+        lasting = (last.row - first.row) * self.round + (last.offset - first.offset)
+        begun = self.begun(last)
+        return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
+
     @cached_property
     def _rows(self) -> tuple[NDArray[Any], ...]:
         """Of each stored row: round trip, first piece, last piece + 1, work in it, its growth per row leaped, work before it."""
