@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
+    from stickslip.observables.statistics import catalogue_statistics
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
 
@@ -34,6 +35,7 @@ YEAR = 31_557_600.0
 
 _LATER = {
     "Solution": "stickslip.evolution.solution",
+    "catalogue_statistics": "stickslip.observables.statistics",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
@@ -50,6 +52,7 @@ __all__ = [
     "Problem",
     "Solution",
     "SpringBlock",
+    "catalogue_statistics",
     "critical_value",
     "friction",
     "load",

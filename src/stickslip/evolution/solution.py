@@ -108,7 +108,15 @@ class Solution(Readings):
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
+            *([("trapped", self.trapped_note)] if self.trapped_note else []),
         ]
+
+    @cached_property
+    def trapped_note(self) -> str:
+        """How much energy bounces in the slab in waves at the end of the run; empty for a block."""
+        from stickslip.observables.energy import trapped_note
+
+        return trapped_note(self)
 
     @cached_property
     def selection_note(self) -> str:

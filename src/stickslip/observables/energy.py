@@ -20,6 +20,7 @@ from stickslip.observables.waves import Waves
 
 if TYPE_CHECKING:
     from stickslip.evolution.readings import Readings
+    from stickslip.evolution.solution import Solution
 
 Floats = NDArray[np.float64]
 
@@ -90,6 +91,18 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
         "damped": between(history, first, last, _damping(history)),
         "trapped": np.zeros(len(force)),
     }
+
+
+def trapped_note(solution: Solution) -> str:
+    """One line on the waves that bounce in the slab at the end of a run; empty for a block, which has none."""
+    history, body = solution.history, solution.problem.body
+    if not isinstance(body, ElasticSlab):
+        return ""
+    end = _epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
+    energy = Waves(history, body).trapped(end)
+    holds = solution.problem.strength**2 / (2.0 * body.stiffness)
+    share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
+    return f"{energy:.6g} J/m2 in waves at the end{share}"
 
 
 def _epochs(history: History, at: Moments) -> list[Epoch]:
