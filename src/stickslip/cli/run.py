@@ -116,9 +116,7 @@ def _check_path(problem: Problem) -> None:
         raise InputError("run: --path needs a slab without contact mass: with inertia the slip rate is a state, there is no set K")
 
 
-def _save(
-    solution: Solution, out: Path | None, figure: Path | None, path: Path | None, catalog_figure: Path | None
-) -> list[str]:
+def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path | None, catalog_figure: Path | None) -> list[str]:
     from stickslip.files import write_atomically
 
     written = []

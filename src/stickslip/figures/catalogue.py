@@ -88,8 +88,8 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
-    chosen = int(dataset["chosen"])
-    shown = (("run", "B  the run", "time $t$"), ("window", "C  the event", "since its start"), ("close", "D  its start", "since its start"))
+    chosen, local = int(dataset["chosen"]), "since its start"
+    shown = (("run", "B  the run", "time $t$"), ("window", "C  the event", local), ("close", "D  its start", local))
     for axes, (name, title, what) in zip(panels, shown, strict=True):
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
         unit, size = time_unit(float(np.ptp(time)))
@@ -131,12 +131,13 @@ def _draw_recurrence(axes: Axes, recurrence: Floats) -> None:
     times = recurrence / size
     bins = min(max(int(np.sqrt(4 * len(times))), 5), 60)
     edges = np.geomspace(times.min(), times.max(), bins + 1) if _wide(times) else np.linspace(0.0, 1.15 * times.max(), bins + 1)
-    counts, _, _ = axes.hist(times, edges, color=BLUE)
-    if max(counts) > WIDE:
+    counts, _ = np.histogram(times, edges)
+    axes.stairs(counts, edges, fill=True, color=BLUE)
+    if counts.max() > WIDE:
         axes.set_yscale("log")
-        axes.set_ylim(0.5, 4.0 * max(counts))
+        axes.set_ylim(0.5, 4.0 * counts.max())
     else:
-        axes.set_ylim(0.0, 1.25 * max(counts))
+        axes.set_ylim(0.0, 1.25 * counts.max())
         axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
     axes.axvline(float(times.mean()), color=VERMILLION, linewidth=1.0)
     axes.set_xscale("log" if _wide(times) else "linear")
