@@ -154,9 +154,11 @@ class History:
         """Slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
         rate = self.store.rate[at.piece]
         powers = np.arange(1, rate.shape[1] + 1)
-        integral = self.store.speed[at.piece, None] * rate / powers
-        bent = 2.0 * self.store.bend[at.piece, None] * rate / (powers + 1)
-        return at.xi * (horner(integral, at.xi) + at.xi * horner(bent, at.xi))
+        straight = at.xi * horner(self.store.speed[at.piece, None] * rate / powers, at.xi)
+        bend = self.store.bend[at.piece]
+        if not bend.any():
+            return straight
+        return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
 
     def slipped(self, at: Moments) -> Floats:
         """Slip since the start of the run, m."""
@@ -166,10 +168,12 @@ class History:
         """Slip since one moment, m: summed from there, so that it has all its digits however much has slipped before."""
         begin = int(origin.piece[0])
         first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
-        whole = self.grown(Moments.inside(np.arange(first, last), 1.0))
-        earlier, later = whole[: begin - first], whole[begin - first :]
+        crossed = np.arange(first, last)
+        pieces, places = (np.concatenate(parts) for parts in ((crossed, origin.piece, at.piece), (crossed >= 0, origin.xi, at.xi)))
+        grown = self.grown(Moments.inside(pieces, places))
+        earlier, later, behind = np.split(grown, [begin - first, last - first])
         sums = np.concatenate([-np.cumsum(earlier[::-1])[::-1], [0.0], np.cumsum(later)])
-        return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (self.grown(at) - self.grown(origin)))
+        return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
 
     def state(self, at: Moments) -> Floats:
         """State of the friction law as its formulas see it; 0 for a law without one."""

@@ -32,8 +32,8 @@ EVENT_COLUMNS = {
     "traction_drop": ("load", "traction_before - traction_after"),
     "static_drop": ("load", "stiffness (G/h, or K) times slip"),
     "pulses": ("1", "maxima of |v| separated by minima below half the lower one"),
-    "phase": ("1", "part of the round trip (block: period) that has passed at the start"),
-    "start_row": ("1", "whole round trips (block: periods) before the start"),
+    "phase": ("1", "part of the row (round trip of a slab, period of a block) that has passed at the start"),
+    "start_row": ("1", "whole rows before the start"),
     "start_offset": ("s", "the rest: start = start_row * length of a row + start_offset, without rounding"),
 }
 """Columns of the catalogue: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
