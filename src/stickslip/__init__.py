@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
+    from stickslip.observables.statistics import catalogue_statistics
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
     from stickslip.studies.regularise import Regularisation, regularise
@@ -36,6 +37,7 @@ YEAR = 31_557_600.0
 _LATER = {
     "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
+    "catalogue_statistics": "stickslip.observables.statistics",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
@@ -55,6 +57,7 @@ __all__ = [
     "Regularisation",
     "Solution",
     "SpringBlock",
+    "catalogue_statistics",
     "critical_value",
     "friction",
     "load",

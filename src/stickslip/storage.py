@@ -14,8 +14,11 @@ import stickslip
 from stickslip.errors import InputError
 from stickslip.evolution.history import History
 from stickslip.evolution.layout import Store
-from stickslip.evolution.solution import Curve, Solution
+from stickslip.evolution.readings import Curve, Readings
+from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import Status
+from stickslip.evolution.tables import EVENT_COLUMNS
+from stickslip.evolution.window import Window
 from stickslip.files import write_atomically
 from stickslip.observables.choices import choices
 from stickslip.scenarios import Scenario, read_scenario
@@ -28,6 +31,7 @@ DRAWN_POINTS = 2000
 
 LONG_NAMES = {
     "slip": "slip of the contact, u",
+    "event_slip": "slip of the contact since the start of the event",
     "slip_rate": "slip rate of the contact, v",
     "traction": "friction on the contact, tau",
     "load": "load on the contact, beta",
@@ -37,10 +41,11 @@ LONG_NAMES = {
 PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
 
 
-def units(solution: Solution) -> dict[str, str]:
+def units(solution: Readings) -> dict[str, str]:
     """Unit of each curve of a solution."""
     load, state = solution.problem.load_unit, solution.problem.friction.state
-    return {"slip": "m", "slip_rate": "m s-1", "traction": load, "load": load} | ({"state": state.unit} if state else {})
+    known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
+    return known | ({"state": state.unit} if state else {})
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
@@ -71,7 +76,15 @@ def solution_dataset(solution: Solution, t: NDArray[np.float64]) -> xr.Dataset:
     return _curves(solution, t, values).assign_attrs(provenance(solution))
 
 
-def _curves(solution: Solution, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
+def window_dataset(window: Window, t: NDArray[np.float64]) -> xr.Dataset:
+    """As `solution_dataset`, in local time; attributes say when the event begins: `epoch_row` whole rows and `epoch_offset` s."""
+    dataset = _curves(window, t, {name: getattr(window, name)(t) for name in window.curves})
+    dataset.time.attrs["long_name"] = "time since the start of the event"
+    about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
+    return dataset.assign_attrs(provenance(window.solution) | about)
+
+
+def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
     unit = units(solution)
     variables = {name: ("time", value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()}
     time = ("time", t, {"units": "s", "long_name": "time since the start of the run"})
@@ -127,13 +140,14 @@ def _drawing(solution: Solution) -> xr.Dataset:
 
 def _tables(solution: Solution) -> xr.Dataset:
     load = solution.problem.load_unit
-    unit = {"start": "s", "end": "s", "peak_time": "s", "time": "s", "slip": "m", "pulses": "1", "cause": ""}
+    shock = {"time": ("s", ""), "cause": ("", "")}
     variables = {}
-    for prefix, table in (("event", solution.events), ("shock", solution.shocks)):
+    for prefix, table, columns in (("event", solution.events, EVENT_COLUMNS), ("shock", solution.shocks, shock)):
         for name in table.columns:
             values = table[name].to_numpy(dtype=object if name == "cause" else None)
-            known = unit.get(name, "m s-1" if "rate" in name else load)
-            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if name == "cause" else values, {"units": known})
+            unit, meaning = columns.get(name, ("m s-1" if "rate" in name else "load", ""))
+            about = {"units": load if unit == "load" else unit} | ({"long_name": meaning} if meaning else {})
+            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if name == "cause" else values, about)
     return xr.Dataset(variables)
 
 

@@ -176,6 +176,17 @@ def test_the_shell_completes_regularisations():
     assert complete_regularisation("l") == ["lag"]
 
 
+def test_run_draws_the_catalogue(command, tmp_path: Path):
+    assert "written: events.png" in command("run", "cycles-block", "--catalog-figure", "events.png").out
+    assert [path.name for path in tmp_path.iterdir()] == ["events.png"]
+
+
+def test_run_says_what_is_trapped(command):
+    shown = command("run", "fig5-slab-reconstructed").out
+    assert re.search(r"trapped energy: 1\.86\d+e\+07 J/m2 in waves at the end, 0\.57 % of what", shown)
+    assert "trapped" not in command("run", "cycles-block").out
+
+
 def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "fig6-mine.toml").touch()
     (tmp_path / "notes.txt").touch()

@@ -29,6 +29,10 @@ def run(
         Path | None,
         typer.Option("--path", help="Save a figure of the run's path in the set K (.png, .pdf or .svg).", show_default=False),
     ] = None,
+    catalog_figure: Annotated[
+        Path | None,
+        typer.Option("--catalog-figure", help="Save a figure of the slip events (.png, .pdf or .svg).", show_default=False),
+    ] = None,
     duration: Annotated[
         str | None, typer.Option(help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
     ] = None,
@@ -58,7 +62,8 @@ def run(
     from stickslip.cli.summary import show_solution
 
     pictures = (".png", ".pdf", ".svg")
-    for target, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", pictures), (path, "--path", pictures)):
+    drawn = ((figure, "--figure"), (path, "--path"), (catalog_figure, "--catalog-figure"))
+    for target, option, suffixes in ((out, "--out", (".nc",)), *((*one, pictures) for one in drawn)):
         if target is not None:
             check_target(target, option, suffixes)
     chosen = _adjusted(scenario, duration, rtol, selection)
@@ -66,7 +71,7 @@ def run(
         _check_path(chosen.problem)
     solution = _simulate(chosen)
     show_solution(chosen, solution)
-    for line in _save(solution, out, figure, path):
+    for line in _save(solution, out, figure, path, catalog_figure):
         typer.echo(line)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
@@ -111,7 +116,7 @@ def _check_path(problem: Problem) -> None:
         raise InputError("run: --path needs a slab without contact mass: with inertia the slip rate is a state, there is no set K")
 
 
-def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path | None) -> list[str]:
+def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path | None, catalog_figure: Path | None) -> list[str]:
     from stickslip.files import write_atomically
 
     written = []
@@ -126,4 +131,9 @@ def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path 
 
         write_atomically(path, admissible.draw(admissible.data(solution.problem, solution)).savefig)
         written.append(f"written: {path}")
+    if catalog_figure is not None:
+        from stickslip.figures import catalogue
+
+        write_atomically(catalog_figure, catalogue.draw(catalogue.data(solution)).savefig)
+        written.append(f"written: {catalog_figure}")
     return written

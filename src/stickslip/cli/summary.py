@@ -29,22 +29,11 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
-    _print(screen, "slip event", _with_lengths(solution.events), units)
+    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
+    _print(screen, "slip event", solution.events[shown], units)
     _print(screen, "shock", solution.shocks, ("s", "", "m/s", "m/s", force, force))
-
-
-def _with_lengths(events: DataFrame) -> DataFrame:
-    """Events with their length and the time to their peak: late times have no digits left for either."""
-    shown = events.assign(lasts=events.end - events.start, peak_after=events.peak_time - events.start)
-    for name in ("lasts", "peak_after"):
-        shown[name] = [_resolved(length, late) for length, late in zip(shown[name], events.peak_time, strict=True)]
-    return shown[["start", "lasts", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]]
-
-
-def _resolved(length: float, late: float) -> float:
-    """A difference of two times (s), to the digits that times as late as `late` leave it."""
-    decimals = -math.ceil(math.log10(4.0 * math.ulp(late))) if late > 0 else 15
-    return round(length, decimals) if math.isfinite(length) else length
+    if solution.trapped_note:
+        screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
 
 
 def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:

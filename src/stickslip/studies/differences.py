@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.evolution.solution import Floats, Solution
+from stickslip.evolution.history import Floats
+from stickslip.evolution.solution import Solution
 
 UNIFORM = 2001
 """Times at which runs are compared at least; more where either of them varies."""

@@ -17,9 +17,10 @@ import numpy as np
 
 from stickslip import YEAR
 from stickslip.errors import InputError, nearest
+from stickslip.evolution.history import Floats
 from stickslip.evolution.setup import prepare
 from stickslip.evolution.simulate import simulate
-from stickslip.evolution.solution import Floats, Solution
+from stickslip.evolution.solution import Solution
 from stickslip.problem import Problem
 from stickslip.selection import SELECTION_RULES, names, unknown
 from stickslip.studies.differences import Difference, difference, passage
