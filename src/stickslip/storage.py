@@ -140,14 +140,15 @@ def _drawing(solution: Solution) -> xr.Dataset:
 
 def _tables(solution: Solution) -> xr.Dataset:
     load = solution.problem.load_unit
-    shock = {"time": ("s", ""), "cause": ("", "")}
+    shock = {"time": ("s", ""), "cause": ("", ""), "rule": ("", "selection rule, where several slip rates are possible")}
     variables = {}
     for prefix, table, columns in (("event", solution.events, EVENT_COLUMNS), ("shock", solution.shocks, shock)):
         for name in table.columns:
-            values = table[name].to_numpy(dtype=object if name == "cause" else None)
+            words = name in ("cause", "rule")
+            values = table[name].to_numpy(dtype=object if words else None)
             unit, meaning = columns.get(name, ("m s-1" if "rate" in name else "load", ""))
             about = {"units": load if unit == "load" else unit} | ({"long_name": meaning} if meaning else {})
-            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if name == "cause" else values, about)
+            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if words else values, about)
     return xr.Dataset(variables)
 
 

@@ -31,7 +31,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
     _print(screen, "slip event", solution.events[shown], units)
-    _print(screen, "shock", solution.shocks, ("s", "", "m/s", "m/s", force, force))
+    _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
     if solution.trapped_note:
         screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
 

@@ -72,8 +72,8 @@ class Readings:
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Jumps of the slip rate: time (s), cause (start, fold, echo, loading), rate_before and rate_after (m/s),
-        traction_before and traction_after (Pa)."""
+        """Jumps of the slip rate: time (s), cause (start, fold, echo, loading, healing), rate_before and rate_after (m/s),
+        traction_before and traction_after (Pa), rule (the selection rule; empty where the slip rate is unique anyway)."""
         return shocks_table(self.history)
 
     @cached_property

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
+from stickslip.contact.uniqueness import uniqueness
 from stickslip.evolution.compiled import kernel
 from stickslip.evolution.history import Epoch, History, Moments
 from stickslip.evolution.layout import S_MODE, TERMS, Floats, Integers, Store
+from stickslip.evolution.moving_branches import folds_move, is_algebraic
 from stickslip.evolution.polynomial import crossings, evaluate
 from stickslip.problem import Problem
 
@@ -264,4 +266,13 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
         )
         for n in at
     ]
-    return pd.DataFrame(rows, columns=["time", "cause", "rate_before", "rate_after", "traction_before", "traction_after"])
+    columns = ["time", "cause", "rate_before", "rate_after", "traction_before", "traction_after"]
+    return pd.DataFrame(rows, columns=columns).assign(rule=rule_in_force(history.problem) if rows else "")
+
+
+def rule_in_force(problem: Problem) -> str:
+    """The selection rule, where the contact equation has several solutions at some load (and slip); else empty."""
+    if not is_algebraic(problem):
+        return ""
+    several = folds_move(problem) or uniqueness(problem).regime != "regular"
+    return problem.rule if several else ""
