@@ -26,6 +26,7 @@ LAYERS = (
     ("observables",),
     ("scenarios",),
     ("storage",),
+    ("long_runs",),
     ("figures",),
     ("paper",),
     ("cli",),
@@ -36,7 +37,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "figures", "paper"},
+    "xarray": {"observables", "storage", "long_runs", "figures", "paper"},
 }
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
+    from stickslip.long_runs.catalogue import catalogue, resume_catalogue
+    from stickslip.long_runs.resume import resume
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
 
@@ -34,9 +36,12 @@ YEAR = 31_557_600.0
 
 _LATER = {
     "Solution": "stickslip.evolution.solution",
+    "catalogue": "stickslip.long_runs.catalogue",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
+    "resume": "stickslip.long_runs.resume",
+    "resume_catalogue": "stickslip.long_runs.catalogue",
     "save": "stickslip.storage",
     "simulate": "stickslip.evolution.simulate",
     "uniqueness": "stickslip.contact.uniqueness",
@@ -50,11 +55,14 @@ __all__ = [
     "Problem",
     "Solution",
     "SpringBlock",
+    "catalogue",
     "critical_value",
     "friction",
     "load",
     "load_scenario",
     "parameters",
+    "resume",
+    "resume_catalogue",
     "save",
     "selection",
     "simulate",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.errors import InputError, nearest
+from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.history import History, Moments, Side
 from stickslip.evolution.status import Status
 from stickslip.evolution.tables import default_event_rate, events_table, shocks_table
@@ -40,6 +41,10 @@ class Solution:
     rtol: float
     status: Status
     history: History
+    checkpoint: Checkpoint | None = None
+    """From where the run, or a longer one, can go on (`stickslip.resume`)."""
+    events_wanted: int | None = None
+    """Slip events after which the run was to stop."""
 
     def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
         time = np.asarray(t, float)
