@@ -7,7 +7,7 @@ its end, or the slip rate has risen again. What is told does not depend on when 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -117,9 +117,10 @@ def known_by(history: History, piece: int, xi: float) -> int:
     mode = history.store.mode
     rate = abs(history.rate(Moments(np.array([piece]), np.array([xi]), np.zeros(1), np.zeros(1, bool)))[0])
     for begin in range(piece + 1, len(history), AT_ONCE):
-        later = slice(begin, min(begin + AT_ONCE, len(history)))
-        values: Any = np.abs([horner(history.store.rate[later], np.full(later.stop - begin, x)) for x in PLACES])
-        settled = (mode[later] != mode[piece]) | (values.max(axis=0) > rate)
-        if settled.any():
-            return begin + int(np.argmax(settled))
+        turned = mode[begin : begin + AT_ONCE] != mode[piece]
+        same = int(np.argmax(turned)) if turned.any() else len(turned)
+        rates = history.store.rate[begin : begin + same]
+        rises = np.abs([horner(rates, np.full(same, x)) for x in PLACES]).max(axis=0) > rate
+        if same < len(turned) or rises.any():
+            return begin + (int(np.argmax(rises)) if rises.any() else same)
     return NOT_YET

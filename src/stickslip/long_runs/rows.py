@@ -20,6 +20,9 @@ SUFFIXES = (".csv", ".parquet", ".nc")
 AT_A_TIME = 50_000
 """Rows that are in memory at a time where a file is turned into another one."""
 
+CHUNK = 1024
+"""Rows in a block of a netCDF file."""
+
 
 def check_catalogue(path: Path, where: str = "catalogue") -> None:
     """Refuse a name that says no format, or one whose library is missing. Raises InputError."""
@@ -173,7 +176,7 @@ def _to_netcdf(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, A
             for name in chunk.columns:
                 values = chunk[name].to_numpy()
                 if name not in file.variables:
-                    made = file.create_variable(name, ("event",), values.dtype, chunks=(AT_A_TIME,))
+                    made = file.create_variable(name, ("event",), values.dtype, chunks=(CHUNK,))
                     made.attrs["units"] = column_unit(name, load_unit)
                 if name == chunk.columns[0]:
                     file.resize_dimension("event", done + len(chunk))
