@@ -73,7 +73,8 @@ def in_unit(seconds: float) -> tuple[float, str]:
 def about_time(seconds: float) -> str:
     """A time as one says it: 3.2 min."""
     length, name = in_unit(seconds)
-    return f"{number(seconds / length, 2)} {name}"
+    value = seconds / length
+    return f"{value:.0f} {name}" if value >= 100.0 else f"{number(value, 2)} {name}"
 
 
 def so_far(report: Report) -> str:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,14 +84,8 @@ class Rows:
         self.path.unlink(missing_ok=True)
 
     def chunks(self) -> Iterator[pd.DataFrame]:
-        """The rows, some at a time, all with the same types."""
-        import pandas as pd
-
-        types: Any = None
-        with pd.read_csv(self.growing, chunksize=AT_A_TIME, float_precision="round_trip") as reader:
-            for chunk in reader:
-                types = chunk.dtypes.to_dict() if types is None else types
-                yield chunk.astype(types)
+        """The rows, some at a time."""
+        return read_csv(self.growing)
 
     def read(self) -> pd.DataFrame:
         """The table, once it has its form."""
@@ -145,7 +141,30 @@ def read_table(path: Path) -> pd.DataFrame:
     if suffix == ".nc":
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
             return dataset.to_dataframe().reset_index(drop=True)
-    return pd.read_csv(path, float_precision="round_trip")
+    return pd.concat(list(read_csv(path)), ignore_index=True)
+
+
+def read_csv(path: Path) -> Iterator[pd.DataFrame]:
+    """Tables of some rows at a time, at least one. Every number to the last digit, which pandas' own reader does not promise."""
+    import pandas as pd
+
+    with path.open(encoding="utf-8", newline="") as file:
+        lines = csv.reader(file)
+        names = next(lines)
+        some = list(islice(lines, AT_A_TIME))
+        yield pd.DataFrame({name: _typed([row[n] for row in some]) for n, name in enumerate(names)})
+        while some := list(islice(lines, AT_A_TIME)):
+            yield pd.DataFrame({name: _typed([row[n] for row in some]) for n, name in enumerate(names)})
+
+
+def _typed(texts: list[str]) -> list[Any]:
+    """Texts as what they were: a float is never written as an integer, and one that is not a number as nothing."""
+    for read in (int, lambda text: float(text or "nan")):
+        try:
+            return [read(text) for text in texts]
+        except ValueError:
+            pass
+    return texts
 
 
 def _to_parquet(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, Any]) -> None:
