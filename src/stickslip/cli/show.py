@@ -83,7 +83,7 @@ def so_far(report: Report) -> str:
     wanted = f" of {report.events_wanted}" if report.events_wanted else ""
     parts = [
         f"{number(report.time / length, 6)} of {number(report.duration / length, 6)} {unit}",
-        f"{report.events}{wanted} slip event{'' if report.events == 1 else 's'}",
+        f"{report.events}{wanted} slip event{'' if report.events == 1 and not wanted else 's'}",
         report.doing,
     ]
     if report.pace > 0.0:
