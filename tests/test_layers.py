@@ -27,6 +27,7 @@ LAYERS = (
     ("studies",),
     ("scenarios",),
     ("storage",),
+    ("long_runs",),
     ("figures",),
     ("paper",),
     ("cli",),
@@ -37,7 +38,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "figures", "paper"},
+    "xarray": {"observables", "storage", "long_runs", "figures", "paper"},
 }
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import stickslip
 from stickslip.errors import InputError
+from stickslip.evolution.checkpoint import ARRAYS, Checkpoint
 from stickslip.evolution.history import History
 from stickslip.evolution.layout import Store
 from stickslip.evolution.readings import Curve, Readings
@@ -26,8 +27,17 @@ from stickslip.selection import names as rule_names
 
 FORMAT = 1
 """Version of the layout below; a file with another one is refused."""
+CATALOGUE = "stickslip_catalogue"
+KINDS = {
+    "stickslip_format": "a solution: take it up with stickslip.resume",
+    CATALOGUE: "a catalogue's checkpoint: take it up with stickslip.resume_catalogue",
+}
+"""Attributes that hold the version, and what a file with one of them is."""
 
 DRAWN_POINTS = 2000
+
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("levels", "branches"), ("one",), ("times",))
+"""Names of the axes of a checkpoint's arrays."""
 
 LONG_NAMES = {
     "slip": "slip of the contact, u",
@@ -50,18 +60,24 @@ def units(solution: Readings) -> dict[str, str]:
 
 def provenance(solution: Solution) -> dict[str, Any]:
     """Who made this, from what, under which rule and tolerance: attributes of every file and dataset."""
-    scenario = Scenario(solution.problem, solution.duration, solution.rtol)
     chosen = choices(solution)
+    return origin(solution) | {
+        "selection_note": solution.selection_note,
+        "selection_regime": chosen.regime,
+        "selection_decided_shocks": int(chosen.shocks.sum()),
+    }
+
+
+def origin(solution: Solution) -> dict[str, Any]:
+    """The same without what has to be worked out."""
+    scenario = Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted)
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
         "scenario": scenario.to_toml(),
-        "selection_rule": chosen.rule,
-        "selection_note": solution.selection_note,
-        "selection_regime": chosen.regime,
-        "selection_decided_shocks": int(chosen.shocks.sum()),
+        "selection_rule": solution.problem.rule,
         "rtol": solution.rtol,
         "duration": solution.duration,
         "status": solution.status.name,
@@ -98,15 +114,30 @@ def save(solution: Solution, path: str | Path) -> Path:
     attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError where the folder cannot
     be written.
     """
-    path = Path(path)
-    dataset = _history(solution).merge(_drawing(solution)).merge(_tables(solution))
-    dataset.attrs = provenance(solution) | {"stickslip_format": FORMAT}
+    dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
+    return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+
+
+def save_checkpoint(solution: Solution, path: Path) -> Path:
+    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables."""
+    return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+
+
+def write(dataset: xr.Dataset, path: Path) -> Path:
+    """Write a netCDF file, whole or not at all. Raises InputError where the folder cannot be written."""
     encoding = {name: {"_FillValue": None} for name, variable in dataset.variables.items() if variable.dtype.kind == "f"}
     try:
         write_atomically(path, lambda draft: dataset.to_netcdf(draft, engine="h5netcdf", encoding=encoding))
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
     return path
+
+
+def history_dataset(solution: Solution) -> xr.Dataset:
+    """The history, and where the engine stands behind it."""
+    if solution.checkpoint is None:
+        return _history(solution)
+    return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")
 
 
 def _history(solution: Solution) -> xr.Dataset:
@@ -132,6 +163,13 @@ def _history(solution: Solution) -> xr.Dataset:
     return dataset
 
 
+def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
+    """Where the engine stands, with the code that made it: what `resume` goes on from."""
+    axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
+    variables = {f"engine_{name}": (axes[name], getattr(checkpoint, name)) for name in ARRAYS}
+    return xr.Dataset(variables, attrs={"engine": checkpoint.engine})
+
+
 def _drawing(solution: Solution) -> xr.Dataset:
     end = float(solution.breaks[-1])
     time, _ = solution.curve("slip_rate", 0.0, end, DRAWN_POINTS)
@@ -152,27 +190,62 @@ def _tables(solution: Solution) -> xr.Dataset:
     return xr.Dataset(variables)
 
 
+def column_unit(name: str, load_unit: str) -> str:
+    """Unit of a column of the table of events."""
+    unit, _ = EVENT_COLUMNS[name]
+    return load_unit if unit == "load" else unit
+
+
 def load(path: str | Path) -> Solution:
     """Read a solution that `save` wrote. Raises InputError for a file that is not one."""
     path = Path(path)
+    return to_solution(read(path), path)
+
+
+def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
+    """A file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
     try:
         with xr.open_dataset(path, engine="h5netcdf") as opened:
             dataset = opened.load()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())}") from None
-    if dataset.attrs.get("stickslip_format") != FORMAT:
-        found = dataset.attrs.get("stickslip_format", "none")
-        raise InputError(f"{path}: not a solution of this version of stickslip (format {FORMAT} expected, found {found})")
+    if dataset.attrs.get(kind) != FORMAT:
+        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in dataset.attrs), None)
+        found = f"it is {other}" if other else f"format {FORMAT} expected, found {dataset.attrs.get(kind, 'none')}"
+        raise InputError(f"{path}: not {KINDS[kind].partition(':')[0]} of this version of stickslip ({found})")
+    return dataset
+
+
+def is_catalogue(path: Path) -> bool:
+    """Whether a file is the checkpoint of a catalogue."""
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as opened:
+            return CATALOGUE in opened.attrs
+    except (OSError, ValueError):
+        return False
+
+
+def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
+    """The solution in a file. Raises InputError for a selection rule that is not known here."""
     attributes = dataset.attrs
     if attributes["selection_rule"] not in rule_names():
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
-    problem = read_scenario(attributes["scenario"], str(path)).problem
-    names = ("history_whole", "history_real", "history_load", "history_rate")
-    whole, real, load, rate = (np.ascontiguousarray(dataset[name].to_numpy()) for name in names)
-    state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, load.shape[1]))
-    store = Store(whole, real, load, rate, np.ascontiguousarray(state))
+    scenario = read_scenario(attributes["scenario"], str(path))
+    whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
+    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, load.shape[1]))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
-    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
+    store = Store(whole, real, load, rate, state)
+    history = History(store, scenario.problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
-    return Solution(problem, duration, rtol, status, history)
+    checkpoint = None
+    if "engine" in attributes:
+        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
+        checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, scenario.events)
+
+
+def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:
+    return np.ascontiguousarray(dataset[name].to_numpy())

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from stickslip.evolution.solution import Solution
+    from stickslip.long_runs.catalogue import Catalogue
     from stickslip.scenarios.scenario import Scenario
 
 FIRST = 12
@@ -34,6 +35,17 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
     if solution.trapped_note:
         screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
+
+
+def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
+    """Print on standard output what came of a run of which only its slip events were kept."""
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
+    for file in found.files:
+        screen.print(f"written: {file}", soft_wrap=True)
 
 
 def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:

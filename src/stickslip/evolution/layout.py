@@ -36,7 +36,8 @@ STATES = 13
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
 MOVED, READY, JUMP, CAUSE, LEAP, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
 HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
-COUNTS = 29
+IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
+COUNTS = 31
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -46,7 +47,7 @@ MET, BROUGHT = 1, 2
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED, NEED_BRANCHES = range(7)
+FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES = range(7)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
@@ -143,6 +144,17 @@ def resized(store: Store, length: int, capacity: int) -> Store:
     return larger
 
 
-def trimmed(store: Store, length: int) -> Store:
-    """The history without its spare room (views, not copies)."""
-    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length], store.state[:length])
+def trimmed(store: Store, length: int, first: int = 0) -> Store:
+    """The history from piece `first` on, without its spare room (views, not copies)."""
+    kept = slice(first, length)
+    return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
+
+
+def without_first(store: Store, count: Integers, pieces: int) -> None:
+    """Forget the first so many pieces, which neither the present round trip nor the one before may hold."""
+    assert pieces <= count[PREVIOUS_FROM]
+    length = count[LENGTH]
+    for table in store:
+        table[: length - pieces] = table[pieces:length]
+    for place in (LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO):
+        count[place] -= pieces

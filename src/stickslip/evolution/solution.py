@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.errors import InputError
+from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.history import History
 from stickslip.evolution.readings import Readings
 from stickslip.evolution.status import Status
@@ -37,6 +38,10 @@ class Solution(Readings):
     rtol: float
     status: Status
     history: History
+    checkpoint: Checkpoint | None = None
+    """From where the run, or a longer one, can go on (`stickslip.resume`)."""
+    events_wanted: int | None = None
+    """Slip events after which the run was to stop."""
 
     @cached_property
     def events(self) -> pd.DataFrame:

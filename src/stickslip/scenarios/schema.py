@@ -90,6 +90,7 @@ def table_model(table: str, kind: type, state: StateVariable | None = None) -> t
         read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
         entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
+        entries["events"] = (Annotated[int | None, BeforeValidator(_events)], None)
         entries["selection"] = (Annotated[str, BeforeValidator(_selection)], SELECTION_RULES[0])
     model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
     return model
@@ -141,6 +142,17 @@ def check_rtol(value: float, where: str, name: str = "rtol") -> float:
     if RTOL.check(where, name, value) > LARGEST_RTOL:
         raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {value:g}")
     return value
+
+
+def check_events(value: Any, where: str, name: str = "events") -> int:
+    """A number of slip events after which a run stops. Raises InputError."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 < value < 10**12:
+        raise InputError(f"{where}: {name} must be a whole number above 0, got {show(value)}")
+    return value
+
+
+def _events(value: Any, info: ValidationInfo) -> int:
+    return check_events(value, info.context["source"].file, "[run] events")  # type: ignore[index] # always given, in _validate
 
 
 def _selection(value: Any, info: ValidationInfo) -> str:
