@@ -9,7 +9,7 @@ from stickslip.scenarios.scenario import Scenario
 
 CASES = [
     (["rn"], "No such command 'rn'. Did you mean 'run'?"),
-    (["run"], "Missing argument 'scenario'."),
+    (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
     (["run", "fig6-slab", "--figur", "a.png"], "No such option: --figur"),
     (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
     (["check", "fig6-slap"], "fig6-slap: no such file"),

@@ -29,7 +29,7 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
         60.0,
     ),
     "moving folds": (ss.Problem(MATCHED, hardening(), initial_excess=1e5), 5.0),
-    "moving levels": (ss.Problem(MATCHED, hardening(), initial_excess=1e5, selection="maxwell"), 0.85),
+    "moving levels": (ss.Problem(MATCHED, hardening(), initial_excess=1e5, selection="maxwell"), 1.3),
     "moving levels, knots": (ss.Problem(THIN, KINKED, pull_rate=0.2, initial_excess=1e5, selection="maximal"), 5.0),
     "block that heals": bundled("cycles-block"),
     "slab that heals": bundled("cycles-slab", 0.4),
@@ -46,7 +46,7 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
     ),
 }
 
-SLOW = ("moving levels",)
+SLOW = ("moving levels", "moving levels, knots")
 """Runs of seconds: the branches are worked out anew at every step."""
 
 

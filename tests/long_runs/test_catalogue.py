@@ -127,9 +127,13 @@ def test_progress_counts_what_was_forgotten(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 LONG = """
+import signal, time
 import stickslip as ss
+import stickslip.evolution.drive as drive
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
 problem = ss.load_scenario("cycles-slab").problem
-ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0)
+ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """
 
 
