@@ -25,6 +25,7 @@ BUDGET = 1_000_000
 def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -> Runner:
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
+    count[at.TO_THE_END] = 1  # nothing goes on behind it
     first_state, first_count = state.copy(), count.copy()
     store, scratch = at.new_store(CAPACITY), np.zeros((WORK_ROWS, at.TERMS))
     table = lend(setup, state, count, scratch, store)
