@@ -10,10 +10,10 @@ import numpy as np
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.evolution import layout as at
+from stickslip.evolution.drive import split_time
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
 from stickslip.evolution.setup import prepare, row_time
-from stickslip.evolution.simulate import split_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import STATUSES
 from stickslip.evolution.workspace import WORK_ROWS, lend
