@@ -11,7 +11,7 @@ from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
 from stickslip.evolution.report import Progress
 from stickslip.evolution.solution import Solution
-from stickslip.evolution.status import STATUSES
+from stickslip.evolution.status import INTERRUPTED, STATUSES
 from stickslip.problem import Problem
 
 
@@ -51,11 +51,19 @@ def check_run(who: str, duration: float, rtol: float, events: int | None, checkp
         raise InputError(f"{who}: checkpoint_every must be a time in s, got {checkpoint_every!r}")
 
 
+def check_started(run: RunInProgress, code: int, who: str) -> None:
+    """Refuse a run of no length: KeyboardInterrupt where Ctrl-C came before its first piece, else InputError."""
+    if run.length > 0:
+        return
+    if code == INTERRUPTED:
+        raise KeyboardInterrupt
+    raise InputError(f"{who}: the run ends where it starts: {STATUSES[code].message}")
+
+
 def go_on(run: RunInProgress, orders: Orders) -> Solution:
     """Take up a run and follow it to its end. Raises InputError where it ends where it starts."""
     code = drive(run, orders.duration, Keeper.of(run, orders))
-    if run.length == 0:
-        raise InputError(f"simulate: the run ends where it starts: {STATUSES[code].message}")
+    check_started(run, code, "simulate")
     solution = as_solution(run, orders, code)
     if orders.checkpoint is not None:
         solution.save(orders.checkpoint)

@@ -14,7 +14,7 @@ from stickslip.evolution.event_stream import EventStream, Look, Place
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
 from stickslip.evolution.report import Progress
-from stickslip.evolution.simulate import check_run
+from stickslip.evolution.simulate import check_run, check_started
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Status
 from stickslip.evolution.tables import default_event_rate
@@ -169,8 +169,7 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
     keeper = CatalogueKeeper.of(run, orders, stream)
     keeper.rows = rows
     code = drive(run, orders.duration, keeper)
-    if run.length == 0:
-        raise InputError(f"catalogue: the run ends where it starts: {STATUSES[code].message}")
+    check_started(run, code, "catalogue")
     keeper.finish(run, code)
     return Catalogue(rows, stream.told, STATUSES[code])
 
