@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import load_ahead, towards
+from stickslip.evolution.branch import load_ahead, onset_of_slip
 from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, copy, fill, first_descent, scale, total
+from stickslip.evolution.polynomial import NONE, copy, fill, scale, total
 from stickslip.evolution.record import record
 from stickslip.evolution.stages import (
     BY_RATE,
@@ -202,19 +202,11 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
     width = collocate(run, xi_to - run.state[at.XI])
     reached = width >= xi_to - run.state[at.XI]
-    strength, part = run.jet, run.part
-    strength_ahead(run, strength)
+    strength_ahead(run, run.jet)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
     fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
     copy(run.local, load, at.TERMS)
-    onset, direction = NONE, 0
-    for way in (1, -1):
-        for k in range(at.TERMS):
-            part[k] = strength[k] - way * run.local[k]
-        part[0] = 0.0 if run.counts[at.EDGE] == way else strength[0] - towards(run, run.local[0], way)
-        first = first_descent(part, run.spare)
-        if first < onset:
-            onset, direction = first, way
+    onset, direction = onset_of_slip(run, load, run.jet)
     end = min(onset, 1.0)
     if end < 1.0:
         scale(load, end)

@@ -21,8 +21,8 @@ TERMS = ORDER + 1
 # ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-STATE_SCALE, RATE_FLOOR, HEALED_PIECE = 17, 18, 19
-# HEALED_PIECE: of the law, where rest heals the contact; -1 where the law remembers all slip
+STATE_SCALE, RATE_FLOOR = 17, 18
+HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
 PARAMETERS = 20
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
