@@ -76,7 +76,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
             met |= {"stick" if count[at.MODE] == 0 else "slip", f"at fold {count[at.AT_FOLD]}"}
             met |= {"stiff"} if count[at.STIFF] else set()
             met |= {"state"} if count[at.HAS_STATE] else set()
-            met |= {"leap"} if count[at.LEAP] > 1 else set()
+            met |= {"leap"} if run.length and count[at.ROW] > run.store.row[run.length - 1] + 1 else set()
             met |= {"inside"} if 0.0 < state[at.XI] < 1.0 else set()
             met |= {"crossings"} if run.follower.times else set()
             met |= {"leaving"} if count[at.LEAVING] else set()

@@ -11,6 +11,7 @@ import math
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import needs_branches, rest_limit
 from stickslip.evolution.compiled import ahead, inlined, kernel
+from stickslip.evolution.echoes import FOREVER, NOTHING, end_trip, next_echo, pays, plant
 from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
@@ -22,8 +23,13 @@ from stickslip.evolution.workspace import EXIT, REAL, WHOLE, Run, borrow
 
 ROOM = 8
 LARGEST_STALL = 200
-FOREVER = 2**62
 FORGOTTEN = 1e-17
+
+
+@inlined
+def rows_leaped(run: Run, n: int) -> int:
+    """Whole rows at rest between the one of a piece of the history and the present one."""
+    return run.counts[at.ROW] - run.whole[WHOLE * n + at.S_ROW] - 1
 
 
 @kernel
@@ -38,7 +44,8 @@ def first_piece(run: Run) -> bool:
     run.load[0] = run.first_load[source]
     run.load[1] = run.first_slope[source] * run.state[at.SPEED]
     if run.counts[at.IS_BLOCK] == 1 and run.counts[at.ROW] > 0:
-        run.load[0] = run.state[at.LOAD_NOW] + run.counts[at.LEAP] * run.par[at.RAMP]
+        run.load[0] = run.state[at.LOAD_NOW] + rows_leaped(run, run.counts[at.LENGTH] - 1) * run.par[at.RAMP]
+    run.counts[at.ECHO_OF] = -1
     run.counts[at.ARRIVING] = at.NO_CAUSE
     if run.counts[at.ROW] == 0 and source == 0:
         run.counts[at.ARRIVING] = at.START
@@ -50,9 +57,15 @@ def first_piece(run: Run) -> bool:
 @kernel
 def echo_piece(run: Run) -> bool:
     """The next piece of load that returns from the driver; False when the round trip is complete."""
-    source = run.counts[at.PREVIOUS_FROM] + run.counts[at.SOURCE]
-    if source >= run.counts[at.PREVIOUS_TO]:
-        return False
+    if run.counts[at.SPARSE] == 1:
+        source = next_echo(run)
+        if source == NOTHING:
+            return False
+    else:
+        source = run.counts[at.PREVIOUS_FROM] + run.counts[at.SOURCE]
+        if source >= run.counts[at.PREVIOUS_TO]:
+            return False
+    run.counts[at.ECHO_OF] = source
     par = run.par
     real, rate, load = (
         ahead(run.real, REAL * source),
@@ -64,7 +77,7 @@ def echo_piece(run: Run) -> bool:
     for k in range(TERMS):
         run.load[k] = par[at.REFLECTION] * (2.0 * par[at.IMPEDANCE] * rate[k] - load[k])
     time = run.counts[at.ROW] * par[at.ROW_TIME] + run.state[at.THETA_FROM]
-    run.load[0] += par[at.INFLOW] + par[at.INFLOW_RATE] * time - par[at.REFLECTION] * run.counts[at.LEAP] * par[at.RAMP]
+    run.load[0] += par[at.INFLOW] + par[at.INFLOW_RATE] * time - par[at.REFLECTION] * rows_leaped(run, source) * par[at.RAMP]
     run.load[1] += par[at.INFLOW_RATE] * run.state[at.SPEED]
     run.load[2] += par[at.INFLOW_RATE] * run.state[at.BEND]
     run.counts[at.ARRIVING] = at.ECHO if run.whole[WHOLE * source + at.S_JUMP] == 1 and par[at.REFLECTION] != 0.0 else at.NO_CAUSE
@@ -128,6 +141,12 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
 
     False, and nothing done, where the end of the run would cut the leap and TO_THE_END is not set.
     """
+    if run.counts[at.SPARSE] == 1:
+        end_trip(run)
+        return True
+    if pays(run):
+        plant(run)
+        return True
     leap, locked = 0, False
     if run.counts[at.MOVED] == 0:
         run.counts[at.STUCK_ROWS] += 1
@@ -143,7 +162,6 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     run.counts[at.IS_LOCKED] = 1 if locked else 0
     if run.counts[at.IS_BLOCK] == 1:
         run.state[at.LOAD_NOW] = total(ahead(run.stored_load, TERMS * (run.counts[at.LENGTH] - 1)))
-    run.counts[at.LEAP] = leap
     run.counts[at.ROW] += 1 + leap
     run.counts[at.PREVIOUS_FROM], run.counts[at.PREVIOUS_TO] = run.counts[at.ROW_FROM], run.counts[at.LENGTH]
     run.counts[at.ROW_FROM] = run.counts[at.LENGTH]
@@ -193,7 +211,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             if run.counts[at.LEAVING] == 1:
                 leave_moving_branch(run)
         if run.counts[at.READY] == 0:
-            if run.counts[at.ROW] > last_row:
+            if run.counts[at.ROW] > last_row or (run.counts[at.SPARSE] == 1 and run.counts[at.IS_LOCKED] == 1):
                 return ended(run)
             if not next_piece(run):
                 if not end_row(run, rest_limit(run), last_row):

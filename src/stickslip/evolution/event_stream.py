@@ -39,7 +39,9 @@ BEFORE = Place(-1, 0.0)
 
 @dataclass
 class EventStream:
-    """Follows a history. `first` is the piece from which it still needs it; `told` counts the events it has told."""
+    """Follows a history. `first` is the piece from which it still needs it, and what stands in the body then; `told` counts the
+    events it has told.
+    """
 
     problem: Problem
     threshold: float
@@ -51,25 +53,24 @@ class EventStream:
     def look(self, store: Store, length: int) -> Look:
         """What is new in the first `length` pieces of a history."""
         history = self.history(store, length)
-        piece, xi, _, kind = walk(history, self.threshold)
+        piece, xi, _, kind = walk(history, self.threshold, self.first)
         starts = np.flatnonzero(kind == 1)
         place = piece[starts] + 0.5 * xi[starts]
-        old = int(np.searchsorted(place, self.last_start.piece - self.first + 0.5 * self.last_start.xi, "right"))
+        old = int(np.searchsorted(place, self.last_start.piece + 0.5 * self.last_start.xi, "right"))
         ends = np.append(starts[1:], len(kind))[: len(starts)] - 1
         known = []
         for n in ends[old:]:
             by = known_by(history, int(piece[n]), float(xi[n])) if kind[n] == -1 else NOT_YET
             if by == NOT_YET:
                 break
-            known.append(self.first + by)
+            known.append(by)
         return Look(self, history, piece[starts], xi[starts], old, known)
 
     def history(self, store: Store, length: int) -> History:
-        """The part of a history that is still needed, as one of its own."""
-        kept, row = at.trimmed(store, length, self.first), row_time(self.problem)
-        return History(
-            kept, self.problem, row, self.ramp, float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.whole) else 0.0
-        )
+        """The history so far."""
+        kept, row = at.trimmed(store, length), row_time(self.problem)
+        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.whole) else 0.0
+        return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:
         """The history has lost its first pieces."""
@@ -88,11 +89,11 @@ class Look:
     start_xi: Floats
     old: int
     known_by: list[int]
-    """For each new event the piece (counted as the stream's history was) by which it is known."""
+    """For each new event the piece by which it is known."""
 
     def table(self, *, unknown: bool = False) -> pd.DataFrame:
         """Rows of the new events; on demand also of those that the end of the history leaves open."""
-        rows = events_table(self.history, self.stream.threshold)
+        rows = events_table(self.history, self.stream.threshold, first=self.stream.first)
         return rows.iloc[self.old : None if unknown else self.old + len(self.known_by)].reset_index(drop=True)
 
     def tell(self) -> None:
@@ -100,22 +101,15 @@ class Look:
         if not self.known_by:
             return
         stream, last = self.stream, self.old + len(self.known_by) - 1
-        piece = int(self.start_piece[last])
-        stream.last_start = Place(stream.first + piece, float(self.start_xi[last]))
+        stream.first = int(self.start_piece[last])
+        stream.last_start = Place(stream.first, float(self.start_xi[last]))
         stream.told += len(self.known_by)
-        stream.first += round_trip_before(self.history.store, piece)
-
-
-def round_trip_before(store: Store, piece: int) -> int:
-    """First piece of the round trip in the history before that of a piece: the history of an event reaches back so far."""
-    first = int(np.searchsorted(store.row, store.row[piece]))
-    return int(np.searchsorted(store.row, store.row[first - 1])) if first > 0 else 0
 
 
 def known_by(history: History, piece: int, xi: float) -> int:
     """The piece by which it is known what an event that ends here has left behind; NOT_YET where the history ends before."""
     mode = history.store.mode
-    rate = abs(history.rate(Moments(np.array([piece]), np.array([xi]), np.zeros(1), np.zeros(1, bool)))[0])
+    rate = abs(history.rate(Moments.inside(piece, xi))[0])
     for begin in range(piece + 1, len(history), AT_ONCE):
         turned = mode[begin : begin + AT_ONCE] != mode[piece]
         same = int(np.argmax(turned)) if turned.any() else len(turned)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.evolution.layout import Integers, Store
+from stickslip.evolution.phases import Phases
 from stickslip.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -34,24 +35,42 @@ class Epoch(NamedTuple):
     offset: float
 
 
+ROUNDING = 1e-13
+"""Of the offsets of pieces that follow each other, relative to a row."""
+
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Times found in the history: piece, place xi in it, whole round trips since (a leap over rest), before = left of t = 0."""
+    """Times found in the history: in a piece, at a place xi in it; or at rest, where nothing was recorded.
+
+    There `leaped` counts the whole rows since the piece, whose echo is the load, and `last` is the last piece before that time.
+    """
 
     piece: NDArray[np.intp]
     xi: Floats
     leaped: Floats
     before: NDArray[np.bool_]
+    """Left of t = 0."""
+    last: NDArray[np.intp]
 
     @classmethod
     def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Moments:
         """Places in the history by piece and xi."""
         pieces, places = np.broadcast_arrays(np.atleast_1d(np.asarray(piece, np.intp)), np.atleast_1d(np.asarray(xi, float)))
-        return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool))
+        return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool), pieces)
+
+    @property
+    def at_rest(self) -> NDArray[np.bool_]:
+        """Where nothing was recorded."""
+        return self.leaped > 0.0
+
+    def recorded(self) -> Moments:
+        """The last moments up to these that were recorded: slip has been the same since."""
+        piece, xi = np.where(self.at_rest, self.last, self.piece), np.where(self.at_rest, 1.0, self.xi)
+        return Moments(piece, xi, np.zeros(len(xi)), self.before, piece)
 
 
 @dataclass(frozen=True)
@@ -99,32 +118,68 @@ class History:
         """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
         if side not in ("left", "right"):
             raise InputError(f"side must be 'left' or 'right', got {side!r}")
-        first, last = self.span
-        if not np.all((time >= first) & (time <= last + 1e-12 * self.duration)):
-            raise InputError(f"times must lie between {first:g} and the end of the run, {last:g} s")
+        begin, end = self.span
+        if not np.all((time >= begin) & (time <= end + 1e-12 * self.duration)):
+            raise InputError(f"times must lie between {begin:g} and the end of the run, {end:g} s")
         piece = np.searchsorted(self.start, time, side="left" if side == "left" else "right") - 1
         before = piece < 0
-        piece = np.maximum(piece, 0)
-        leaped = np.zeros(len(time))
-        local = time - self.start[piece]
-        for n in np.flatnonzero(time > self.end[piece]):
-            piece[n], local[n], leaped[n] = self._in_leap(int(piece[n]), float(time[n]), side)
-        return Moments(piece, self.xi(piece, local), leaped, before)
+        last: NDArray[np.intp] = np.maximum(piece, 0)
+        found = Moments(last.copy(), self.xi(last, time - self.start[last]), np.zeros(len(time)), before, last)
+        late = time >= self.end[last] if side == "right" else time > self.end[last]
+        rests = np.flatnonzero(late & self.rests[last])
+        if rests.size:
+            self._find_echoes(found, rests, time[rests], side)
+        return found
 
-    def _in_leap(self, last: int, time: float, side: Side) -> tuple[int, float, float]:
-        """A time behind a row at rest that was leaped over: the same place in that row, whole rows later."""
-        row = int(self.store.row[last])
-        if last + 1 == len(self) or self.store.row[last + 1] == row:
-            return last, time - float(self.start[last]), 0.0
-        since = time + self.epoch.offset - (row - self.epoch.row) * self.row_time  # since that row began
-        rows = max(np.floor(since / self.row_time), 0.0)
-        theta = time + self.epoch.offset - (row - self.epoch.row + rows) * self.row_time
-        if theta <= 0.0 and side == "left":
-            rows, theta = rows - 1.0, self.row_time
-        first = int(np.searchsorted(self.store.row, row, side="left"))
-        inside = np.searchsorted(self.store.theta_from[first : last + 1], theta, side="left" if side == "left" else "right") - 1
-        piece = first + max(int(inside), 0)
-        return piece, theta - float(self.store.theta_from[piece]), float(rows)
+    def _find_echoes(self, found: Moments, n: NDArray[np.intp], time: Floats, side: Side) -> None:
+        """Where the load at times at rest comes from: the n-th of those found behind recorded pieces."""
+        row = (self.store.row[found.last[n]] - self.epoch.row).astype(float)
+        rows = row + np.floor((time + self.epoch.offset - row * self.row_time) / self.row_time)
+        phase = time + self.epoch.offset - rows * self.row_time
+        if side == "left":
+            rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.row_time, phase)
+        self._set_echoes(found, n, rows + self.epoch.row, phase, side)
+
+    def _set_echoes(self, found: Moments, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
+        piece = self.phases.latest(phase, found.last[n], side)
+        known = piece >= 0
+        n, piece, row, phase = n[known], piece[known], row[known], phase[known]
+        found.piece[n], found.leaped[n] = piece, row - self.store.row[piece]
+        found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
+
+    def just_before(self, piece: int) -> Moments:
+        """The left limit at the start of a piece."""
+        previous = max(piece - 1, 0)
+        found = Moments.inside([previous], [1.0 if piece else 0.0])
+        found = replace(found, piece=found.piece.copy(), xi=found.xi.copy(), before=np.array([piece == 0]))
+        if self.rests[previous] and piece > 0:
+            row, phase = float(self.store.row[piece]), float(self.store.theta_from[piece])
+            at_edge = phase == 0.0
+            place = np.array([row - at_edge]), np.array([self.row_time if at_edge else phase])
+            self._set_echoes(found, np.zeros(1, np.intp), *place, "left")
+        return found
+
+    @cached_property
+    def phases(self) -> Phases:
+        """Its pieces, by phase."""
+        return Phases.of(self.store)
+
+    def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """What stands in the body at the end of a row: pieces in order of phase, each from where to where in the row (s)."""
+        first, past = (int(np.searchsorted(self.store.row, row, side=side)) for side in ("left", "right"))
+        own = np.arange(first, past)
+        low, high = self.store.theta_from[own], self.store.theta_to[own]
+        if len(own) and low[0] == 0.0 and high[-1] == self.row_time and not self.rests[own[:-1]].any():
+            return own, low, high
+        return self.phases.standing(past - 1)
+
+    @cached_property
+    def rests(self) -> NDArray[np.bool_]:
+        """Whether the contact rests behind each piece, unrecorded, until the next one or the end."""
+        row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
+        follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
+        last = row[-1:] * self.row_time + end[-1:]
+        return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.row_time), last)
 
     def placed(self, at: Moments) -> tuple[Integers, Floats]:
         """Rows and offsets (s) of moments."""
@@ -143,12 +198,19 @@ class History:
 
     def excess(self, at: Moments) -> Floats:
         """Load minus the reference strength."""
-        value = horner(self.store.load[at.piece], at.xi) + at.leaped * self.ramp
-        return np.where(at.before, self.problem.excess, value)
+        value = horner(self.store.load[at.piece], at.xi)
+        if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
+            left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
+            value = np.where(at.at_rest, value - left, value)
+        return np.where(at.before, self.problem.excess, value + at.leaped * self.ramp)
 
     def rate(self, at: Moments) -> Floats:
         """Slip rate, m/s."""
-        return np.where(at.before, 0.0, horner(self.store.rate[at.piece], at.xi))
+        return np.where(at.before | at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
+
+    def mode(self, at: Moments) -> Integers:
+        """0 at rest, +1 in slip forwards, -1 backwards."""
+        return np.where(at.at_rest, 0, self.store.mode[at.piece])
 
     def grown(self, at: Moments) -> Floats:
         """Slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
@@ -162,10 +224,12 @@ class History:
 
     def slipped(self, at: Moments) -> Floats:
         """Slip since the start of the run, m."""
+        at = at.recorded()
         return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
 
     def slipped_since(self, origin: Moments, at: Moments) -> Floats:
         """Slip since one moment, m: summed from there, so that it has all its digits however much has slipped before."""
+        origin, at = origin.recorded(), at.recorded()
         begin = int(origin.piece[0])
         first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
         crossed = np.arange(first, last)
@@ -187,7 +251,7 @@ class History:
         body = self.problem.body
         if isinstance(body, ElasticSlab) and body.contact_mass == 0.0:
             return excess - body.impedance * rate
-        law, mode = self.problem.friction, self.store.mode[at.piece]
+        law, mode = self.problem.friction, self.mode(at)
         grown = self.grown(at)
         walked = mode * grown if law.counts == "path" else grown
         law_slip = self.problem.law_slip + self.store.law_slip[at.piece] + walked

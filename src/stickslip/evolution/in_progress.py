@@ -9,8 +9,11 @@ import numpy as np
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint, engine
+from stickslip.evolution.echoes import Echoes, new_echoes, replant
+from stickslip.evolution.echoes import resized as with_room
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
+from stickslip.evolution.phases import Phases
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
@@ -30,6 +33,7 @@ class RunInProgress:
     count: Integers
     scratch: Floats
     store: Store
+    echoes: Echoes
     follower: RuleFollower
     before_end: Checkpoint | None = None
     forgotten: int = 0
@@ -43,18 +47,20 @@ class RunInProgress:
         setup, state, count = prepare(problem, rtol)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
-        return cls(problem, rtol, setup, state, count, np.zeros((WORK_ROWS, at.TERMS)), store, follower)
+        scratch, echoes = np.zeros((WORK_ROWS, at.TERMS)), new_echoes(FIRST_CAPACITY)
+        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower)
 
     @classmethod
     def at_checkpoint(cls, problem: Problem, rtol: float, store: Store, checkpoint: Checkpoint) -> Self:
         """Where another run stood; `store` is its history, from which nothing is changed."""
         run = cls.begin(problem, rtol)
-        run.store = at.resized(store, checkpoint.length, max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2))
+        capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
+        run.store, run.echoes = at.resized(store, checkpoint.length, capacity), new_echoes(capacity)
         run.restore(checkpoint)
         return run
 
     def _lend(self) -> None:
-        self._table = lend(self.setup, self.state, self.count, self.scratch, self.store)
+        self._table = lend(self.setup, self.state, self.count, self.scratch, self.store, self.echoes)
 
     @property
     def length(self) -> int:
@@ -86,13 +92,33 @@ class RunInProgress:
     def reserve(self, pieces: int) -> None:
         """Have room for at least so many pieces."""
         if pieces > len(self.store.whole):
-            self.store = at.resized(self.store, self.length, pieces)
+            self.store, self.echoes = at.resized(self.store, self.length, pieces), with_room(self.echoes, self.length, pieces)
             self._lend()
 
-    def forget(self, pieces: int) -> None:
-        """Drop the first so many pieces, none of which belongs to the present round trip or the one before."""
-        at.without_first(self.store, self.count, pieces)
-        self.forgotten += pieces
+    def forget_before(self, piece: int) -> int:
+        """Drop what stands nowhere in the body any more when a piece begins; returns how many pieces that were."""
+        piece = min(piece, int(self.count[at.NEW_FROM if self.count[at.SPARSE] else at.PREVIOUS_FROM]))
+        if piece == 0:
+            return 0
+        standing, _, _ = Phases.of(at.trimmed(self.store, piece)).standing(piece - 1)
+        kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
+        dropped = self.length - len(kept)
+        place = at.keep_only(self.store, self.length, kept)
+        self.count[at.ECHO_OF] = place[self.count[at.ECHO_OF]]
+        self.count[[at.LENGTH, at.ROW_FROM, at.PREVIOUS_FROM, at.PREVIOUS_TO, at.NEW_FROM]] -= dropped
+        self._replant()
+        self.forgotten += dropped
+        return dropped
+
+    def _replant(self) -> None:
+        """Have the trees of echoes as the history says."""
+        self._lend()
+        if self.count[at.SPARSE] == 0:
+            return
+        first = int(self.count[at.NEW_FROM])
+        pieces, low, _ = Phases.of(at.trimmed(self.store, first)).standing(first - 1)
+        past, ahead = low < self.state[at.NEW_SINCE], low >= self.state[at.TAKEN_TO]
+        replant(self._table, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
         """From here on the end of the run decides what comes: keep where a longer run would go on."""
@@ -118,4 +144,4 @@ class RunInProgress:
         self.follower.times.extend(checkpoint.crossings.tolist())
         if self.count[at.TO_THE_END] == 0:
             self.before_end = None
-        self._lend()
+        self._replant()

@@ -30,14 +30,16 @@ XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
 THETA_FROM, THETA_TO, SPEED, BEND = range(6, 10)  # theta = THETA_FROM + SPEED xi + BEND xi^2, xi from 0 to 1
 TABLE_SLIP, FOLD_RATE = range(10, 12)  # law slip at which Setup.branch holds; slip rate at the moving fold that is approached
 STATE_NOW = 12  # of the friction law, as its formulas see it
-STATES = 13
+NEW_SINCE, TAKEN_TO = 13, 14  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees
+STATES = 15
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
-MOVED, READY, JUMP, CAUSE, LEAP, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
+MOVED, READY, JUMP, CAUSE, ECHO_OF, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
 HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
 IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
-COUNTS = 31
+SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
+COUNTS = 35
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -57,7 +59,7 @@ RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
 FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
 
 # ---- columns of Store's tables ----------------------------------------------------------------------------------------------
-S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE = range(5)
+S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE, S_ECHO_OF = range(6)
 S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP = range(6)
 
 
@@ -100,6 +102,11 @@ class Store(NamedTuple):
         return self.whole[:, S_CAUSE]
 
     @property
+    def echo_of(self) -> Integers:
+        """The piece that comes back from the driver here; -1 in the first round trip, and on a block."""
+        return self.whole[:, S_ECHO_OF]
+
+    @property
     def theta_from(self) -> Floats:
         """Offset in the round trip at which the piece starts, s."""
         return self.real[:, S_THETA_FROM]
@@ -133,7 +140,7 @@ class Store(NamedTuple):
 def new_store(capacity: int, has_state: bool = False) -> Store:
     """An empty history with room for so many pieces."""
     load, rate, state = (np.empty((rows, TERMS)) for rows in (capacity, capacity, capacity if has_state else 0))
-    return Store(np.empty((capacity, 5), np.int64), np.empty((capacity, 6)), load, rate, state)
+    return Store(np.empty((capacity, 6), np.int64), np.empty((capacity, 6)), load, rate, state)
 
 
 def resized(store: Store, length: int, capacity: int) -> Store:
@@ -144,17 +151,16 @@ def resized(store: Store, length: int, capacity: int) -> Store:
     return larger
 
 
-def trimmed(store: Store, length: int, first: int = 0) -> Store:
-    """The history from piece `first` on, without its spare room (views, not copies)."""
-    kept = slice(first, length)
-    return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
+def trimmed(store: Store, length: int) -> Store:
+    """The history without its spare room (views, not copies)."""
+    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length], store.state[:length])
 
 
-def without_first(store: Store, count: Integers, pieces: int) -> None:
-    """Forget the first so many pieces, which neither the present round trip nor the one before may hold."""
-    assert pieces <= count[PREVIOUS_FROM]
-    length = count[LENGTH]
+def keep_only(store: Store, length: int, kept: Integers) -> Integers:
+    """Forget all of the first `length` pieces but these, in order of time. Returns where each is now; -1 if it is forgotten."""
+    place = np.full(length + 1, -1)  # the last one stands for "none"
+    place[kept] = np.arange(len(kept))
     for table in store:
-        table[: length - pieces] = table[pieces:length]
-    for place in (LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO):
-        count[place] -= pieces
+        table[: len(kept)] = table[:length][kept] if len(table) else table[:0]
+    store.echo_of[: len(kept)] = place[store.echo_of[: len(kept)]]
+    return place

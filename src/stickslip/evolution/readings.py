@@ -34,7 +34,7 @@ class Readings:
     @property
     def shown(self) -> tuple[float, float]:
         """Times (s) from which and up to which it is drawn."""
-        return self.history.span[0], float(self.history.end[-1])
+        return self.history.span
 
     def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
         time = np.asarray(t, float)

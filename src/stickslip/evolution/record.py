@@ -32,7 +32,7 @@ def record(run: Run, xi_to: float) -> None:
         n = run.counts[at.LENGTH]
         whole, real = ahead(run.whole, WHOLE * n), ahead(run.real, REAL * n)
         whole[at.S_ROW], whole[at.S_MODE], whole[at.S_PIECE] = run.counts[at.ROW], run.counts[at.MODE], run.counts[at.PIECE]
-        whole[at.S_JUMP], whole[at.S_CAUSE] = run.counts[at.JUMP], run.counts[at.CAUSE]
+        whole[at.S_JUMP], whole[at.S_CAUSE], whole[at.S_ECHO_OF] = run.counts[at.JUMP], run.counts[at.CAUSE], run.counts[at.ECHO_OF]
         real[at.S_THETA_FROM], real[at.S_THETA_TO] = theta_from, theta_to
         real[at.S_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * xi) * width
         real[at.S_BEND] = run.state[at.BEND] * width * width

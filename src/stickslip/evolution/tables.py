@@ -64,8 +64,10 @@ def default_event_rate(problem: Problem) -> float:
 
 
 @kernel
-def turning_points(store: Store, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers) -> int:
-    """Walk along |slip rate|: note where and how much it is at starts, ends, extrema and crossings of the threshold.
+def turning_points(
+    store: Store, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
+) -> int:
+    """Walk along |slip rate| from a piece on: note where and how much it is at starts, ends, extrema, crossings of the threshold.
 
     kind: 0 a point above the threshold, +1 the rate rises above it here, -1 it falls to it here. Returns the number of points,
     or -1 if the arrays are too short.
@@ -73,13 +75,13 @@ def turning_points(store: Store, length: int, threshold: float, piece: Integers,
     found = 0
     p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
     above = False
-    for n in range(length):
+    for n in range(begin, length):
         if found + 3 * MAXIMA_PER_PIECE > len(piece):
             return -1
         sign = 1.0 if store.whole[n, S_MODE] >= 0 else -1.0
         for k in range(TERMS):
             p[k] = sign * store.rate[n, k]
-        contiguous = n > 0 and store.whole[n, S_MODE] == store.whole[n - 1, S_MODE]
+        contiguous = n > begin and store.whole[n, S_MODE] == store.whole[n - 1, S_MODE]
         begins = store.whole[n, S_MODE] != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
         if above and not (begins and contiguous):
             found = _note(piece, xi, rate, kind, found, n - 1, 1.0, 0.0, -1)
@@ -134,13 +136,13 @@ def count_pulses(rates: Floats) -> int:
     return pulses
 
 
-def walk(history: History, threshold: float) -> tuple[Any, Any, Any, Any]:
+def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, Any, Any]:
     """`turning_points` with enough room, in order of time."""
-    room = 8 * len(history) + 4 * MAXIMA_PER_PIECE
+    room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
     while True:
         piece, kind = np.empty(room, np.int64), np.empty(room, np.int64)
         xi, rate = np.empty(room), np.empty(room)
-        found = turning_points(history.store, len(history), threshold, piece, xi, rate, kind)
+        found = turning_points(history.store, begin, len(history), threshold, piece, xi, rate, kind)
         if found >= 0:
             order = np.lexsort((-kind[:found] * (xi[:found] < 1.0), xi[:found], piece[:found]))
             return piece[:found][order], xi[:found][order], rate[:found][order], kind[:found][order]
@@ -161,21 +163,21 @@ class Points(NamedTuple):
         return bool(self.kind[-1] == -1)
 
 
-def slip_events(history: History, threshold: float) -> list[Points]:
-    """Maximal intervals with |slip rate| above the threshold (m/s), in order of time."""
-    points = walk(history, threshold)
+def slip_events(history: History, threshold: float, first: int = 0) -> list[Points]:
+    """Maximal intervals with |slip rate| above the threshold (m/s) from a piece on, in order of time."""
+    points = walk(history, threshold, first)
     bounds = np.append(np.flatnonzero(points[3] == 1), len(points[3]))
-    return [Points(*(column[first:last] for column in points)) for first, last in pairwise(bounds)]
+    return [Points(*(column[start:end] for column in points)) for start, end in pairwise(bounds)]
 
 
-def events_table(history: History, threshold: float, energies: Energies | None = None) -> pd.DataFrame:
-    """One row a maximal interval with |slip rate| above the threshold (m/s); columns as in EVENT_COLUMNS.
+def events_table(history: History, threshold: float, energies: Energies | None = None, first: int = 0) -> pd.DataFrame:
+    """One row a maximal interval with |slip rate| above the threshold (m/s) from a piece on; columns as in EVENT_COLUMNS.
 
     `energies` gives those of ENERGY_COLUMNS from the first and last moments of all events.
     """
     import pandas as pd
 
-    found = slip_events(history, threshold)
+    found = slip_events(history, threshold, first)
     names = [name for name in EVENT_COLUMNS if name != "recurrence"]
     table = pd.DataFrame([_event(history, points) for points in found], columns=names)
     table = table.astype({"pulses": int, "start_row": int})
@@ -221,11 +223,7 @@ def _friction_before(history: History, piece: int, xi: float) -> float:
     """Left limit of the traction (minus the reference)."""
     if xi > 0.0:
         return float(history.friction(Moments.inside(piece, xi))[0])
-    if piece == 0:
-        return history.problem.excess
-    leaped = np.array([float(max(history.store.row[piece] - history.store.row[piece - 1] - 1, 0))])
-    at = Moments(np.array([piece - 1]), np.array([1.0]), leaped, np.array([False]))
-    return float(history.friction(at)[0])
+    return float(history.friction(history.just_before(piece))[0])
 
 
 def _friction_after(history: History, piece: int, xi: float) -> float:
@@ -259,7 +257,7 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
         (
             float(history.start[n]),
             CAUSES[history.store.cause[n]],
-            0.0 if n == 0 else float(history.rate(Moments.inside(n - 1, 1.0))[0]),
+            float(history.rate(history.just_before(n))[0]),
             float(history.rate(Moments.inside(n, 0.0))[0]),
             reference + _friction_before(history, n, 0.0),
             reference + float(history.friction(Moments.inside(n, 0.0))[0]),

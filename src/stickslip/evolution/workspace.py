@@ -20,7 +20,7 @@ STATES = at.STATES + 1
 DEGREE = at.COUNTS  # of the piece of load: its coefficients beyond are zero
 COUNTS = at.COUNTS + 1
 
-WHOLE, REAL = 5, 6
+WHOLE, REAL = 6, 6
 """Columns of the history's tables."""
 
 MATRIX_ROWS = 18
@@ -75,6 +75,9 @@ class Run(NamedTuple):
     stage_state: Floats
     matrix: Floats
 
+    node: Integers  # the trees of echoes
+    heights: Floats
+
     pieces: int
     size: int  # of the constants of a piece
     branches: int
@@ -82,13 +85,13 @@ class Run(NamedTuple):
     capacity: int
 
 
-def lend(setup: Setup, state: Floats, count: Integers, scratch: Floats, store: Store) -> Integers:
+def lend(setup: Setup, state: Floats, count: Integers, scratch: Floats, store: Store, trees: tuple[Integers, Floats]) -> Integers:
     """The table for `advance`. The caller keeps the arrays alive; a store that has grown needs a new table."""
     arrays = (*setup, state, count, scratch, *store)
-    assert all(array.flags.c_contiguous for array in arrays)
+    assert all(array.flags.c_contiguous for array in (*arrays, *trees))
     assert scratch.shape == (WORK_ROWS, TERMS)
     lengths = (setup.constants.shape[0], setup.constants.shape[1], setup.branch.shape[1], setup.first.shape[1], len(store.whole))
-    return np.array([*(array.ctypes.data for array in arrays), *lengths], np.int64)
+    return np.array([*(array.ctypes.data for array in arrays), *lengths, *(tree.ctypes.data for tree in trees)], np.int64)
 
 
 @inlined
@@ -137,6 +140,8 @@ def borrow(table: Integers) -> Run:
         ahead(work, 12 * TERMS),
         ahead(work, 13 * TERMS),
         ahead(work, 14 * TERMS),
+        integers(table[19]),
+        floats(table[20]),
         pieces,
         size,
         branches,

@@ -206,10 +206,9 @@ class CatalogueKeeper(Keeper):
 
     def make_room(self, run: RunInProgress) -> bool:
         """Forget what neither events nor the engine need; more room only if that is most of what there is."""
-        needed = min(self.stream.first, int(run.count[at.PREVIOUS_FROM]))
-        if run.before_end is None and needed > 0:
-            run.forget(needed)
-            self.stream.forget(needed)
+        dropped = run.forget_before(self.stream.first) if run.before_end is None else 0
+        if dropped > 0:
+            self.stream.forget(dropped)
             self._remember(run)
             self.looked = self.stands(run)
         return run.length < len(run.store.whole) // 2 or run.grow(self.orders.max_pieces)

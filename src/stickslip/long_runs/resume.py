@@ -65,8 +65,9 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
             " which would go on in other digits; run it again from the start"
         )
     run = RunInProgress.at_checkpoint(stopped.problem, stopped.rtol, stopped.history.store, checkpoint)
-    if duration is not None and duration < run.time:
-        raise InputError(f"{path}: the run has come to {run.time:.9g} s already: a duration of {duration:.9g} s lies before that")
+    reached = float(stopped.history.end[run.length - 1])
+    if duration is not None and duration < reached:
+        raise InputError(f"{path}: the run has come to {reached:.9g} s already: a duration of {duration:.9g} s lies before that")
     return run
 
 

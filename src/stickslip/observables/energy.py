@@ -155,8 +155,8 @@ def _pulling_force(history: History, at: Moments) -> Floats:
     lasting = (row[before + 1] - row[before] - 1) * history.row_time
     force, rise = history.excess(Moments.inside(before, 1.0)), history.ramp / history.row_time
     whole = np.append(0.0, np.cumsum(lasting * (force + 0.5 * rise * lasting)))
-    leap = np.searchsorted(before, at.piece)
-    inside = np.where(at.leaped > 0.0, (at.leaped - 1.0) * history.row_time + history.placed(at)[1], 0.0)
+    leap = np.searchsorted(before, at.last)
+    inside = np.where(at.at_rest, (at.leaped - 1.0) * history.row_time + history.placed(at)[1], 0.0)
     part = inside * (np.append(force, 0.0)[leap] + 0.5 * rise * inside)
     pulling: Floats = up_to(history, at, history.excess) + whole[leap] + part
     return pulling

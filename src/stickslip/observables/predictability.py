@@ -82,7 +82,7 @@ def predictability(solution: Solution) -> Predictability:
     history = solution.history
     row, theta, factors = history.store.row, history.store.theta_from, _factors(solution, resistance(problem))
     back = theta >= 0.5 * history.row_time  # in the first round trip the start itself comes back from the driver there
-    grown = np.abs(_along(row, theta, factors, np.where((row == 0) & back, abs(body.reflection), 1.0)))
+    grown = np.abs(_along(history.store.echo_of, factors, np.where((row == 0) & back, abs(body.reflection), 1.0)))
     error = _first_error(solution, body)
     scale = _scale(problem)
     lost = np.flatnonzero(grown * error > LOST * scale)
@@ -102,13 +102,11 @@ def _factors(solution: Solution, g: Resistance) -> Floats:
     return factors
 
 
-def _along(row: NDArray[np.int64], theta: Floats, factors: Floats, first: Floats) -> Floats:
-    """Products of the factors from round trip to round trip: each piece lies within one piece of the row before."""
+def _along(echo_of: NDArray[np.int64], factors: Floats, first: Floats) -> Floats:
+    """Products of the factors from each piece to its echoes."""
     grown = first
-    starts = np.append(np.flatnonzero(np.diff(row, prepend=-1)), len(row))
-    for before, begin, end in zip(starts[:-2], starts[1:-1], starts[2:], strict=True):
-        source = before + np.searchsorted(theta[before:begin], theta[begin:end], side="right") - 1
-        grown[begin:end] = grown[source] * factors[source]
+    for n in np.flatnonzero(echo_of >= 0):
+        grown[n] = grown[echo_of[n]] * factors[echo_of[n]]
     return grown
 
 

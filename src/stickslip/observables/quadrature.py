@@ -22,28 +22,31 @@ BLOCK = 1 << 14
 """Pieces that are integrated together: keeps the memory bounded."""
 
 
-def over(history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: float = 0.0) -> Floats:
-    """Integral over the part [low, high] (in xi) of each piece; `leaped` whole rows later, for a row at rest."""
+def over(
+    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: Floats | None = None
+) -> Floats:
+    """Integral over the part [low, high] (in xi) of each piece; of its echo so many whole rows later, where those are given."""
+    leaped = np.zeros(len(piece)) if leaped is None else leaped
     if len(piece) > BLOCK:
         cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
-        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped) for cut in cuts])
+        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped[cut]) for cut in cuts])
     xi = low[:, None] + (high - low)[:, None] * NODES
-    at = Moments(np.repeat(piece, len(NODES)), xi.ravel(), np.full(xi.size, leaped), np.zeros(xi.size, bool))
+    nodes = np.repeat(piece, len(NODES))
+    at = Moments(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
     values = integrand(at).reshape(xi.shape)
     speed, bend = history.store.speed[piece], history.store.bend[piece]
     return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ WEIGHTS * (high - low))
 
 
 def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
-    """Integral over the (given) pieces up to each moment; rows at rest that were leaped over are left out."""
+    """Integral over the (given) pieces up to each moment; rest that was not recorded is left out."""
+    at = at.recorded()
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
     whole = np.concatenate([[0.0], np.cumsum(over(history, pieces, np.zeros(count), np.ones(count), integrand))])
-    row, leaps = history.store.row, at.leaped > 0.0
-    passed = np.where(leaps, np.searchsorted(row, row[at.piece], side="right"), at.piece)
-    done = np.searchsorted(pieces, passed)
+    done = np.searchsorted(pieces, at.piece)
     total: Floats = whole[done]
-    cut = ~leaps & (np.append(pieces, -1)[done] == at.piece)
+    cut = np.append(pieces, -1)[done] == at.piece
     if cut.any():
         total[cut] += over(history, at.piece[cut], np.zeros(int(cut.sum())), at.xi[cut], integrand)
     return total

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,11 +83,10 @@ class Waves:
         if end.row < 0:
             return self._before(-self.half, end.offset - self.round, self.power)
         total = self._before(-self.half, 0.0, self.power)
-        rows, first, past, once, growth, sums = self._rows
-        k = int(np.searchsorted(rows, end.row, side="right")) - 1
-        leaped = end.row - int(rows[k])
-        total += float(sums[k] + leaped * once[k] + growth[k] * leaped * (leaped - 1) / 2.0)
-        return total + self._in_row(int(first[k]), int(past[k]), leaped, 0.0, end.offset, self._of(self.power))
+        total += float(self._passed[int(np.searchsorted(self.history.store.row, end.row, side="right"))])
+        piece, low, high = self.history.standing(end.row)
+        total += float(self._work_of(piece, low, high, end.row - self.history.store.row[piece]).sum())
+        return total + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
@@ -97,20 +95,29 @@ class Waves:
         return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
 
     @cached_property
-    def _rows(self) -> tuple[NDArray[Any], ...]:
-        """Of each stored row: round trip, first piece, last piece + 1, work in it, its growth per row leaped, work before it."""
-        store, count = self.history.store, len(self.history)
-        first = np.flatnonzero(np.diff(store.row, prepend=-1))
-        past = np.append(first[1:], count)
-        gain = 1.0 + self.body.reflection
+    def _passed(self) -> Floats:
+        """Work of all that left the contact before an echo of it was recorded, summed over the pieces in order of time."""
+        store = self.history.store
+        echo = np.flatnonzero(store.echo_of >= 0)
+        source, work = store.echo_of[echo], np.zeros(len(store.row))
+        work[echo] = self._work_of(source, store.theta_from[echo], store.theta_to[echo], store.row[echo] - store.row[source])
+        return np.append(0.0, np.cumsum(work))
+
+    def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, rows: NDArray[np.int64]) -> Floats:
+        """Work of what left between two offsets (s) of pieces, and of its echoes: so many rows each."""
+        come = rows > 0
+        piece, low, high, rows, gain = piece[come], low[come], high[come], rows[come], 1.0 + self.body.reflection
         pull = self._of(lambda w, left: gain * w + self.inflow + self.inflow_rate * (left + self.round))
-        ends = np.arange(count), np.zeros(count), np.ones(count)
-        once, rise = (np.add.reduceat(over(self.history, *ends, density), first) for density in (self._of(self.power), pull))
+        part = piece, *self._places(piece, low, high)
+        once, rise = (over(self.history, *part, density) for density in (self._of(self.power), pull))
         growth = 2.0 * self.history.ramp * rise / (4.0 * self.body.impedance)
-        rows = store.row[first]
-        lasting = np.diff(rows).astype(float)  # round trips for which a stored one stands
-        passed = lasting * once[:-1] + growth[:-1] * lasting * (lasting - 1.0) / 2.0
-        return rows, first, past, once, growth, np.concatenate([[0.0], np.cumsum(passed)])
+        return rows * once + growth * rows * (rows - 1.0) / 2.0
+
+    def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
+        """Where in pieces (xi) two offsets (s) lie."""
+        history, start, end = self.history, self.history.store.theta_from[piece], self.history.store.theta_to[piece]
+        first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
+        return first, np.where(high >= end, 1.0, last)
 
     # ---- integrals ----------------------------------------------------------------------------------------------------------
 
@@ -149,7 +156,7 @@ class Waves:
 
     def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
         """Integral of a density over the waves that left between two times since now (s, not positive)."""
-        begun, stored = self.begun(now), self.history.store.row
+        begun = self.begun(now)
         total = self._before(begun + low, min(begun + high, 0.0), density, begun)
         low = max(low, -begun)
         first_row, last_row = (now.row + int((now.offset + time) // self.round) for time in (low, high))
@@ -158,15 +165,13 @@ class Waves:
             begin, end = max(low - start, 0.0), min(high - start, self.round)
             if end <= begin:
                 continue
-            past = int(np.searchsorted(stored, row, side="right"))
-            first = int(np.searchsorted(stored, stored[past - 1], side="left"))
-            total += self._in_row(first, past, row - int(stored[past - 1]), begin, end, self._of(density, now))
+            total += self._in_row(row, begin, end, self._of(density, now))
         return total
 
-    def _in_row(self, first: int, past: int, leaped: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
-        """Integral over the offsets low to high of a row, `leaped` round trips later."""
-        store, piece = self.history.store, np.arange(first, past)
-        piece = piece[(store.theta_to[piece] > low) & (store.theta_from[piece] < high)]
-        begin = self.history.xi(piece, np.maximum(low - store.theta_from[piece], 0.0))
-        end = np.where(store.theta_to[piece] <= high, 1.0, self.history.xi(piece, high - store.theta_from[piece]))
-        return float(over(self.history, piece, begin, end, integrand, float(leaped)).sum())
+    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
+        """Integral over the offsets low to high (s) of a row."""
+        piece, begin, end = self.history.standing(row)
+        inside = (end > low) & (begin < high)
+        piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
+        leaped = (row - self.history.store.row[piece]).astype(float)
+        return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped).sum())
