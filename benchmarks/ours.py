@@ -11,6 +11,7 @@ from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.evolution import layout as at
 from stickslip.evolution.drive import split_time
+from stickslip.evolution.echoes import new_echoes
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
 from stickslip.evolution.setup import prepare, row_time
@@ -28,13 +29,14 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     count[at.TO_THE_END] = 1  # nothing goes on behind it
     first_state, first_count = state.copy(), count.copy()
     store, scratch = at.new_store(CAPACITY, case.problem.friction.state is not None), np.zeros((WORK_ROWS, at.TERMS))
-    table = lend(setup, state, count, scratch, store)
+    echoes = new_echoes(CAPACITY)
+    table = lend(setup, state, count, scratch, store, echoes)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 
-    lent = (setup, state, count, scratch, store)  # the table holds their addresses only: they live as long as the runner
+    lent = (setup, state, count, scratch, store, echoes)  # the table holds their addresses only: they live as long as the runner
 
     def run() -> None:
-        _, state, count, _, _ = lent
+        _, state, count, *_ = lent
         state[:] = first_state
         count[:] = first_count
         code = kernel(table, last_row, last_theta, BUDGET)

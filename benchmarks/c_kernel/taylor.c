@@ -246,7 +246,8 @@ static void record(Run *r, double xi_to) {
         int64_t n = r->count[LENGTH], *whole = r->whole + WHOLE * n;
         double *real = r->real + REAL * n;
         whole[S_ROW] = r->count[ROW], whole[S_MODE] = r->count[MODE], whole[S_PIECE] = r->count[PIECE];
-        whole[S_JUMP] = r->count[JUMP], whole[S_CAUSE] = r->count[CAUSE];
+        whole[S_JUMP] = r->count[JUMP], whole[S_CAUSE] = r->count[CAUSE], whole[S_ECHO_OF] = r->count[ECHO_OF];
+        real[S_AMPLIFIED] = real[S_GAIN] = NAN;
         real[S_THETA_FROM] = theta_from, real[S_THETA_TO] = theta_to;
         real[S_SPEED] = (r->state[SPEED] + 2.0 * r->state[BEND] * xi) * width, real[S_BEND] = r->state[BEND] * width * width;
         real[S_SLIP] = r->state[SLIP_NOW], real[S_LAW_SLIP] = r->state[LAW_SLIP];
@@ -424,13 +425,14 @@ static int next_piece(Run *r) {
         int64_t source = r->count[SOURCE];
         if (source >= r->loads - 1) return 0;
         state[THETA_FROM] = r->first_theta[source], state[THETA_TO] = r->first_theta[source + 1];
-        state[SPEED] = state[THETA_TO] - state[THETA_FROM], state[BEND] = 0.0;
+        state[SPEED] = state[THETA_TO] - state[THETA_FROM], state[BEND] = 0.0, r->count[ECHO_OF] = -1;
         r->load[0] = r->count[IS_BLOCK] && r->count[ROW] > 0 ? state[LOAD_NOW] : r->first_load[source];
         r->load[1] = r->first_slope[source] * state[SPEED];
         r->count[ARRIVING] = r->count[ROW] == 0 && source == 0 ? START : NO_CAUSE;
     } else {
         int64_t source = r->count[PREVIOUS_FROM] + r->count[SOURCE];
         if (source >= r->count[PREVIOUS_TO]) return 0;
+        r->count[ECHO_OF] = source;
         double *real = r->real + REAL * source, *rate = r->all_rate + TERMS * source, *load = r->all_load + TERMS * source;
         state[THETA_FROM] = real[S_THETA_FROM], state[THETA_TO] = real[S_THETA_TO];
         state[SPEED] = real[S_SPEED], state[BEND] = real[S_BEND];

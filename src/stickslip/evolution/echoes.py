@@ -20,7 +20,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.branch import rest_limit
 from stickslip.evolution.compiled import ahead, bits_of, inlined, kernel
 from stickslip.evolution.layout import TERMS, Floats, Integers
-from stickslip.evolution.polynomial import maximum
+from stickslip.evolution.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.evolution.workspace import REAL, WHOLE, Run, borrow
 
 LEFT, RIGHT, FIRST_UP, FIRST_DOWN, TRIP, RANK = range(6)
@@ -197,6 +197,20 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 # ---- a round trip -----------------------------------------------------------------------------------------------------------
 
 
+@inlined
+def leave_out_ends(run: Run, real: Floats) -> None:
+    """Of the load in a piece leave only what is not too near its ends: slip there alone would be too short to be resolved."""
+    width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
+    share = run.par[at.SHORTEST] / width
+    if share >= 0.5:
+        mean = mean_of(run.part, real[at.S_SPEED], real[at.S_BEND], width)
+        fill(run.part, 0.0)
+        run.part[0] = mean
+    elif share > 0.0:
+        restrict(run.part, share, 1.0 - 2.0 * share, run.spare)
+        copy(run.spare, run.part, TERMS)
+
+
 @kernel
 def add(run: Run, n: int) -> None:
     """A piece that the round trip has passed: behind all those that it has passed before."""
@@ -204,7 +218,9 @@ def add(run: Run, n: int) -> None:
     load, rate = ahead(run.stored_load, TERMS * n), ahead(run.stored_rate, TERMS * n)
     for k in range(TERMS):
         run.part[k] = load[k] - 2.0 * run.par[at.IMPEDANCE] * rate[k]
-    heights[PHASE], heights[HIGH], heights[LOW] = run.real[REAL * n + at.S_THETA_FROM], maximum(run.part), maximum(run.part, -1.0)
+    real = ahead(run.real, REAL * n)
+    leave_out_ends(run, real)
+    heights[PHASE], heights[HIGH], heights[LOW] = real[at.S_THETA_FROM], maximum(run.part), maximum(run.part, -1.0)
     node[LEFT] = node[RIGHT] = NOTHING
     node[FIRST_UP] = node[FIRST_DOWN] = n
     node[TRIP] = run.whole[WHOLE * n + at.S_ROW]

@@ -15,7 +15,7 @@ from stickslip.evolution.echoes import FOREVER, NOTHING, end_trip, next_echo, pa
 from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
-from stickslip.evolution.polynomial import fill, maximum, total
+from stickslip.evolution.polynomial import fill, maximum, mean_of, total
 from stickslip.evolution.record import note_degree
 from stickslip.evolution.slip import slip, slip_implicitly
 from stickslip.evolution.stick import arrive, stick
@@ -23,6 +23,8 @@ from stickslip.evolution.workspace import EXIT, REAL, WHOLE, Run, borrow
 
 ROOM = 8
 LARGEST_STALL = 200
+LARGEST_STORM = 10_000
+"""More steps in slip that are too short to be resolved than others by which a run ends: they would go on without end."""
 FORGOTTEN = 1e-17
 
 
@@ -46,6 +48,8 @@ def first_piece(run: Run) -> bool:
     if run.counts[at.IS_BLOCK] == 1 and run.counts[at.ROW] > 0:
         run.load[0] = run.state[at.LOAD_NOW] + rows_leaped(run, run.counts[at.LENGTH] - 1) * run.par[at.RAMP]
     run.counts[at.ECHO_OF] = -1
+    # in the first round trip of a slab the start itself comes back from the driver, from half of it on
+    run.state[at.AMPLIFIED] = math.nan if run.counts[at.IS_BLOCK] == 1 else 1.0 if source == 0 else abs(run.par[at.REFLECTION])
     run.counts[at.ARRIVING] = at.NO_CAUSE
     if run.counts[at.ROW] == 0 and source == 0:
         run.counts[at.ARRIVING] = at.START
@@ -74,14 +78,27 @@ def echo_piece(run: Run) -> bool:
     )
     run.state[at.THETA_FROM], run.state[at.THETA_TO] = real[at.S_THETA_FROM], real[at.S_THETA_TO]
     run.state[at.SPEED], run.state[at.BEND] = real[at.S_SPEED], real[at.S_BEND]
+    run.state[at.AMPLIFIED] = real[at.S_AMPLIFIED] * real[at.S_GAIN]
     for k in range(TERMS):
         run.load[k] = par[at.REFLECTION] * (2.0 * par[at.IMPEDANCE] * rate[k] - load[k])
     time = run.counts[at.ROW] * par[at.ROW_TIME] + run.state[at.THETA_FROM]
     run.load[0] += par[at.INFLOW] + par[at.INFLOW_RATE] * time - par[at.REFLECTION] * rows_leaped(run, source) * par[at.RAMP]
     run.load[1] += par[at.INFLOW_RATE] * run.state[at.SPEED]
     run.load[2] += par[at.INFLOW_RATE] * run.state[at.BEND]
-    run.counts[at.ARRIVING] = at.ECHO if run.whole[WHOLE * source + at.S_JUMP] == 1 and par[at.REFLECTION] != 0.0 else at.NO_CAUSE
+    jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts[at.LUMPED] == 1
+    run.counts[at.LUMPED] = 1 if run.state[at.THETA_TO] - run.state[at.THETA_FROM] < par[at.SHORTEST] else 0
+    if run.counts[at.LUMPED] == 1:
+        lump(run)
+    run.counts[at.ARRIVING] = at.ECHO if (jumps or run.counts[at.LUMPED] == 1) and par[at.REFLECTION] != 0.0 else at.NO_CAUSE
     return True
+
+
+@kernel
+def lump(run: Run) -> None:
+    """A piece too short to be resolved: its load is its mean, so that it slips as a whole or not at all."""
+    mean = mean_of(run.load, run.state[at.SPEED], run.state[at.BEND], run.state[at.THETA_TO] - run.state[at.THETA_FROM])
+    fill(run.load, 0.0)
+    run.load[0] = mean
 
 
 @kernel
@@ -200,7 +217,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     while True:
         if run.counts[at.LENGTH] + ROOM > run.capacity:
             return at.FULL
-        if run.counts[at.STALLED] > LARGEST_STALL:
+        if run.counts[at.STALLED] > LARGEST_STALL or run.counts[at.TINY] > LARGEST_STORM:
             return at.STORM
         budget -= 1
         if budget < 0:

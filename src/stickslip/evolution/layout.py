@@ -22,8 +22,9 @@ TERMS = ORDER + 1
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
 STATE_SCALE, RATE_FLOOR = 17, 18
+SHORTEST = 20  # pieces of load that are shorter, s, are lumped
 HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
-PARAMETERS = 20
+PARAMETERS = 21
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
@@ -31,7 +32,8 @@ THETA_FROM, THETA_TO, SPEED, BEND = range(6, 10)  # theta = THETA_FROM + SPEED x
 TABLE_SLIP, FOLD_RATE = range(10, 12)  # law slip at which Setup.branch holds; slip rate at the moving fold that is approached
 STATE_NOW = 12  # of the friction law, as its formulas see it
 NEW_SINCE, TAKEN_TO = 13, 14  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees
-STATES = 15
+AMPLIFIED, GAIN = 15, 16  # what has become of an error of the load in the present piece; by how much slip multiplies it
+STATES = 17
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
@@ -39,7 +41,8 @@ MOVED, READY, JUMP, CAUSE, ECHO_OF, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_
 HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
 IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
 SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
-COUNTS = 35
+LUMPED, TINY = 35, 36  # the piece of load is one that was lumped; steps in slip beyond resolution, less the others
+COUNTS = 37
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -60,7 +63,7 @@ FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
 
 # ---- columns of Store's tables ----------------------------------------------------------------------------------------------
 S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE, S_ECHO_OF = range(6)
-S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP = range(6)
+S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP, S_AMPLIFIED, S_GAIN = range(8)
 
 
 class Setup(NamedTuple):
@@ -136,11 +139,21 @@ class Store(NamedTuple):
         """Slip that the law counts at the start of the piece, minus its initial value, m."""
         return self.real[:, S_LAW_SLIP]
 
+    @property
+    def amplified(self) -> Floats:
+        """What has become here of an error of 1 in the load at the start of the run; NaN where that is not known (see `GAIN`)."""
+        return self.real[:, S_AMPLIFIED]
+
+    @property
+    def gain(self) -> Floats:
+        """By how much the echo of an error in the load is larger than the error; NaN where more than the phase decides that."""
+        return self.real[:, S_GAIN]
+
 
 def new_store(capacity: int, has_state: bool = False) -> Store:
     """An empty history with room for so many pieces."""
     load, rate, state = (np.empty((rows, TERMS)) for rows in (capacity, capacity, capacity if has_state else 0))
-    return Store(np.empty((capacity, 6), np.int64), np.empty((capacity, 6)), load, rate, state)
+    return Store(np.empty((capacity, 6), np.int64), np.empty((capacity, 8)), load, rate, state)
 
 
 def resized(store: Store, length: int, capacity: int) -> Store:

@@ -142,6 +142,12 @@ def integral(c: Floats, end: float, shift: int) -> float:
     return value * end if shift == 1 else value * end * end
 
 
+@inlined
+def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
+    """Mean in time of a polynomial on a piece so wide (s), of which theta = speed x + bend x^2."""
+    return (speed * integral(c, 1.0, 1) + 2.0 * bend * integral(c, 1.0, 2)) / width
+
+
 @kernel
 def _falling_root(c: Floats) -> float:
     """The root in [-1, 1] of a polynomial that falls there through zero: Newton's method kept inside its bracket."""

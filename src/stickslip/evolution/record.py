@@ -7,6 +7,9 @@ from stickslip.evolution.compiled import ahead, inlined
 from stickslip.evolution.polynomial import degree, fill
 from stickslip.evolution.workspace import DEGREE, REAL, WHOLE, Run
 
+RESOLVED = 1e-12
+"""Steps, as a share of a row, that double precision tells apart well enough."""
+
 
 @inlined
 def theta_at(run: Run, xi: float) -> float:
@@ -37,6 +40,11 @@ def record(run: Run, xi_to: float) -> None:
         real[at.S_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * xi) * width
         real[at.S_BEND] = run.state[at.BEND] * width * width
         real[at.S_SLIP], real[at.S_LAW_SLIP] = run.state[at.SLIP_NOW], run.state[at.LAW_SLIP]
+        real[at.S_AMPLIFIED] = run.state[at.AMPLIFIED]
+        real[at.S_GAIN] = abs(run.par[at.REFLECTION]) * (run.state[at.GAIN] if run.counts[at.MODE] != 0 else 1.0)
+        if run.counts[at.MODE] != 0:
+            tiny = theta_to - theta_from < RESOLVED * run.par[at.ROW_TIME]
+            run.counts[at.TINY] = run.counts[at.TINY] + 1 if tiny else max(run.counts[at.TINY] - 1, 0)
         run.counts[at.LENGTH] = n + 1
         run.counts[at.JUMP] = run.counts[at.CAUSE] = run.counts[at.STALLED] = 0
     else:

@@ -30,13 +30,14 @@ def row_time(problem: Problem) -> float:
     return body.period if problem.friction.sticks else max(body.period, DAY)
 
 
-def prepare(problem: Problem, rtol: float) -> tuple[Setup, at.Floats, at.Integers]:
+def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup, at.Floats, at.Integers]:
     """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
 
     Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
     """
     setup, state, count = _prepared(problem, rule_of(problem))
     par = setup.par.copy()
+    par[at.SHORTEST] = shortest
     par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, max(1e-10, 10.0 * rtol)
     return setup._replace(par=par), state.copy(), count.copy()
 

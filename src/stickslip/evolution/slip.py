@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, branch_exit, constants_of, load_ahead, rate_from_here, rate_on_branch
+from stickslip.evolution.branch import TIE, branch_exit, constants_of, friction_at, load_ahead, rate_from_here, rate_on_branch
 from stickslip.evolution.compiled import ahead, call_jet, inlined, kernel
 from stickslip.evolution.fold import (
     APPROACHING,
@@ -30,6 +30,7 @@ from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
     RECIPROCAL,
+    evaluate,
     first_descent,
     integral,
     magnitude,
@@ -281,11 +282,25 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]
+    note_gain(run, evaluate(rate, 0.5))
     record(run, to)
     run.counts[at.MOVED], run.counts[at.EDGE] = 1, 0
     run.state[at.SLIP_NOW] += direction * grown
     run.state[at.LAW_SLIP] += run.k[at.K_CHI] * grown
     run.state[at.RATE_NOW] = direction * max(rate_end, 0.0)
+
+
+@inlined
+def note_gain(run: Run, rate: float) -> None:
+    """By how much slip multiplies an error of the load (Z v + S mu(v) = load, and 2 Z v - load goes back): |2 Z / g'(v) - 1|.
+
+    Where slip, inertia or a state decide with it, what becomes of an error is no matter of its phase alone.
+    """
+    if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.FOLDS_MOVE] == 0:
+        friction_at(run, run.state[at.LAW_SLIP], abs(rate), run.value)
+        run.state[at.GAIN] = abs(2.0 * run.par[at.IMPEDANCE] / (run.par[at.IMPEDANCE] + run.value[1]) - 1.0)
+    else:
+        run.state[at.GAIN] = math.nan
 
 
 @inlined

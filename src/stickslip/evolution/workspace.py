@@ -20,7 +20,7 @@ STATES = at.STATES + 1
 DEGREE = at.COUNTS  # of the piece of load: its coefficients beyond are zero
 COUNTS = at.COUNTS + 1
 
-WHOLE, REAL = 6, 6
+WHOLE, REAL = 6, 8
 """Columns of the history's tables."""
 
 MATRIX_ROWS = 18

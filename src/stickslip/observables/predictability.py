@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.resistance import Resistance, resistance
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.errors import InputError
 from stickslip.evolution.moving_branches import folds_move, is_algebraic
@@ -80,34 +79,12 @@ def predictability(solution: Solution) -> Predictability:
     if not isinstance(body, ElasticSlab) or not is_algebraic(problem) or folds_move(problem):
         raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")
     history = solution.history
-    row, theta, factors = history.store.row, history.store.theta_from, _factors(solution, resistance(problem))
-    back = theta >= 0.5 * history.row_time  # in the first round trip the start itself comes back from the driver there
-    grown = np.abs(_along(history.store.echo_of, factors, np.where((row == 0) & back, abs(body.reflection), 1.0)))
+    grown = history.store.amplified
     error = _first_error(solution, body)
     scale = _scale(problem)
     lost = np.flatnonzero(grown * error > LOST * scale)
     horizon = float(history.start[lost[0]]) if lost.size else math.inf
     return Predictability(history.start, grown, error, scale, horizon)
-
-
-def _factors(solution: Solution, g: Resistance) -> Floats:
-    """What a disturbance in the middle of each piece is multiplied by when it returns."""
-    store, body = solution.history.store, solution.problem.body
-    assert isinstance(body, ElasticSlab)
-    half = 0.5 ** np.arange(store.rate.shape[1])
-    slips = store.mode != 0
-    factors = np.full(len(store.whole), body.reflection)
-    factors[slips] *= 2.0 * body.impedance / g.slope(np.abs(store.rate[slips] @ half)) - 1.0
-    factors[~slips] *= -1.0
-    return factors
-
-
-def _along(echo_of: NDArray[np.int64], factors: Floats, first: Floats) -> Floats:
-    """Products of the factors from each piece to its echoes."""
-    grown = first
-    for n in np.flatnonzero(echo_of >= 0):
-        grown[n] = grown[echo_of[n]] * factors[echo_of[n]]
-    return grown
 
 
 def _first_error(solution: Solution, body: ElasticSlab) -> float:
