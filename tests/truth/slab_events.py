@@ -35,7 +35,6 @@ DIGITS, MORE_DIGITS = 50, 70
 """A table is written only if both give the same digits."""
 FEWER, MANY = 17, 25
 """Significant digits in the tables: of numbers, and of offsets, which tell micro-events apart."""
-HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True)
@@ -157,7 +156,6 @@ class Ring:
         self.excess = mpf(excess)
         whole = Piece(mpf(0), contact.round_trip, self.excess, self.excess + contact.ramp, 0, None)
         whole.next = whole
-        self.pieces = 1
         self.waiting: list[tuple[int, mpf, int, Piece]] = []
         self._wait(whole)
 
@@ -180,9 +178,9 @@ class Ring:
 
     def phase(self, piece: Piece, row: int, load: mpf) -> mpf:
         """The offset at which the load of a piece has a value in a row."""
-        return self._back(piece.slips, row, load)[0]
+        return self.back(piece.slips, row, load)[0]
 
-    def _back(self, slips: Slips | None, row: int, load: mpf) -> tuple[mpf, mpf]:
+    def back(self, slips: Slips | None, row: int, load: mpf) -> tuple[mpf, mpf]:
         """Offset of a load, and the growth of a disturbance there: back through all slips to the first round trip."""
         contact, growth = self.contact, mpf(1)
         while slips is not None:
@@ -203,14 +201,13 @@ class Ring:
         later = Piece(where, piece.end, load, last, row, piece.slips)
         later.next, piece.next = piece.next, later
         piece.end, piece.first, piece.last, piece.row = where, first, load, row
-        self.pieces += 1
         return later
 
     def _event(self, piece: Piece, row: int) -> Event:
         """Slip from the start of a piece on, through every piece under which the contact goes on slipping."""
         contact = self.contact
         generation = piece.slips.count if piece.slips else 0
-        began, growth = (row, piece.start), self._back(piece.slips, row, self.loads(piece, row)[0])[1]
+        began, growth = (row, piece.start), self.back(piece.slips, row, self.loads(piece, row)[0])[1]
         slip = lasted = peak = mpf(0)
         while True:
             first, last = self.loads(piece, row)
@@ -222,10 +219,9 @@ class Ring:
             slip += self._slip(piece, row, first, last)
             lasted += piece.end - piece.start
             peak = max(peak, contact.rate(first), contact.rate(last))
-            ended = (row, piece.end)
-            following, wraps = piece.next, piece.end == contact.round_trip
-            self._pass(piece, row, first, last)
-            row += wraps
+            ended, following = (row, piece.end), piece.next
+            row += piece.end == contact.round_trip
+            self._pass(piece, ended[0], first, last)
             if ends or self.loads(following, row)[0] < contact.fold:
                 return Event(*began, *ended, lasted, slip, peak, generation, log10(growth))
             piece = following
@@ -263,7 +259,7 @@ class Table:
     @property
     def path(self) -> Path:
         """Where the file lies."""
-        return HERE / self.name
+        return Path(__file__).with_name(self.name)
 
     def rows(self, count: int | None = None, digits: int = DIGITS) -> list[tuple[str, ...]]:
         """The first rows as text; all by default."""

@@ -114,7 +114,7 @@ def test_growth_is_the_slope_of_the_load() -> None:
         piece = max(pieces(ring), key=lambda piece: piece.end - piece.start)
         theta, step = (piece.start + piece.end) / 2, mpf("1e-12")
         here = load(contact, piece, piece.row, theta)
-        found, growth = ring._back(piece.slips, piece.row, here)
+        found, growth = ring.back(piece.slips, piece.row, here)
         assert abs(found - theta) < mpf("1e-40")
         slope = (load(contact, piece, piece.row, theta + step) - here) / step * contact.round_trip / contact.ramp
         assert growth < inf
