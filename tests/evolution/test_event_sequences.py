@@ -29,8 +29,8 @@ FOREVER = 1e12
 """s"""
 ALPHA_ONE_EVENTS = 57
 """All before the storm of micro-events begins."""
-MICRO_EVENTS = 600
-"""Of 8 215 of the first generation."""
+MICRO_EVENTS = 8216
+"""All of the first generation."""
 ROUNDING = 16 * np.finfo(float).eps
 FAST = Table("", Slab(alpha=1.0, pull_rate=0.1234), 120)
 """Pulled so fast that whole events break into fragments within the first 350 round trips; worked out here."""
@@ -107,13 +107,19 @@ def test_the_first_events_at_alpha_one() -> None:
 def test_the_first_micro_events_just_above_critical() -> None:
     """All cuts between micro-events are made in the same way: they are off alike, and sizes are as good as the slope is.
 
-    Not so phase 0, where the first two events begin.
+    Not so phase 0, where the first two events begin, and the few places where two steps of the first slip meet.
     """
     exact = truth(JUST_ABOVE_CRITICAL)[:MICRO_EVENTS]
     found = simulated(JUST_ABOVE_CRITICAL.slab, MICRO_EVENTS)
     assert (found.start_row == exact.start_row).all()
-    worst = time_errors(found, exact, JUST_ABOVE_CRITICAL.slab) | size_errors(found[2:], exact[2:], apart=0.0)
+    alike = np.abs(found.duration - exact.duration) <= ROUNDING * 10.0**exact.growth * exact.duration
+    alike &= exact.index > 1
+    assert (~alike).sum() < 2 + 10
+    worst = time_errors(found, exact, JUST_ABOVE_CRITICAL.slab) | size_errors(found[alike], exact[alike], apart=0.0)
     assert all(error <= 1.0 for error in worst.values()), worst
+    apart = 2.0 * offset_error(JUST_ABOVE_CRITICAL.slab, exact)
+    worst = size_errors(found[~alike], exact[~alike], apart)
+    assert worst["duration"] <= 1.0, worst
 
 
 def test_events_that_break_into_fragments() -> None:

@@ -24,7 +24,7 @@ from stickslip.evolution.workspace import EXIT, REAL, WHOLE, Run, borrow
 ROOM = 8
 LARGEST_STALL = 200
 LARGEST_STORM = 10_000
-"""More steps in slip that are too short to be resolved than others by which a run ends: they would go on without end."""
+"""So many more slips that are too short to be resolved than others end a run: they would go on without end."""
 FORGOTTEN = 1e-17
 
 

@@ -33,7 +33,8 @@ TABLE_SLIP, FOLD_RATE = range(10, 12)  # law slip at which Setup.branch holds; s
 STATE_NOW = 12  # of the friction law, as its formulas see it
 NEW_SINCE, TAKEN_TO = 13, 14  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees
 AMPLIFIED, GAIN = 15, 16  # what has become of an error of the load in the present piece; by how much slip multiplies it
-STATES = 17
+SLIP_SINCE = 17  # offset at which slip began
+STATES = 18
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
@@ -41,8 +42,8 @@ MOVED, READY, JUMP, CAUSE, ECHO_OF, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_
 HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
 IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
 SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
-LUMPED, TINY = 35, 36  # the piece of load is one that was lumped; steps in slip beyond resolution, less the others
-COUNTS = 37
+LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip began; slips beyond resolution, less others
+COUNTS = 38
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)

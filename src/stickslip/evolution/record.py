@@ -8,7 +8,7 @@ from stickslip.evolution.polynomial import degree, fill
 from stickslip.evolution.workspace import DEGREE, REAL, WHOLE, Run
 
 RESOLVED = 1e-12
-"""Steps, as a share of a row, that double precision tells apart well enough."""
+"""Slips, as a share of a row, of which double precision tells the ends apart well enough."""
 
 
 @inlined
@@ -42,14 +42,24 @@ def record(run: Run, xi_to: float) -> None:
         real[at.S_SLIP], real[at.S_LAW_SLIP] = run.state[at.SLIP_NOW], run.state[at.LAW_SLIP]
         real[at.S_AMPLIFIED] = run.state[at.AMPLIFIED]
         real[at.S_GAIN] = abs(run.par[at.REFLECTION]) * (run.state[at.GAIN] if run.counts[at.MODE] != 0 else 1.0)
-        if run.counts[at.MODE] != 0:
-            tiny = theta_to - theta_from < RESOLVED * run.par[at.ROW_TIME]
-            run.counts[at.TINY] = run.counts[at.TINY] + 1 if tiny else max(run.counts[at.TINY] - 1, 0)
+        note_slip(run, n, theta_from)
         run.counts[at.LENGTH] = n + 1
         run.counts[at.JUMP] = run.counts[at.CAUSE] = run.counts[at.STALLED] = 0
     else:
         run.counts[at.STALLED] += 1
     run.state[at.XI] = xi_to
+
+
+@inlined
+def note_slip(run: Run, n: int, theta: float) -> None:
+    """Where slip begins, and how many more slips were too short to be resolved than were not."""
+    slips, slipped = run.counts[at.MODE] != 0, n > 0 and run.whole[WHOLE * (n - 1) + at.S_MODE] != 0
+    if slips and not slipped:
+        run.counts[at.SLIP_ROW], run.state[at.SLIP_SINCE] = run.counts[at.ROW], theta
+    elif slipped and not slips:
+        lasted = (run.counts[at.ROW] - run.counts[at.SLIP_ROW]) * run.par[at.ROW_TIME] + (theta - run.state[at.SLIP_SINCE])
+        tiny = lasted < RESOLVED * run.par[at.ROW_TIME]
+        run.counts[at.TINY] = run.counts[at.TINY] + 1 if tiny else max(run.counts[at.TINY] - 1, 0)
 
 
 @inlined
