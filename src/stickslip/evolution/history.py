@@ -173,6 +173,22 @@ class History:
             return own, low, high
         return self.phases.standing(past - 1)
 
+    def echo_edges(self, begin: float, end: float, most: int) -> Floats:
+        """Times (s) between two times at which echoes of recorded pieces begin, where the contact rests; none if they are many."""
+        behind = np.append(self.start[1:], self.span[1])
+        found: list[Floats] = []
+        for n in np.flatnonzero(self.rests & (self.end < end) & (behind > begin)):
+            low, high = max(begin, float(self.end[n])), min(end, float(behind[n]))
+            _, phase, _ = self.phases.standing(int(n))
+            trips = (high - low) / self.row_time + 1.0
+            most -= int(min(trips * len(phase), 1e18))
+            if most < 0:
+                return np.empty(0)
+            first = np.floor((low + self.epoch.offset) / self.row_time) + self.epoch.row
+            edges = self.seconds(first + np.arange(int(trips) + 1)[:, None], phase).ravel()
+            found.append(edges[(edges > low) & (edges < high)])
+        return np.concatenate([*found, np.empty(0)])
+
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
         """Whether the contact rests behind each piece, unrecorded, until the next one or the end."""

@@ -78,8 +78,9 @@ class Readings:
 
     @cached_property
     def breaks(self) -> Floats:
-        """Times (s) at which pieces of the history meet, 0 and the end included."""
-        return np.append(self.history.start, self.history.end[-1:])
+        """Times (s) at which recorded pieces begin or end, 0 and the end of the run included."""
+        history = self.history
+        return np.append(np.union1d(history.start, history.end[history.rests]), history.span[1])
 
     @property
     def curves(self) -> tuple[Curve, ...]:
@@ -92,6 +93,7 @@ class Readings:
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
         start, end = self.shown[0] if start is None else start, self.shown[1] if end is None else end
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
+        breaks = np.union1d(breaks, self.history.echo_edges(start, end, points - len(breaks)))
         if len(breaks) > points:  # too many pieces to draw each: keep the shocks, and in every stretch where it is fastest
             shocks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
             breaks = np.union1d(shocks, self._fastest(breaks, points)) if len(shocks) <= points else self._fastest(breaks, points)
