@@ -47,18 +47,31 @@ def turning_points(
         for k in range(TERMS - 1):
             slope[k] = (k + 1) * p[k + 1]
         p[0] -= threshold
-        crossed = crossings(p, places)
+        crossed = 0 if keeps_its_sign(p) else crossings(p, places)
         for i in range(crossed):
             above = not above
             found = _note(piece, xi, rate, kind, found, n, places[i], threshold, 1 if above else -1)
         p[0] += threshold
-        for i in range(crossings(slope, places)):
+        turns = 0 if keeps_its_sign(slope) else crossings(slope, places)
+        for i in range(turns):
             height = evaluate(p, places[i])
             if height > threshold:
                 found = _note(piece, xi, rate, kind, found, n, places[i], height, 0)
         if above:
             found = _note(piece, xi, rate, kind, found, n, 1.0, p.sum(), 0)
     return found
+
+
+@kernel
+def keeps_its_sign(c: Floats) -> bool:
+    """Whether bounds show at once that p does not change sign on (0, 1]: Horner's rule in intervals, leading zeros divided out."""
+    low = high = 0.0
+    lead = 0
+    while lead < TERMS - 1 and c[lead] == 0.0:
+        lead += 1
+    for k in range(TERMS - 1, lead - 1, -1):
+        low, high = c[k] + min(low, 0.0), c[k] + max(high, 0.0)
+    return low > 0.0 or high < 0.0
 
 
 @kernel
