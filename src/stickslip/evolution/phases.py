@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.evolution.compiled import kernel
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.layout import Floats, Integers, Store, trimmed
 
 NOTHING = -1
 FEW = 64
@@ -122,7 +122,7 @@ def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Fl
     looked = FEW
     while True:
         first = max(len(store.whole) - looked, 0)
-        recent = Store(*(table[first:] for table in store))
+        recent = trimmed(store, len(store.whole), first)
         piece, low, high = Phases.of(recent).standing(len(recent.whole) - 1)
         if first == 0 or (low[0] == 0.0 and high[-1] == row_time and np.array_equal(low[1:], high[:-1])):
             return first + piece, low, high
