@@ -92,7 +92,7 @@ def test_peak_times_of_the_reconstructed_slab() -> None:
 
 def peak_times(run: ss.Solution) -> list[float]:
     """Times of the maxima of the slip rate above half the largest, from the event's own table of pulses."""
-    from stickslip.evolution.tables import walk
+    from stickslip.evolution.events import walk
 
     piece, xi, rate, _ = walk(run.history, 0.5 * run.events.peak_rate.max())
     tops: list[tuple[float, float]] = []

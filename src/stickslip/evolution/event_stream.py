@@ -12,19 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.history import History, Moments, horner
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.events import NOT_YET, SlipEvents
+from stickslip.evolution.history import History
+from stickslip.evolution.layout import Integers, Store
 from stickslip.evolution.setup import row_time
-from stickslip.evolution.tables import events_table, walk
+from stickslip.evolution.tables import event_rows
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
-
-PLACES = np.array([0.25, 0.5, 0.75, 1.0])
-"""Where in a piece a rise of the slip rate is looked for, as the table of events does it."""
-AT_ONCE = 256
-NOT_YET = -1
 
 
 class Place(NamedTuple):
@@ -53,18 +49,13 @@ class EventStream:
     def look(self, store: Store, length: int) -> Look:
         """What is new in the first `length` pieces of a history."""
         history = self.history(store, length)
-        piece, xi, _, kind = walk(history, self.threshold, self.first)
-        starts = np.flatnonzero(kind == 1)
-        place = piece[starts] + 0.5 * xi[starts]
+        events = SlipEvents.of(history, self.threshold, self.first)
+        place = events.piece[0] + 0.5 * events.xi[0]
         old = int(np.searchsorted(place, self.last_start.piece + 0.5 * self.last_start.xi, "right"))
-        ends = np.append(starts[1:], len(kind))[: len(starts)] - 1
-        known = []
-        for n in ends[old:]:
-            by = known_by(history, int(piece[n]), float(xi[n])) if kind[n] == -1 else NOT_YET
-            if by == NOT_YET:
-                break
-            known.append(by)
-        return Look(self, history, piece[starts], xi[starts], old, known)
+        new = events.some(slice(old, None))
+        by = new.known_by(history)
+        open_from = np.flatnonzero(~new.is_over | (by == NOT_YET))[:1]
+        return Look(self, history, events, old, by[: open_from[0]] if open_from.size else by)
 
     def history(self, store: Store, length: int) -> History:
         """The history so far."""
@@ -85,36 +76,23 @@ class Look:
 
     stream: EventStream
     history: History
-    start_piece: Integers
-    start_xi: Floats
+    events: SlipEvents
+    """Of which the first `old` were told before."""
     old: int
-    known_by: list[int]
+    known_by: Integers
     """For each new event the piece by which it is known."""
 
     def table(self, *, unknown: bool = False) -> pd.DataFrame:
         """Rows of the new events; on demand also of those that the end of the history leaves open."""
-        rows = events_table(self.history, self.stream.threshold, first=self.stream.first)
-        return rows.iloc[self.old : None if unknown else self.old + len(self.known_by)].reset_index(drop=True)
+        before = min(self.old, 1)  # whose start says when the first new one recurs
+        wanted = slice(self.old - before, None if unknown else self.old + len(self.known_by))
+        return event_rows(self.history, self.events.some(wanted)).iloc[before:].reset_index(drop=True)
 
     def tell(self) -> None:
         """The new events are old ones from now on; what lies well before the last of them is no longer needed."""
-        if not self.known_by:
+        if not len(self.known_by):
             return
         stream, last = self.stream, self.old + len(self.known_by) - 1
-        stream.first = int(self.start_piece[last])
-        stream.last_start = Place(stream.first, float(self.start_xi[last]))
+        stream.first = int(self.events.piece[0, last])
+        stream.last_start = Place(stream.first, float(self.events.xi[0, last]))
         stream.told += len(self.known_by)
-
-
-def known_by(history: History, piece: int, xi: float) -> int:
-    """The piece by which it is known what an event that ends here has left behind; NOT_YET where the history ends before."""
-    mode = history.store.mode
-    rate = abs(history.rate(Moments.inside(piece, xi))[0])
-    for begin in range(piece + 1, len(history), AT_ONCE):
-        turned = mode[begin : begin + AT_ONCE] != mode[piece]
-        same = int(np.argmax(turned)) if turned.any() else len(turned)
-        rates = history.store.rate[begin : begin + same]
-        rises = np.abs([horner(rates, np.full(same, x)) for x in PLACES]).max(axis=0) > rate
-        if same < len(turned) or rises.any():
-            return begin + (int(np.argmax(rises)) if rises.any() else same)
-    return NOT_YET

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
+from stickslip.evolution.compiled import kernel
 from stickslip.evolution.layout import Integers, Store
 from stickslip.evolution.phases import Phases
 from stickslip.problem import Problem
@@ -28,6 +29,17 @@ def horner(coefficients: Floats, x: Floats) -> Floats:
     return value
 
 
+@kernel
+def add_up(values: Floats, past: Integers, sums: Floats) -> None:
+    """Sums of the values that end at places, each from where the one before ends, term by term."""
+    begin = 0
+    for n in range(len(past)):
+        sums[n] = 0.0
+        for k in range(begin, past[n]):
+            sums[n] += values[k]
+        begin = past[n]
+
+
 class Epoch(NamedTuple):
     """A moment without rounding: whole rows (round trips of a slab) since t = 0, and an offset in s."""
 
@@ -37,6 +49,9 @@ class Epoch(NamedTuple):
 
 ROUNDING = 1e-13
 """Of the offsets of pieces that follow each other, relative to a row."""
+
+BLOCK = 1024
+"""Pieces that are integrated together: keeps the memory bounded, and in the cache."""
 
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""
@@ -147,16 +162,15 @@ class History:
         found.piece[n], found.leaped[n] = piece, row - self.store.row[piece]
         found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
 
-    def just_before(self, piece: int) -> Moments:
-        """The left limit at the start of a piece."""
-        previous = max(piece - 1, 0)
-        found = Moments.inside([previous], [1.0 if piece else 0.0])
-        found = replace(found, piece=found.piece.copy(), xi=found.xi.copy(), before=np.array([piece == 0]))
-        if self.rests[previous] and piece > 0:
-            row, phase = float(self.store.row[piece]), float(self.store.theta_from[piece])
+    def just_before(self, piece: Integers) -> Moments:
+        """The left limits at the starts of pieces."""
+        last = np.maximum(piece - 1, 0)
+        found = Moments(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
+        n = np.flatnonzero(self.rests[last] & (piece > 0))
+        if n.size:
+            row, phase = self.store.row[piece[n]].astype(float), self.store.theta_from[piece[n]]
             at_edge = phase == 0.0
-            place = np.array([row - at_edge]), np.array([self.row_time if at_edge else phase])
-            self._set_echoes(found, np.zeros(1, np.intp), *place, "left")
+            self._set_echoes(found, n, row - at_edge, np.where(at_edge, self.row_time, phase), "left")
         return found
 
     @cached_property
@@ -202,6 +216,11 @@ class History:
         store, piece, xi = self.store, at.piece, at.xi
         inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
         return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
+
+    def lasting(self, begin: Moments, end: Moments) -> Floats:
+        """Time from moments to others, s, without the rounding of either."""
+        (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
+        return np.asarray((later_row - row) * self.row_time + (later_offset - offset))
 
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
         """Place in [0, 1] of a time `local` s after the start of a piece."""
@@ -254,6 +273,16 @@ class History:
         earlier, later, behind = np.split(grown, [begin - first, last - first])
         sums = np.concatenate([-np.cumsum(earlier[::-1])[::-1], [0.0], np.cumsum(later)])
         return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
+
+    def slipped_within(self, begin: Moments, end: Moments) -> Floats:
+        """Slip from each of some recorded moments to a later one, m: as `slipped_since`, of all of them at once."""
+        past = np.cumsum(end.piece - begin.piece)
+        crossed = np.arange(past[-1] if len(past) else 0) + np.repeat(end.piece - past, end.piece - begin.piece)
+        blocks = np.array_split(crossed, len(crossed) // BLOCK + 1)
+        whole = np.concatenate([self.grown(Moments.inside(block, 1.0)) for block in blocks])
+        sums = np.empty(len(past))
+        add_up(whole, past, sums)
+        return sums + (self.grown(end) - self.grown(begin))
 
     def state(self, at: Moments) -> Floats:
         """State of the friction law as its formulas see it; 0 for a law without one."""

@@ -13,7 +13,7 @@ from stickslip.evolution.echoes import Echoes, new_echoes, replant
 from stickslip.evolution.echoes import resized as with_room
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
-from stickslip.evolution.phases import Phases
+from stickslip.evolution.phases import standing_behind
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
@@ -100,7 +100,7 @@ class RunInProgress:
         piece = min(piece, int(self.count[at.NEW_FROM if self.count[at.SPARSE] else at.PREVIOUS_FROM]))
         if piece == 0:
             return 0
-        standing, _, _ = Phases.of(at.trimmed(self.store, piece)).standing(piece - 1)
+        standing, _, _ = standing_behind(at.trimmed(self.store, piece), row_time(self.problem))
         kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
@@ -116,7 +116,7 @@ class RunInProgress:
         if self.count[at.SPARSE] == 0:
             return
         first = int(self.count[at.NEW_FROM])
-        pieces, low, _ = Phases.of(at.trimmed(self.store, first)).standing(first - 1)
+        pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
         past, ahead = low < self.state[at.NEW_SINCE], low >= self.state[at.TAKEN_TO]
         replant(self._table, pieces[past | ahead].astype(np.int64), int(past.sum()))
 

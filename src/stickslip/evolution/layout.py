@@ -165,9 +165,10 @@ def resized(store: Store, length: int, capacity: int) -> Store:
     return larger
 
 
-def trimmed(store: Store, length: int) -> Store:
-    """The history without its spare room (views, not copies)."""
-    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length], store.state[:length])
+def trimmed(store: Store, length: int, first: int = 0) -> Store:
+    """The history without its spare room, from a piece on (views, not copies)."""
+    kept = slice(first, length)
+    return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
 
 
 def keep_only(store: Store, length: int, kept: Integers) -> Integers:

@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.evolution.compiled import kernel
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.layout import Floats, Integers, Store, trimmed
 
 NOTHING = -1
+FEW = 64
+"""Pieces that are looked at first for what stands in the body."""
 
 
 @kernel
@@ -113,3 +115,15 @@ class Phases:
         low, high, piece = self.edges[first], self.edges[np.append(first[1:], len(leaf))], leaf[first]
         known = piece != NOTHING
         return piece[known], low[known], high[known]
+
+
+def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Floats, Floats]:
+    """What stands in the body behind a history, as `Phases.standing`: looks back no further than to where all phases are known."""
+    looked = FEW
+    while True:
+        first = max(len(store.whole) - looked, 0)
+        recent = trimmed(store, len(store.whole), first)
+        piece, low, high = Phases.of(recent).standing(len(recent.whole) - 1)
+        if first == 0 or (low[0] == 0.0 and high[-1] == row_time and np.array_equal(low[1:], high[:-1])):
+            return first + piece, low, high
+        looked *= 4

@@ -199,7 +199,7 @@ class CatalogueKeeper(Keeper):
 
     def note(self, run: RunInProgress, look: Look) -> None:
         """Their rows are written."""
-        if look.known_by:
+        if len(look.known_by):
             self.rows.append(look.table())
         super().note(run, look)
         self._remember(run)

@@ -55,9 +55,12 @@ class Rows:
         return self.growing.stat().st_size if self.growing.exists() else 0
 
     def append(self, rows: pd.DataFrame) -> None:
-        """Add rows; the first ones bring the names of the columns."""
+        """Add rows of numbers; the first ones bring the names of the columns."""
+        texts = [["" if value != value else repr(value) for value in rows[name].tolist()] for name in rows.columns]
         with self.growing.open("a", encoding="utf-8", newline="") as file:
-            rows.to_csv(file, index=False, header=file.tell() == 0)
+            if file.tell() == 0:
+                file.write(",".join(rows.columns) + "\n")
+            file.writelines(",".join(row) + "\n" for row in zip(*texts, strict=True))
 
     def sync(self) -> None:
         """Have what was written on the disk, before anything that counts on it."""
@@ -158,13 +161,11 @@ def read_csv(path: Path) -> Iterator[pd.DataFrame]:
 
 
 def _typed(texts: list[str]) -> list[Any]:
-    """Texts as what they were: a float is never written as an integer, and one that is not a number as nothing."""
-    for read in (int, lambda text: float(text or "nan")):
-        try:
-            return [read(text) for text in texts]
-        except ValueError:
-            pass
-    return texts
+    """Numbers as what they were: a float is never written as an integer, and one that is not a number as nothing."""
+    try:
+        return [int(text) for text in texts]
+    except ValueError:
+        return [float(text or "nan") for text in texts]
 
 
 def _to_parquet(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, Any]) -> None:
