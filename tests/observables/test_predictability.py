@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.predictability import predictability
+from stickslip.observables.predictability import predictability, predictability_of_events
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 TRIP = SLAB.two_way_time
@@ -47,13 +47,20 @@ def test_against_a_disturbed_run(driver: float) -> None:
 
 
 def test_the_horizon() -> None:
-    """Just above alpha_c an echo multiplies by 4e5 and the window is 3e-4 Pa wide: two echoes are beyond prediction."""
-    critical = ss.load_scenario("fig7-slab-critical")
-    found = predictability(ss.simulate(critical.problem, 20.0))
-    assert found.scale == pytest.approx(3e-4, rel=0.1)
-    assert found.largest > 1e4
-    assert found.horizon < 20.0
+    """Where 50 digits (`tests/truth`) say that the sequence is lost, at the default tolerance.
+
+    Just above alpha_c an echo multiplies by 4e5: the second generation of micro-events, from row 24 645 on, is the first whose
+    loads have been amplified twice. At alpha = 1 the round trips of events are lost from the 39th on, their order at the 57th.
+    """
+    critical = ss.load_scenario("fig7-slab-critical").problem
+    found = predictability(ss.simulate(critical, 24_700 * TRIP))
+    assert found.largest > 1e10
+    assert found.horizon / TRIP == pytest.approx(24_645, abs=1.0)
     assert "only statistics" in found.text
+    slow = ss.simulate(replace(critical, friction=WEAKENING), 1e12, events=58).catalogue(0.0)
+    of_events = predictability_of_events(slow, 1e-10)
+    assert slow.start[39] <= of_events.horizon <= slow.start[57]
+    assert slow.amplification[1:30].to_numpy() == pytest.approx(slow.amplification[1] ** np.arange(1, 30), rel=1e-3)
     calm = predictability(run_of(1.0, 5.0))
     assert math.isinf(calm.horizon)
     assert "throughout" in calm.text

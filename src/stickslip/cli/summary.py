@@ -26,7 +26,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary on standard output."""
     screen, force = console(), scenario.problem.load_unit
     screen.print(clean(scenario.title or scenario.name), style="bold")
-    screen.print(f"{solution.status.name}: {solution.status.message}")
+    screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
@@ -35,6 +35,8 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
     if solution.trapped_note:
         screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
+    if solution.horizon_note:
+        screen.print(f"predictability: {solution.horizon_note}\n", soft_wrap=True)
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
@@ -44,6 +46,8 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
+    if found.horizon_note:
+        screen.print(f"predictability: {found.horizon_note}", soft_wrap=True)
     for file in found.files:
         screen.print(f"written: {file}", soft_wrap=True)
 

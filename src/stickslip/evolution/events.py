@@ -187,6 +187,12 @@ class SlipEvents(NamedTuple):
         """When they end, or the history does."""
         return Moments.inside(self.piece[2], self.xi[2])
 
+    def largest(self, values: Floats) -> Floats:
+        """Of values by piece of the history, the largest in each event."""
+        ends = np.stack([self.piece[0], self.piece[2] + 1], axis=1).ravel()
+        found: Floats = np.maximum.reduceat(np.append(values, np.nan), ends)[::2] if len(ends) else np.empty(0)
+        return found
+
     def known_by(self, history: History) -> Integers:
         """The piece by which it is known what each leaves behind: there the contact has come to rest or turned, or the slip rate is
         seen above that at the end of the event. NOT_YET where the history ends before.

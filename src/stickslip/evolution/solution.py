@@ -114,6 +114,7 @@ class Solution(Readings):
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
             *([("trapped", self.trapped_note)] if self.trapped_note else []),
+            *([("horizon", self.horizon_note)] if self.horizon_note else []),
         ]
 
     @cached_property
@@ -122,6 +123,13 @@ class Solution(Readings):
         from stickslip.observables.energy import trapped_note
 
         return trapped_note(self)
+
+    @cached_property
+    def horizon_note(self) -> str:
+        """How long single events are predictable; empty where it is not known what becomes of an error (see `predictability`)."""
+        from stickslip.observables.predictability import is_followed, predictability
+
+        return predictability(self).text if is_followed(self.problem) else ""
 
     @cached_property
     def selection_note(self) -> str:

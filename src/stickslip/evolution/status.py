@@ -30,8 +30,8 @@ STATUSES = {
     LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
     STORM: Status(
         "event storm",
-        "events follow each other without any time between them, or are too short to be resolved: lump them (shortest_event) or"
-        " try a contact_mass, another law or another selection rule",
+        "events follow each other without any time between them, or are too short to be resolved: set shortest_event, or try a"
+        " contact_mass or another law",
         False,
     ),
     FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),

@@ -33,6 +33,7 @@ EVENT_COLUMNS = {
     "static_drop": ("load", "stiffness (G/h, or K) times slip"),
     "pulses": ("1", "maxima of |v| separated by minima below half the lower one"),
     "phase": ("1", "part of the row (round trip of a slab, period of a block) that has passed at the start"),
+    "amplification": ("1", "what has become, at most, of an error of 1 in the load at the start of the run; NaN if not known"),
     "start_row": ("1", "whole rows before the start"),
     "start_offset": ("s", "the rest: start = start_row * length of a row + start_offset, without rounding"),
 }
@@ -94,6 +95,7 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
         "static_drop": history.problem.body.stiffness * slip,
         "pulses": events.pulses,
         "phase": offset / history.row_time,
+        "amplification": events.largest(history.store.amplified),
         "start_row": row,
         "start_offset": offset,
     }

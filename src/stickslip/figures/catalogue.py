@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from stickslip.errors import InputError
 from stickslip.evolution.solution import Solution
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, quantity, styled, time_unit, zero_line
+from stickslip.observables.predictability import is_followed, predictability
 
 Floats = NDArray[np.float64]
 
@@ -50,9 +52,15 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     ):
         contents[f"{name}_time"] = quantity(f"{name}_point", time, "time", "t", "s")
         contents[f"{name}_slip"] = quantity(f"{name}_point", slip, "slip", "u", "m")
+    contents["horizon"] = quantity((), _horizon(solution), "end of what can be predicted event by event", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
     title = f"{type(solution.problem.body).kind.replace('-', ' ')}, {type(solution.problem.friction).kind} friction"
     return xr.Dataset(contents, attrs={"title": f"{title}: {len(table)} slip event{'s' if len(table) > 1 else ''}"})
+
+
+def _horizon(solution: Solution) -> float:
+    """Time (s) from which on only statistics mean anything; inf if there is none, or it is not known."""
+    return predictability(solution).horizon if is_followed(solution.problem) else math.inf
 
 
 @styled
@@ -79,6 +87,10 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     axes.plot(start / size, slip, "o", color=BLUE, markersize=3)
     chosen = int(dataset["chosen"])
     axes.plot(start[chosen] / size, slip[chosen], "o", color=VERMILLION, markersize=6, markerfacecolor="none")
+    horizon = float(dataset["horizon"])
+    if horizon < end:
+        axes.axvspan(horizon / size, 1.02 * end / size, color=GREY, alpha=0.15, linewidth=0.0)
+        axes.annotate("only statistics", (horizon / size, 1.0), (3, -3), "data", textcoords="offset points", va="top", color=INK)
     axes.set_yscale("log" if _wide(slip) else "linear")
     axes.set_ylim(bottom=low)
     axes.set_xlim(-0.02 * end / size, 1.02 * end / size)

@@ -20,6 +20,7 @@ from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Statu
 from stickslip.evolution.tables import default_event_rate
 from stickslip.long_runs.resume import check_events, events_wanted, taken_up
 from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
+from stickslip.observables.predictability import is_followed, predictability_of_events
 from stickslip.problem import Problem
 from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution, write
 
@@ -145,11 +146,12 @@ class Paused:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """What came of a run: its rows, how many events are over, and what ended it."""
+    """What came of a run: its rows, how many events are over, what ended it, and a line on how long they are predictable."""
 
     rows: Rows | RowsInMemory
     events: int
     status: Status
+    horizon_note: str
 
     @property
     def files(self) -> list[Path]:
@@ -171,7 +173,8 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
     code = drive(run, orders.duration, keeper)
     check_started(run, code, "catalogue")
     keeper.finish(run, code)
-    return Catalogue(rows, stream.told, STATUSES[code])
+    note = predictability_of_events(rows.read(), run.rtol).text if is_followed(run.problem) else ""
+    return Catalogue(rows, stream.told, STATUSES[code], note)
 
 
 @dataclass(frozen=True)

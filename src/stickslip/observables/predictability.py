@@ -17,48 +17,53 @@ from numpy.typing import NDArray
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.uniqueness import uniqueness
 from stickslip.errors import InputError
 from stickslip.evolution.moving_branches import folds_move, is_algebraic
 from stickslip.evolution.setup import SAFETY
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from stickslip.evolution.solution import Solution
 
 Floats = NDArray[np.float64]
 
 LOST = 0.1
-"""Of what makes an event another one: a disturbance this large ends the horizon."""
+"""A disturbance of so large a share of the waves that an event sends out makes it another one: it ends the horizon."""
 
 
 @dataclass(frozen=True)
 class Predictability:
     """What `predictability` found.
 
-    `time` (s) and `amplification` (times): for each piece of the history where it starts, and what has become there of a
-    disturbance of the load, 1 at the start of the run. `error` is the size of the first disturbance (Pa) that tolerance and
-    rounding make, `scale` (Pa) the change of the load that makes other events: the width of the window of several slip rates, or
-    where there is none what friction changes. `horizon` (s): from when on the one has grown to a tenth of the other; inf if it
-    does not in this run.
+    `time` (s) and `amplification` (times): where pieces of the history, or slip events, start, and what has become there of a
+    disturbance of the load, 1 at the start of the run. `error` is the first disturbance that tolerance and rounding make, as a
+    share of the waves 2 Z v that slip sends out. `horizon` (s): from when on it has grown to a tenth of them; inf if it does not.
     """
 
     time: Floats
     amplification: Floats
     error: float
-    scale: float
-    horizon: float
+
+    @property
+    def horizon(self) -> float:
+        """When single events stop to mean anything, s; inf if they do not in this run."""
+        lost = np.flatnonzero(self.amplification * self.error > LOST)
+        return float(self.time[lost[0]]) if lost.size else math.inf
 
     @property
     def largest(self) -> float:
         """The largest amplification anywhere in the run."""
-        return float(self.amplification.max(initial=1.0))
+        return float(np.nanmax(self.amplification, initial=1.0))
 
     @property
     def exponent(self) -> float:
         """ln(largest) over the time (s) at which it was reached: an estimate of the largest Lyapunov exponent, in 1/s."""
-        reached = float(self.time[int(np.argmax(self.amplification))]) if len(self.time) else 0.0
-        return math.log(self.largest) / reached if reached > 0.0 else 0.0
+        if not self.largest > 1.0:
+            return 0.0
+        reached = float(self.time[int(np.nanargmax(self.amplification))])
+        return math.log(self.largest) / reached if reached > 0.0 else math.inf
 
     @property
     def text(self) -> str:
@@ -75,26 +80,22 @@ def predictability(solution: Solution) -> Predictability:
 
     Raises InputError for any other problem: there slip, inertia or a state decide what becomes of a disturbance.
     """
-    problem, body = solution.problem, solution.problem.body
-    if not isinstance(body, ElasticSlab) or not is_algebraic(problem) or folds_move(problem):
+    problem, body, store = solution.problem, solution.problem.body, solution.history.store
+    if not is_followed(problem):
         raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")
-    history = solution.history
-    grown = history.store.amplified
-    error = _first_error(solution, body)
-    scale = _scale(problem)
-    lost = np.flatnonzero(grown * error > LOST * scale)
-    horizon = float(history.start[lost[0]]) if lost.size else math.inf
-    return Predictability(history.start, grown, error, scale, horizon)
-
-
-def _first_error(solution: Solution, body: ElasticSlab) -> float:
-    """What rounding makes of the load (kept as a difference from the strength), or the tolerance of the waves 2 Z v, in Pa."""
-    store = solution.history.store
+    assert isinstance(body, ElasticSlab)
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
-    return max(waves * solution.rtol * SAFETY, float(np.finfo(float).eps * np.abs(store.load[:, 0]).max()))
+    rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())  # of the load, kept as a difference from the strength
+    error = max(solution.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
+    return Predictability(solution.history.start, store.amplified, error)
 
 
-def _scale(problem: Problem) -> float:
-    """The change of the load (Pa) that makes other events."""
-    window = uniqueness(problem).window
-    return window[1] - window[0] if window and window[1] > window[0] else problem.normal * problem.friction.variation
+def predictability_of_events(events: pd.DataFrame, rtol: float) -> Predictability:
+    """The same of a catalogue, from its column "amplification", and of the tolerance `rtol` of the run that gave it."""
+    error = max(rtol * SAFETY, float(np.finfo(float).eps))
+    return Predictability(events.start.to_numpy(float), events.amplification.to_numpy(float), error)
+
+
+def is_followed(problem: Problem) -> bool:
+    """Whether it is known what becomes of a disturbance."""
+    return isinstance(problem.body, ElasticSlab) and is_algebraic(problem) and not folds_move(problem)
