@@ -90,7 +90,7 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     horizon = float(dataset["horizon"])
     if horizon < end:
         axes.axvspan(horizon / size, 1.02 * end / size, color=GREY, alpha=0.15, linewidth=0.0)
-        axes.annotate("only statistics", (horizon / size, 1.0), (3, -3), "data", textcoords="offset points", va="top", color=INK)
+        axes.annotate("only statistics ", (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha="right", color=INK)
     axes.set_yscale("log" if _wide(slip) else "linear")
     axes.set_ylim(bottom=low)
     axes.set_xlim(-0.02 * end / size, 1.02 * end / size)
