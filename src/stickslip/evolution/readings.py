@@ -17,6 +17,8 @@ from stickslip.problem import Problem
 if TYPE_CHECKING:
     import pandas as pd
 
+    from stickslip.observables.field import Field
+
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
@@ -69,6 +71,16 @@ class Readings:
             raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
         at, shape = self._at(t, "right")
         return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+
+    def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
+        """Displacement (m), velocity (m/s) and shear stress (Pa) inside the slab, x (m) away from the contact, at times t (s).
+
+        x and t are broadcast together: `field(x, t[:, None])` has a row a time. Raises InputError for a block and for x outside
+        the slab. See `stickslip.observables.field`.
+        """
+        from stickslip.observables.field import field
+
+        return field(self, x, t, side)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
