@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from stickslip.evolution.history import Floats, Side, horner
+from stickslip.evolution.history import Floats, Moments, Side
+from stickslip.evolution.layout import TERMS
 from stickslip.observables.waves import Waves
+
+POINTS: Floats = chebyshev.chebpts1(TERMS + 1)
+"""Where the wave of a piece is read: polynomials of the history, times the linear pace of time in xi, follow exactly."""
+TO_SERIES: Floats = np.linalg.inv(chebyshev.chebvander(POINTS, TERMS))
+"""From values at these points to coefficients of Chebyshev's series: without loss of digits."""
 
 
 class Stretch:
@@ -30,10 +38,12 @@ class Stretch:
         self.start: Floats = breaks[another]
         """Times (s) from which on another piece of the history stands, or the same one some whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]
-        store, impedance = self.history.store, waves.body.impedance
+        store = self.history.store
         self._origin = self.history.seconds(store.row[self._piece] + leaped, store.theta_from[self._piece])
-        self._leaving = 2.0 * impedance * store.rate[self._piece] - store.load[self._piece]
-        self._leaving[:, 0] -= leaped * self.history.ramp
+        count = len(POINTS)
+        places = Moments.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
+        self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
+        self._wave = TO_SERIES @ self._values
 
     def _candidates(self, low: float, high: float) -> Floats:
         """Times inside at which another piece may begin to stand: all phases of all pieces so far, in every round trip."""
@@ -51,14 +61,14 @@ class Stretch:
         inside = np.maximum(part, 0)
         since = time - self.first
         start = -self.waves.slope * since - self.waves.excess
-        return np.where(part < 0, start, horner(self._leaving[inside], self._xi(time, inside)))
+        return np.where(part < 0, start, _series(self._wave, inside, self._xi(time, inside)))
 
     def total(self, time: Floats) -> Floats:
         """Integral of that up to times (s) of the stretch, from its beginning, or the start of the run if that is later; Pa s."""
         part = np.maximum(self._part(time, "right"), 0)
         before = np.minimum(time - self.first, 0.0)
         start = -before * (0.5 * self.waves.slope * before + self.waves.excess)
-        return np.where(before < 0.0, start, self._sums[part] + horner(self._integral[part], self._xi(time, part)))
+        return np.where(before < 0.0, start, self._sums[part] + _series(self._integral, part, self._xi(time, part)))
 
     def _part(self, time: Floats, side: Side) -> NDArray[np.intp]:
         """Part in which each time lies, -1 before the run. Times within rounding of a break lie on it: `side` picks the part."""
@@ -72,20 +82,24 @@ class Stretch:
 
     @cached_property
     def _integral(self) -> Floats:
-        """Of w in time, from where each piece starts, as polynomials in xi: dtheta = (speed + 2 bend xi) dxi."""
-        speed, bend = (column[self._piece, None] for column in (self.history.store.speed, self.history.store.bend))
-        powers = np.arange(1, self._leaving.shape[1] + 1)
-        integral = np.zeros((len(self._piece), len(powers) + 2))
-        integral[:, 1:-1] = speed * self._leaving / powers
-        integral[:, 2:] += 2.0 * bend * self._leaving / (powers + 1)
-        return integral
+        """Of w in time, from where each piece starts: dtheta = (speed + 2 bend xi) dxi."""
+        speed, bend = (column[self._piece] for column in (self.history.store.speed, self.history.store.bend))
+        pace = speed + bend * (1.0 + POINTS[:, None])
+        return np.asarray(chebyshev.chebint(TO_SERIES @ (pace * self._values), scl=0.5, lbnd=-1.0, axis=0))
 
     @cached_property
     def _sums(self) -> Floats:
         """What is to be added to that: integrals up to the start of each part, less what the piece had before it."""
         parts = np.arange(len(self.start))
-        begin, end = (horner(self._integral, self._xi(time, parts)) for time in (self.start, np.append(self.start[1:], self.high)))
+        begin, end = (
+            _series(self._integral, parts, self._xi(time, parts)) for time in (self.start, np.append(self.start[1:], self.high))
+        )
         return np.append(0.0, np.cumsum(end - begin)[:-1]) - begin
+
+
+def _series(coefficients: Floats, part: NDArray[np.intp], xi: Floats) -> Floats:
+    """Chebyshev's series of the parts (one a column) at xi."""
+    return np.asarray(chebyshev.chebval(2.0 * xi - 1.0, coefficients[:, part], tensor=False))
 
 
 def rounding(time: Floats, row_time: float) -> Floats:

@@ -1,0 +1,371 @@
+"""The field inside the slab: wave equation, both boundaries, energy, fronts; exact, early and late.
+
+Tolerances are shares of the normal stress S, of the rate S/Z and of the displacement S h/G, without relative part, unless said.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import stickslip as ss
+from stickslip.observables.field import Field
+from tests.evolution import problems
+from tests.evolution.test_verified_numbers import (
+    IMPEDANCE,
+    MODULUS,
+    ROUND,
+    SLAB,
+    THICKNESS,
+    rate_law_slab,
+    slip_law_block,
+    slip_law_slab,
+)
+
+Floats = NDArray[np.float64]
+F = ss.friction
+ROUNDING = 1e-13
+DRIVERS = {"rigid": math.inf, "dead load": 0.0, "matched": 1.0, "softer": 0.3, "stiffer": 3.0}
+LAWS = {"slip law": problems.slip_law, "rate law": problems.rate_law}
+
+
+def random_run(driver: str, law: str, mass: float, seed: int) -> ss.Solution:
+    """Three round trips of a slab that slips at once; under a driver that gives way also with a far stress of its own."""
+    rng = np.random.default_rng([seed, 5, *driver.encode(), *law.encode()])
+    slab = problems.slab(rng)
+    slab = replace(slab, driver_impedance=DRIVERS[driver] * slab.impedance, contact_mass=mass * slab.density * slab.thickness)
+    problem = problems.problem(rng, slab, LAWS[law](rng, slab))
+    if driver != "rigid":
+        stress = rng.uniform(0.2, 1.0) * slab.normal_stress
+        problem = replace(problem, far_stress=stress, far_stress_rate=rng.uniform(0.0, 0.1) * stress / slab.two_way_time)
+    return ss.simulate(problem, 3.3 * slab.two_way_time, rtol=1e-12)
+
+
+@pytest.fixture(
+    scope="module",
+    params=[(driver, law, mass) for driver in DRIVERS for law in LAWS for mass in (0.0, 0.03)],
+    ids=lambda of: f"{of[0]}, {of[1]}, {'with' if of[2] else 'no'} contact mass",
+)
+def run(request: pytest.FixtureRequest) -> ss.Solution:
+    return random_run(*request.param, seed=1)
+
+
+def slab_of(run: ss.Solution) -> ss.ElasticSlab:
+    assert isinstance(run.problem.body, ss.ElasticSlab)
+    return run.problem.body
+
+
+def scales(slab: ss.ElasticSlab) -> Field:
+    """Displacement, rate and stress that the normal stress makes."""
+    stress = slab.normal_stress
+    return Field(*(np.asarray(size) for size in (stress / slab.stiffness, stress / slab.impedance, stress)))
+
+
+def moments(run: ss.Solution, count: int = 400) -> Floats:
+    return np.random.default_rng(7).uniform(0.0, run.history.duration, count)
+
+
+# ---- the equations, on random problems ----------------------------------------------------------------------------------------
+
+
+def parallelogram(run: ss.Solution, speed: float = 1.0) -> Field:
+    """What the corners of parallelograms of characteristics sum to, with alternating signs; zero for every wave of that speed."""
+    slab, time = slab_of(run), moments(run)
+    rng, duration = np.random.default_rng(8), run.history.duration
+    place = rng.uniform(0.0, slab.thickness, len(time))
+    room = np.minimum(np.minimum(place, slab.thickness - place) / slab.wave_speed, np.minimum(time, duration - time))
+    delay = room * rng.uniform(0.2, 0.9, len(time))
+    length = speed * slab.wave_speed * delay
+    corners = (place, time + delay), (place, time - delay), (place + length, time), (place - length, time)
+    later, earlier, ahead, behind = (run.field(*corner) for corner in corners)
+    sums = (np.abs(a + b - c - d) / size for a, b, c, d, size in zip(later, earlier, ahead, behind, scales(slab), strict=True))
+    return Field(*sums)
+
+
+def test_the_wave_equation(run: ss.Solution) -> None:
+    """d'Alembert: f(x, t + a) + f(x, t - a) = f(x + ca, t) + f(x - ca, t), for displacement, velocity and stress."""
+    assert max(float(error.max()) for error in parallelogram(run)) < ROUNDING
+    assert min(float(error.max()) for error in parallelogram(run, speed=1.01)) > 1e-6
+
+
+def test_the_contact(run: ss.Solution) -> None:
+    """Slip and slip rate are the contact's; the slab pulls it with beta - Z v, which without contact mass is the friction."""
+    slab, time = slab_of(run), moments(run)
+    size = scales(slab)
+    at = run.field(0.0, time)
+    rate = run.slip_rate(time)
+    assert np.array_equal(at.displacement, run.slip(time))
+    assert np.abs(at.velocity - rate).max() < ROUNDING * size.velocity
+    assert np.abs(at.stress + slab.impedance * rate - run.load(time)).max() < ROUNDING * size.stress
+    without_mass = float(np.abs(at.stress - run.traction(time)).max() / size.stress)
+    assert (without_mass < ROUNDING) if slab.contact_mass == 0.0 else (without_mass > 1e-6)
+    assert np.abs(rate).max() > 1e-3 * size.velocity
+
+
+def test_the_driver(run: ss.Solution) -> None:
+    """Rigid: u = D0 + V t. Else a half-space that moves at V under the far stress s: sigma = s(t) + Zd (V - v)."""
+    slab, problem, time = slab_of(run), run.problem, moments(run)
+    size = scales(slab)
+    at = run.field(slab.thickness, time)
+    if math.isinf(slab.driver_impedance):
+        pulled = problem.initial_slip + problem.load / slab.stiffness + problem.pull_rate * time
+        assert np.abs(at.displacement - pulled).max() < ROUNDING * size.displacement
+        assert np.abs(at.velocity - problem.pull_rate).max() < ROUNDING * size.velocity
+        assert np.ptp(at.stress) > 1e-3 * size.stress
+    else:
+        assert problem.far_stress is not None
+        far = problem.far_stress + problem.far_stress_rate * time
+        by_driver = far + slab.driver_impedance * (problem.pull_rate - at.velocity)
+        assert np.abs(at.stress - by_driver).max() < ROUNDING * size.stress
+        assert np.abs(at.velocity - problem.pull_rate).max() > 0.01 * size.velocity
+
+
+def test_the_start(run: ss.Solution) -> None:
+    """Before anything has moved: uniform stress, displacement and velocity linear in x; the driver may start to pull at once."""
+    slab, problem = slab_of(run), run.problem
+    x = np.linspace(0.0, slab.thickness, 33)
+    size = scales(slab)
+    start = run.field(x, 0.0, side="left")
+    assert np.abs(start.stress - problem.load).max() < 1e-15 * size.stress
+    assert np.abs(start.velocity - problem.pull_rate * x / slab.thickness).max() < 1e-15 * size.velocity
+    sheared = problem.initial_slip + problem.load * x / slab.shear_modulus
+    assert np.abs(start.displacement - sheared).max() < 1e-14 * size.displacement
+    for name in ("velocity", "stress"):
+        inside = slice(1, -1)
+        now = getattr(run.field(x, 0.0), name)
+        assert np.abs(now - getattr(start, name))[inside].max() < 1e-15 * getattr(size, name)
+
+
+def test_a_shorter_run_knows_the_same_field(run: ss.Solution) -> None:
+    """What is on its way to the contact comes from the past alone."""
+    slab = slab_of(run)
+    cut = 1.7 * slab.two_way_time
+    short = ss.simulate(run.problem, cut, rtol=1e-12)
+    x = np.linspace(0.0, slab.thickness, 101)
+    for name, size in zip(Field._fields, scales(slab), strict=True):
+        assert np.abs(getattr(short.field(x, cut), name) - getattr(run.field(x, cut), name)).max() < 1e-11 * size, name
+
+
+# ---- between fronts: gradients and energy --------------------------------------------------------------------------------------
+
+
+def fronts(run: ss.Solution, time: float) -> Floats:
+    """Places (m) of all that left the contact or the driver when pieces of the history met; both ends of the slab included."""
+    slab = slab_of(run)
+    left = np.concatenate([run.breaks, [0.5 * ROUND, -0.5 * slab.two_way_time]])
+    places = np.concatenate([time - left, left + slab.two_way_time - time]) * slab.wave_speed
+    inside = places[(places > 0.0) & (places < slab.thickness)]
+    return np.unique(np.concatenate([[0.0], inside, [slab.thickness]]))
+
+
+def gauss(breaks: Floats) -> tuple[Floats, Floats]:
+    """Nodes and weights between breaks."""
+    node, weight = np.polynomial.legendre.leggauss(24)
+    width = np.diff(breaks)[:, None]
+    return (breaks[:-1, None] + 0.5 * width * (1.0 + node)).ravel(), (0.5 * width * weight).ravel()
+
+
+SMOOTH = {
+    "slip law": slip_law_slab(50.0, 1e-3, extra_load=3430.0),
+    "rate law": rate_law_slab(),
+    "contact mass": replace(rate_law_slab(), body=replace(SLAB, contact_mass=1e6)),
+    "dead load": replace(rate_law_slab(), body=replace(SLAB, driver_impedance=0.0), pull_rate=0.3),
+    "softer driver": replace(rate_law_slab(), body=replace(SLAB, driver_impedance=3e6), pull_rate=0.3, far_stress=7e7),
+}
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("time", [1.3, 4.9, 7.0, 11.9])
+def test_stress_is_the_gradient_of_displacement(name: str, time: float) -> None:
+    """u(h) - u(0) is the integral of sigma / G over x, to 1e-12 of it; 1 % more stress would not do."""
+    run = ss.simulate(SMOOTH[name], 12.0)
+    x, weight = gauss(fronts(run, time))
+    low, high = run.field([0.0, THICKNESS], time).displacement
+    assert run.field(x, time).stress @ weight / MODULUS == pytest.approx(high - low, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("x", [0.0, 1234.5, 9e3, THICKNESS])
+def test_velocity_is_the_rate_of_displacement(name: str, x: float) -> None:
+    """1e-12 of the largest displacement since the start."""
+    run = ss.simulate(SMOOTH[name], 12.0)
+    delay = x / SLAB.wave_speed
+    breaks = np.concatenate([run.breaks + delay, run.breaks - delay + ROUND, [0.5 * ROUND - delay]])
+    breaks = np.unique(np.concatenate([[0.0], breaks[(breaks > 0.0) & (breaks < 12.0)], [12.0]]))
+    time, weight = gauss(breaks)
+    first, last = run.field(x, [0.0, 12.0]).displacement
+    assert run.field(x, time).velocity @ weight == pytest.approx(last - first, rel=1e-12, abs=1e-12 * (abs(last) + abs(first)))
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+@pytest.mark.parametrize("time", [1.3, 4.9, 7.0, 11.9])
+def test_its_energy_is_the_stored_one(name: str, time: float) -> None:
+    """rho v^2 / 2 + sigma^2 / 2G over the thickness, and the contact mass's: 1e-12 of the energy; 1e-3 more stress shows."""
+    run = ss.simulate(SMOOTH[name], 12.0)
+    slab = slab_of(run)
+
+    def energy(time: float, wrong: float = 1.0) -> float:
+        x, weight = gauss(fronts(run, time))
+        at = run.field(x, time)
+        density = 0.5 * slab.density * at.velocity**2 + 0.5 * (wrong * at.stress) ** 2 / MODULUS
+        return float(density @ weight) + 0.5 * slab.contact_mass * float(run.slip_rate(time)) ** 2
+
+    stored = float(run.energy(time).stored[0])
+    size = energy(0.0)
+    assert energy(time) - energy(0.0) == pytest.approx(stored, rel=0.0, abs=1e-12 * size)
+    assert energy(time, 1.001) - energy(time) > 1e-9 * size
+
+
+# ---- closed forms --------------------------------------------------------------------------------------------------------------
+
+
+def test_a_matched_driver_sends_nothing_back() -> None:
+    """Radiation damping: Z v = tau0 - S mu(u) for ever, and inside the slab the same a travel time later; then all has left.
+
+    mu rises from 0.3 at rate k S/Z per metre and second: v = v0 exp(-k t). Relative 1e-12 of the largest.
+    """
+    slab = replace(SLAB, driver_impedance=IMPEDANCE)
+    law = F.PiecewiseLinearSlip((0.0, 100.0), (0.3, 0.8))
+    run = ss.simulate(ss.Problem(slab, law, initial_load=7e7), 60.0, rtol=1e-13)
+    decay, rate = 0.5 / 100.0 * slab.normal_stress / IMPEDANCE, 4e7 / IMPEDANCE
+    x, t = np.linspace(0.0, THICKNESS, 41), np.linspace(0.0, 60.0, 101)[1:, None]
+    left = t - x / slab.wave_speed
+    velocity = np.where(left >= 0.0, rate * np.exp(-decay * np.maximum(left, 0.0)), 0.0)
+    off_front = np.abs(left) > 1e-9
+    at = run.field(x, t)
+    assert np.abs(at.velocity - velocity)[off_front].max() < 1e-12 * rate
+    assert np.abs(at.stress - (7e7 - IMPEDANCE * velocity))[off_front].max() < 1e-12 * 7e7
+    moved = rate / decay * -np.expm1(-decay * np.maximum(left, 0.0))
+    assert np.abs(at.displacement - (7e7 * x / MODULUS + moved)).max() < 1e-12 * rate / decay
+    assert np.abs(run.load(t) - 7e7).max() == 0.0
+
+
+DROP, AFTER = 5e7, 3e7  # Coulomb: 0.8 and 0.3 of 100 MPa
+
+
+def coulomb() -> ss.Solution:
+    return ss.simulate(ss.Problem(SLAB, F.Coulomb(0.8, 0.3), pull_rate=1e-12, initial_excess=0.0), 8.0)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.5, 0.9])
+def test_fronts_have_two_sides(place: float) -> None:
+    """Coulomb friction: a step leaves the contact at 0, comes back from the driver at h/c, and brings the contact to rest at R.
+
+    Before, between and behind, rate and stress are 0, 80 MPa; 50 MPa / Z, 30 MPa; 0, -20 MPa: relative 1e-9 (the slow driver).
+    """
+    run, x = coulomb(), place * THICKNESS
+    going, coming = x / SLAB.wave_speed, ROUND - x / SLAB.wave_speed
+    states = {
+        (going, "left"): (0.0, 8e7),
+        (going, "right"): (DROP, AFTER),
+        (coming, "left"): (DROP, AFTER),
+        (coming, "right"): (0.0, -2e7),
+    }
+    for (time, side), (moving, stress) in states.items():
+        at = run.field(x, time, side)
+        assert float(at.velocity) * IMPEDANCE == pytest.approx(moving, rel=1e-9, abs=0.1)
+        assert float(at.stress) == pytest.approx(stress, rel=1e-9, abs=0.1)
+    near = run.field(x, [going * (1 - 1e-9), going * (1 + 1e-9)] if place else [1e-9, 2e-9]).stress
+    assert (near[0] > 7.9e7) == (place > 0.0)
+    assert near[1] == pytest.approx(AFTER, rel=1e-9, abs=0.0)
+
+
+def test_stress_after_all_is_uniform_and_far_below() -> None:
+    """S (2 muD - muS) all through the slab, and u = D0 x / h on top of the slip 2 (muS - muD) S h / G: relative 1e-12."""
+    x = np.linspace(0.0, THICKNESS, 11)
+    at = coulomb().field(x, 7.0)
+    slip = 2.0 * DROP * THICKNESS / MODULUS
+    assert at.stress == pytest.approx(np.full(11, -2e7), rel=1e-9, abs=0.0)
+    assert at.displacement == pytest.approx(slip - 2e7 * x / MODULUS, rel=1e-9, abs=0.0)
+
+
+# ---- late, in local time, and what users get wrong -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e6])
+def test_the_same_field_after_ten_seconds_and_after_nine_hundred_years(mass: float) -> None:
+    """In local time, before, in and behind an event: 1e-12 of the largest. Seconds of the run, 4e-6 apart, would show."""
+    pull, windows = 1e-3 / ss.YEAR, []
+    for wait in (10.0, 900 * ss.YEAR):
+        problem = rate_law_slab()
+        body = replace(SLAB, contact_mass=mass)
+        problem = replace(problem, body=body, pull_rate=pull, initial_excess=-SLAB.stiffness * pull * wait)
+        windows.append(ss.simulate(problem, wait + 30.0, rtol=1e-13).window(0))
+    x, t = np.linspace(0.0, THICKNESS, 57), np.linspace(-8.0, 25.0, 331)[:, None]
+    early, late = (window.field(x, t) for window in windows)
+    seconds = windows[1].solution.field(x, windows[1].solution.events.start[0] + t)
+    for name in Field._fields:
+        size = np.abs(getattr(early, name)).max()
+        assert np.abs(getattr(late, name) - getattr(early, name)).max() < 1e-12 * size, name
+    assert np.abs(seconds.displacement - late.displacement).max() > 1e-9
+    contact = windows[1].field(0.0, t[:, 0])
+    assert contact.displacement == pytest.approx(windows[1].event_slip(t[:, 0]), rel=0.0, abs=0.0)
+
+
+def test_between_events_of_a_rigid_driver_the_waves_go_on() -> None:
+    """Hours after its event, at rest, the slab still rings: its field is that of the round trip before, and one ramp more."""
+    run = ss.simulate(SMOOTH["slip law"], 20_000.0)
+    window = run.window(0)
+    x, t = np.linspace(0.0, THICKNESS, 33), np.linspace(0.0, ROUND, 65)[:, None]
+    late = 3_000
+    assert len(run.shocks) == 2  # nothing has moved since
+    early, later = window.field(x, 20.0 + t), window.field(x, 20.0 + late * ROUND + t)
+    ramp = 2.0 * IMPEDANCE * run.problem.pull_rate * late
+    assert np.ptp(early.velocity) > 1e-2
+    assert np.abs(later.velocity - early.velocity).max() < 1e-7 * np.ptp(early.velocity)
+    assert np.abs(later.stress - early.stress - ramp).max() < 1e-7 * np.abs(early.stress).max()
+    assert np.abs(later.displacement - early.displacement - ramp * x / MODULUS).max() < 1e-8 * np.ptp(early.displacement)
+
+
+def test_arrays_are_broadcast() -> None:
+    run = coulomb()
+    x, t = np.linspace(0.0, THICKNESS, 5), np.linspace(0.0, 8.0, 7)
+    outer = run.field(x, t[:, None])
+    assert outer.stress.shape == (7, 5)
+    displacement, velocity, stress = run.field(x[2], t[3])
+    assert displacement.shape == velocity.shape == stress.shape == ()
+    assert stress == outer.stress[3, 2]
+    assert run.field([], 1.0).velocity.shape == (0,)
+    many = run.field(x[:, None, None], np.tile(t, (3, 1))).velocity
+    assert np.array_equal(many[4, 1], outer.velocity[:, 4])
+
+
+def test_a_dataset_with_places() -> None:
+    run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
+    x, t = np.linspace(0.0, THICKNESS, 5), np.linspace(0.0, 8.0, 7)
+    for readings in (run, run.window(1)):
+        dataset = readings.dataset(t, x=x)
+        assert dataset.stress.dims == ("time", "x")
+        assert {dataset[name].attrs["units"] for name in ("displacement", "velocity", "stress", "x")} == {"m", "m s-1", "Pa"}
+        assert np.array_equal(dataset.velocity, readings.field(x, t[:, None]).velocity)
+        assert dataset.attrs["scenario"]
+        assert "displacement" not in readings.dataset(t)
+
+
+def test_a_block_has_no_inside() -> None:
+    run = ss.simulate(slip_law_block(5.0, MODULUS * 1e3), 3.0)
+    with pytest.raises(ss.InputError, match="field: a block is rigid"):
+        run.field(0.0, 1.0)
+    with pytest.raises(ss.InputError, match="field: a block is rigid"):
+        run.dataset([1.0], x=[0.0])
+
+
+@pytest.mark.parametrize(
+    ("x", "t", "side", "text"),
+    [
+        (-1.0, 0.0, "right", "field: x must lie between 0"),
+        (10_001.0, 0.0, "right", "thickness, 10000 m"),
+        (np.nan, 0.0, "right", "field: x must lie"),
+        (0.0, 9.0, "right", "times must lie between 0 and the end of the run, 8 s"),
+        (0.0, -1e-9, "left", "times must lie between"),
+        (0.0, np.nan, "left", "times must lie between"),
+        (0.0, 0.0, "before", "side must be 'left' or 'right', got 'before'"),
+    ],
+)
+def test_places_and_times_outside(x: float, t: float, side: str, text: str) -> None:
+    with pytest.raises(ss.InputError, match=text):
+        coulomb().field(x, t, side)  # type: ignore[arg-type]
