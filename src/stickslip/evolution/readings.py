@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -16,6 +18,7 @@ from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from stickslip.observables.field import Field
 
@@ -81,6 +84,43 @@ class Readings:
         from stickslip.observables.field import field
 
         return field(self, x, t, side)
+
+    def plot_field(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Velocity and stress in the slab over time (s), with characteristics, and the contact below.
+
+        By default all of it; of a long run the last of the largest slip events. Raises InputError for a block.
+        """
+        from stickslip.figures import space_time
+
+        return space_time.draw(space_time.data(self, start, end))
+
+    def plot_snapshots(self, t: ArrayLike | None = None) -> Figure:
+        """Displacement, velocity and stress across the slab at times t (s; default: six over a round trip of the waves).
+
+        Raises InputError for a block.
+        """
+        from stickslip.figures import snapshots
+
+        return snapshots.draw(snapshots.data(self, t))
+
+    def animate(
+        self,
+        path: str | Path,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        frames: int = 150,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write the slab in motion to a file (.gif; .mp4 and .webm need ffmpeg), beside the contact's curves. Returns the path.
+
+        From `start` to `end` (s) as for `plot_field`, 20 frames a second. `progress` is told how many frames of how many are drawn.
+        Raises InputError for a block, and where what writes such a file is missing.
+        """
+        from stickslip.figures import animation
+
+        animation.check_animation(Path(path), "animate:")
+        return animation.write(animation.data(self, start, end, frames), path, progress=progress)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:

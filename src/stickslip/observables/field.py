@@ -45,9 +45,7 @@ def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") 
     `side` is the limit in time at a front: "left" before it passes, "right" behind it; what is within rounding of a front lies on
     it. Raises InputError for a block, for places outside the slab and for times outside the run.
     """
-    body = readings.problem.body
-    if not isinstance(body, ElasticSlab):
-        raise InputError("field: a block is rigid, it has no inside: only an ElasticSlab has a field")
+    body = slab_of(readings)
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
     if not np.all((place >= 0.0) & (place <= body.thickness)):
         raise InputError(f"field: x must lie between 0 (the contact) and the thickness, {body.thickness:g} m (the driver)")
@@ -61,6 +59,14 @@ def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") 
         chosen = batch == number
         rise[chosen], velocity[chosen], stress[chosen] = _Inside(waves, moment[chosen]).field(away[chosen], side)
     return Field(*(np.reshape(values, place.shape) for values in (slip.ravel() + rise, velocity, stress)))
+
+
+def slab_of(readings: Readings) -> ElasticSlab:
+    """The slab of a run. Raises InputError for a block."""
+    body = readings.problem.body
+    if not isinstance(body, ElasticSlab):
+        raise InputError("field: a block is rigid, it has no inside: only an ElasticSlab has a field")
+    return body
 
 
 class _Inside:

@@ -13,9 +13,9 @@ from stickslip.evolution.history import Floats, Moments, Side
 from stickslip.evolution.layout import TERMS
 from stickslip.observables.waves import Waves
 
-POINTS: Floats = chebyshev.chebpts1(TERMS + 1)
+POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
 """Where the wave of a piece is read: polynomials of the history, times the linear pace of time in xi, follow exactly."""
-TO_SERIES: Floats = np.linalg.inv(chebyshev.chebvander(POINTS, TERMS))
+TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
 """From values at these points to coefficients of Chebyshev's series: without loss of digits."""
 
 
