@@ -153,20 +153,26 @@ def test_a_shorter_run_knows_the_same_field(run: ss.Solution) -> None:
 # ---- between fronts: gradients and energy --------------------------------------------------------------------------------------
 
 
-def fronts(run: ss.Solution, time: float) -> Floats:
-    """Places (m) of all that left the contact or the driver when pieces of the history met; both ends of the slab included."""
+def breaks(run: ss.Solution) -> Floats:
+    """Times (s) at which the wave that leaves the contact may break: where pieces of the history meet, and their echoes."""
     slab = slab_of(run)
-    left = np.concatenate([run.breaks, [0.5 * ROUND, -0.5 * slab.two_way_time]])
+    echoes = run.breaks[:, None] + slab.two_way_time * np.arange(math.ceil(run.duration / slab.two_way_time) + 1)
+    return np.append(echoes[echoes <= run.duration], [-0.5 * slab.two_way_time, 0.5 * slab.two_way_time])
+
+
+def fronts(run: ss.Solution, time: float) -> Floats:
+    """Places (m) of all that left the contact or the driver at breaks; both ends of the slab included."""
+    slab, left = slab_of(run), breaks(run)
     places = np.concatenate([time - left, left + slab.two_way_time - time]) * slab.wave_speed
     inside = places[(places > 0.0) & (places < slab.thickness)]
     return np.unique(np.concatenate([[0.0], inside, [slab.thickness]]))
 
 
-def gauss(breaks: Floats) -> tuple[Floats, Floats]:
-    """Nodes and weights between breaks."""
+def gauss(edges: Floats) -> tuple[Floats, Floats]:
+    """Nodes and weights between edges."""
     node, weight = np.polynomial.legendre.leggauss(24)
-    width = np.diff(breaks)[:, None]
-    return (breaks[:-1, None] + 0.5 * width * (1.0 + node)).ravel(), (0.5 * width * weight).ravel()
+    width = np.diff(edges)[:, None]
+    return (edges[:-1, None] + 0.5 * width * (1.0 + node)).ravel(), (0.5 * width * weight).ravel()
 
 
 SMOOTH = {
@@ -194,9 +200,8 @@ def test_velocity_is_the_rate_of_displacement(name: str, x: float) -> None:
     """1e-12 of the largest displacement since the start."""
     run = ss.simulate(SMOOTH[name], 12.0)
     delay = x / SLAB.wave_speed
-    breaks = np.concatenate([run.breaks + delay, run.breaks - delay + ROUND, [0.5 * ROUND - delay]])
-    breaks = np.unique(np.concatenate([[0.0], breaks[(breaks > 0.0) & (breaks < 12.0)], [12.0]]))
-    time, weight = gauss(breaks)
+    passes = np.append(breaks(run) + delay, breaks(run) + ROUND - delay)
+    time, weight = gauss(np.unique(np.concatenate([[0.0], passes[(passes > 0.0) & (passes < 12.0)], [12.0]])))
     first, last = run.field(x, [0.0, 12.0]).displacement
     assert run.field(x, time).velocity @ weight == pytest.approx(last - first, rel=1e-12, abs=1e-12 * (abs(last) + abs(first)))
 

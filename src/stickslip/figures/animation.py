@@ -11,6 +11,7 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -22,7 +23,7 @@ from stickslip.files import write_atomically
 if TYPE_CHECKING:
     from stickslip.evolution.readings import Readings
 
-FRAMES, PER_SECOND, PLACES, DPI = 150, 20, 401, 100
+FRAMES, PER_SECOND, PLACES, DPI, SIZE = 150, 20, 401, 100, (8.0, 4.5)
 CODECS = {".gif": "", ".mp4": "h264", ".webm": "libvpx-vp9"}
 SUFFIXES = tuple(CODECS)
 Told = Callable[[int, int], object]
@@ -69,7 +70,9 @@ def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND
     """
     path = Path(path)
     check_animation(path, "animation:")
-    figure, move = _stage(dataset)
+    figure = _Film(figsize=SIZE, dpi=DPI, layout="constrained")
+    move, moving = _stage(figure, dataset)
+    figure.keep_still(moving)
     frames = dataset.sizes["time"]
 
     def render(draft: Path) -> None:
@@ -91,19 +94,38 @@ def _writer(suffix: str, per_second: int) -> AbstractMovieWriter:
     return FFMpegWriter(fps=per_second, codec=CODECS[suffix], extra_args=["-pix_fmt", "yuv420p"])
 
 
+class _Film(Figure):
+    """A figure of which a movie writer saves frame after frame: only what moves is drawn anew."""
+
+    def keep_still(self, moving: list[Artist]) -> None:
+        """Draw all the rest, once."""
+        self._moving = moving
+        for artist in moving:
+            artist.set_animated(True)
+        agg: Any = FigureCanvasAgg(self)
+        agg.draw()
+        self._agg, self._still = agg, agg.copy_from_bbox(self.bbox)
+
+    def savefig(self, fname: Any, **_: Any) -> None:
+        """Write the frame's pixels, as movie writers want them (RGBA, at the figure's own resolution)."""
+        self._agg.restore_region(self._still)
+        for artist in self._moving:
+            artist.draw(self._agg.get_renderer())
+        fname.write(self._agg.buffer_rgba())
+
+
+@styled
 def frame(dataset: xr.Dataset, n: int) -> Figure:
     """The n-th frame as a figure."""
-    with mpl.rc_context():
-        figure, move = styled(_stage)(dataset)
+    figure = Figure(figsize=SIZE, layout="constrained")
+    move, _ = _stage(figure, dataset)
     move(n)
     return figure
 
 
-def _stage(dataset: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
-    """The figure, and what moves it to a frame."""
+def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
+    """Draw what an animation shows. Returns what moves it to a frame, and all that moves then."""
     scales = Scales(dataset)
-    figure = Figure(figsize=(8.0, 4.5), layout="constrained")
-    FigureCanvasAgg(figure)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
     unit, size = length_unit(float(np.abs(dataset.displacement).max()))
     profiles = (
@@ -116,8 +138,6 @@ def _stage(dataset: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
     marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
     letter(axes["C"], dataset.attrs["title"])
     clock = axes["A"].set_title(" ")
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # nothing moves but the lines
 
     def move(n: int) -> None:
         now = float(dataset.time.values[n]) / scales.time
@@ -127,7 +147,7 @@ def _stage(dataset: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
             mark.set_xdata([now, now])
         clock.set_text(f"{now:.3f} {scales.time_unit}")
 
-    return figure, move
+    return move, [*lines, *marks, clock]
 
 
 def _profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, text: str, colour: str, scales: Scales) -> Any:
