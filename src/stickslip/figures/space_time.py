@@ -34,7 +34,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
     lines = [_bounces(time, end, body.two_way_time, body.reflection) for time in _origins(readings, start, end)]
     points = max((len(line) for line in lines), default=0)
-    across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(-1, points)
+    across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(len(lines), points)
     contents["front_time"] = quantity(("front", "corner"), across, "time of a characteristic", "t", "s")
     corners = np.where(np.arange(points) % 2, body.thickness, 0.0)
     contents["front_x"] = quantity("corner", corners, "place of a characteristic", "x", "m")
