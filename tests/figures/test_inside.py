@@ -5,12 +5,14 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.animation import FFMpegWriter
 from matplotlib.figure import Figure
 from PIL import Image
@@ -35,8 +37,14 @@ def run() -> ss.Solution:
     return ss.simulate(SLAB_PROBLEM, 12.0)
 
 
-def with_unit(figure: Figure) -> list[str]:
-    """Labels without a unit of their own."""
+@pytest.fixture(autouse=True)
+def _close_figures() -> Iterator[None]:
+    yield
+    pyplot.close("all")
+
+
+def without_unit(figure: Figure) -> list[str]:
+    """Labels that do not say their unit."""
     return [
         text for text in labels(figure) if not any(f"({unit})" in text for unit in ("s", "µs", "m", "km", "mm", "m/s", "MPa", "Pa"))
     ]
@@ -118,7 +126,7 @@ def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -
     shown = {"rate law": run, "pulses": PULSES.run(), "laboratory": LABORATORY.run()}[name]
     figure = shown.plot_field()
     assert len(figure.axes) == 6  # with two colour bars
-    assert with_unit(figure) == []
+    assert without_unit(figure) == []
     height = "(mm)" if name == "laboratory" else "(km)"
     assert all(axes.get_ylabel().endswith(f"$x$ {height}") for axes in figure.axes[:2])
     assert [axes.get_ylim()[0] for axes in figure.axes[:2]] == [0.0, 0.0]  # the contact is below
@@ -141,7 +149,7 @@ def test_snapshots_are_the_field(run: ss.Solution) -> None:
     assert np.array_equal(dataset.stress[1], at.stress)
     assert np.array_equal(dataset.displacement[1], at.displacement - start.displacement)
     figure = run.plot_snapshots([1.0, 4.0])
-    assert with_unit(figure) == []
+    assert without_unit(figure) == []
     line = figure.axes[1].lines[1].get_xydata()
     assert np.array_equal(line, np.stack([at.velocity, x / 1e3], axis=1))
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["1", "4"]
@@ -168,7 +176,7 @@ def test_a_frame_shows_its_moment(run: ss.Solution) -> None:
     assert stress[:, 0] == pytest.approx(at.stress / 1e6, rel=0.0, abs=1e-12)
     assert [float(axes.lines[1].get_xdata()[0]) for axes in figure.axes[3:4]] == [3.0]
     assert figure.axes[0].get_title(loc="left") == "3.000 s"
-    assert with_unit(figure) == []
+    assert without_unit(figure) == []
 
 
 def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path) -> None:

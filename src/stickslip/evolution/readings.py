@@ -92,7 +92,7 @@ class Readings:
         """
         from stickslip.figures import space_time
 
-        return space_time.draw(space_time.data(self, start, end))
+        return space_time.plot(self, start, end)
 
     def plot_snapshots(self, t: ArrayLike | None = None) -> Figure:
         """Displacement, velocity and stress across the slab at times t (s; default: six over a round trip of the waves).
@@ -101,7 +101,7 @@ class Readings:
         """
         from stickslip.figures import snapshots
 
-        return snapshots.draw(snapshots.data(self, t))
+        return snapshots.plot(self, t)
 
     def animate(
         self,
@@ -109,12 +109,12 @@ class Readings:
         start: float | None = None,
         end: float | None = None,
         *,
-        frames: int = 150,
+        frames: int | None = None,
         progress: Callable[[int, int], object] | None = None,
     ) -> Path:
         """Write the slab in motion to a file (.gif; .mp4 and .webm need ffmpeg), beside the contact's curves. Returns the path.
 
-        From `start` to `end` (s) as for `plot_field`, 20 frames a second. `progress` is told how many frames of how many are drawn.
+        From `start` to `end` (s) as for `plot_field`, in 150 frames, 20 a second; `progress` is told how many are done.
         Raises InputError for a block, and where what writes such a file is missing.
         """
         from stickslip.figures import animation

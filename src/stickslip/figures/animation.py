@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from stickslip.errors import InputError
-from stickslip.figures.inside import Scales, about, contact_variables, places, seen, snapshots
+from stickslip.figures.inside import Scales, about, contact_variables, narrow, places, seen, snapshots
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, letter, styled, zero_line
 from stickslip.files import write_atomically
 
@@ -49,12 +49,14 @@ def _ffmpeg() -> str | None:
     return str(get_ffmpeg_exe())
 
 
-def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int = FRAMES) -> xr.Dataset:
-    """The field at as many times as there are frames, and the contact, from `start` to `end` (s), by default `figures.inside.seen`.
+def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
+    """The field at as many times as there are frames (default 150), and the contact, from `start` to `end` (s); SI.
 
-    SI. Raises InputError for a block, for times outside the run, and for less than two frames.
+    By default all that `figures.inside.seen` finds. Raises InputError for a block, for times outside the run, and for less than
+    two frames.
     """
     readings, start, end = seen(readings, start, end)
+    frames = FRAMES if frames is None else frames
     if frames < 2:
         raise InputError(f"animation: needs at least 2 frames, got {frames}")
     contents = snapshots(readings, np.linspace(start, end, frames), places(readings, PLACES))
@@ -171,7 +173,7 @@ def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> lis
     curves = (
         (slip / size, f"slip ({unit})", BLUE),
         (dataset.contact_slip_rate.values, "slip rate\n(m/s)", GREEN),
-        (scales.stresses(dataset.contact_traction.values), scales.name_stress("traction").replace(" (", "\n("), VERMILLION),
+        (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress("traction")), VERMILLION),
     )
     marks = []
     for panel, (values, text, colour) in zip(panels, curves, strict=True):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.evolution.solution import Solution
@@ -112,6 +113,19 @@ def contact_variables(readings: Readings, start: float, end: float, names: Seque
     return contents | {"contact_time": quantity("contact_point", time, "time", "t", "s")}
 
 
+def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
+    """A figure of this size (inches) to draw on: the one that is given, or a new one that pyplot does not know."""
+    figure = Figure() if figure is None else figure
+    figure.set_size_inches(*size)
+    figure.set_layout_engine("constrained")
+    return figure
+
+
+def narrow(text: str) -> str:
+    """A label in two lines."""
+    return text if "\n" in text else text.replace(" (", "\n(")
+
+
 class Scales:
     """Units in which a dataset's times, places and stresses are drawn; stresses that hardly change as changes from the first."""
 
@@ -125,7 +139,8 @@ class Scales:
 
     def name_stress(self, name: str) -> str:
         """Label of a stress."""
-        return f"{'change of ' if self.offset else ''}{name} ({self.stress_unit})"
+        what = "change of\n" if self.offset else ""
+        return f"{what}{name} ({self.stress_unit})"
 
     def stresses(self, values: Any) -> Floats:
         """Stresses as they are drawn."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
+from matplotlib import colormaps, pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from stickslip.figures.inside import Scales, about, places, seen, snapshots
-from stickslip.figures.style import label, length_unit, letter, panels, styled
+from stickslip.figures.inside import Scales, about, places, seen, sheet, snapshots
+from stickslip.figures.style import label, length_unit, letter, styled
 from stickslip.observables.field import slab_of
 
 if TYPE_CHECKING:
@@ -36,21 +36,28 @@ def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def plot(readings: Readings, times: ArrayLike | None = None) -> Figure:
+    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    return draw(data(readings, times), pyplot.figure())
+
+
+@styled
+def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     """Three panels, contact below; a line a moment, later ones darker."""
     scales = Scales(dataset)
-    figure, axes = panels(1, 3, (7.6, 3.8), sharey=True)
+    figure = sheet(figure, (7.6, 3.8))
+    axes: Any = figure.subplots(1, 3, sharey=True)
     unit, size = length_unit(float(np.abs(dataset.displacement).max()))
     drawn = (dataset.displacement.values / size, dataset.velocity.values, scales.stresses(dataset.stress.values))
     since = dataset.displacement.attrs["long_name"].replace(" ", f" ({unit})\n", 1)
     texts = (since, label(dataset.velocity), scales.name_stress(r"shear stress $\sigma$"))
-    for panel, values in zip(axes[0], drawn, strict=True):
+    for panel, values in zip(axes, drawn, strict=True):
         _draw_lines(panel, dataset, values, scales)
-    for panel, text in zip(axes[0], texts, strict=True):
+    for panel, text in zip(axes, texts, strict=True):
         panel.set_xlabel(text)
-        scales.set_places(panel, dataset, named=panel is axes[0, 0])
-    letter(axes[0, 0], dataset.attrs["title"])
-    lines, names = axes[0, 0].get_legend_handles_labels()
+        scales.set_places(panel, dataset, named=panel is axes[0])
+    letter(axes[0], dataset.attrs["title"])
+    lines, names = axes[0].get_legend_handles_labels()
     figure.legend(lines, names, title=scales.clock.replace("since ", "since\n"), loc="outside right upper", alignment="left")
     return figure
 

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
+from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.evolution.tables import shocks_table
-from stickslip.figures.inside import Floats, Scales, about, contact_variables, means, places, run_of, seen
+from stickslip.figures.inside import Floats, Scales, about, contact_variables, means, narrow, places, run_of, seen, sheet
 from stickslip.figures.run import MANY
 from stickslip.figures.style import GREEN, INK, VERMILLION, label, letter, quantity, styled, zero_line
 from stickslip.observables.field import slab_of
@@ -71,10 +72,16 @@ def _bounces(time: float, end: float, round_trip: float, reflection: float) -> F
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
+    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    return draw(data(readings, start, end), pyplot.figure())
+
+
+@styled
+def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     """Velocity and stress as images, contact below; below them slip rate and traction of the contact."""
     scales = Scales(dataset)
-    figure = Figure(figsize=(7.2, 7.4), layout="constrained")
+    figure = sheet(figure, (7.2, 7.4))
     axes: Any = figure.subplots(4, 1, sharex=True, height_ratios=(2.2, 2.2, 1.0, 1.0))
     velocity = dataset.velocity.values
     largest = float(np.abs(velocity).max()) or 1.0
@@ -84,13 +91,13 @@ def draw(dataset: xr.Dataset) -> Figure:
         (
             axes[1],
             scales.stresses(dataset.stress.values),
-            scales.name_stress("shear stress").replace(" (", "\n("),
+            narrow(scales.name_stress("shear stress")),
             {"cmap": "viridis"},
         ),
     )
     for panel, values, text, colours in images:
-        mesh = panel.pcolormesh(_seconds(dataset, scales), dataset.x / scales.place, values.T, rasterized=True, **colours)
-        figure.colorbar(mesh, ax=panel, label=text, pad=0.01, aspect=12)
+        image = panel.imshow(values.T, origin="lower", aspect="auto", extent=_edges(dataset, scales), **colours)
+        figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
         _draw_fronts(panel, dataset, scales)
         scales.set_places(panel, dataset)
     _draw_contact(axes[2:], dataset, scales)
@@ -99,8 +106,11 @@ def draw(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def _seconds(dataset: xr.Dataset, scales: Scales) -> Floats:
-    return np.asarray(dataset.time.values / scales.time)
+def _edges(dataset: xr.Dataset, scales: Scales) -> tuple[float, float, float, float]:
+    """First and last time, contact and driver, as drawn."""
+    time = dataset.time.values
+    half = 0.5 * (time[1] - time[0])
+    return (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, dataset.attrs["thickness"] / scales.place
 
 
 def _draw_fronts(panel: Axes, dataset: xr.Dataset, scales: Scales) -> None:
@@ -113,9 +123,9 @@ def _draw_fronts(panel: Axes, dataset: xr.Dataset, scales: Scales) -> None:
 def _draw_contact(panels: Any, dataset: xr.Dataset, scales: Scales) -> None:
     time = dataset.contact_time.values / scales.time
     panels[0].plot(time, dataset.contact_slip_rate, color=GREEN)
-    panels[0].set_ylabel(label(dataset.contact_slip_rate).replace(" (", "\n("))
+    panels[0].set_ylabel(narrow(label(dataset.contact_slip_rate)))
     panels[1].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
-    panels[1].set_ylabel(scales.name_stress(r"traction $\tau$").replace(" (", "\n("))
+    panels[1].set_ylabel(narrow(scales.name_stress(r"traction $\tau$")))
     panels[1].set_xlabel(scales.clock)
     panels[1].set_xlim(time[0], time[-1])
     zero_line(panels[0])
