@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 
 LONG = 50
 """A run over more round trips than this is shown around a slip event."""
+ROUNDING = 64.0
+"""Of a difference of displacements, in units of their last place."""
 
 
 def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
@@ -83,13 +85,22 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
     They come from differences of the displacement, so that no pulse is lost between two times.
     """
     when, where = 0.5 * (time[1:] + time[:-1]), 0.5 * (x[1:] + x[:-1])
-    velocity = np.diff(readings.field(where, time[:, None]).displacement, axis=0) / np.diff(time)[:, None]
-    strain = np.diff(readings.field(x, when[:, None]).displacement, axis=1) / np.diff(x)
+    body, middle = slab_of(readings), readings.field(where, when[:, None])
+    sheared = readings.problem.strength / body.stiffness  # displacements are differences from that
+    velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
+    strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.shear_modulus, sheared)
     dims = ("time", "x")
     return axes_variables(when, where) | {
         "velocity": quantity(dims, velocity, "velocity, mean over a step of time", r"\dot u", "m/s"),
-        "stress": quantity(dims, slab_of(readings).shear_modulus * strain, "shear stress, mean over a step of x", r"\sigma", "Pa"),
+        "stress": quantity(dims, body.shear_modulus * strain, "shear stress, mean over a step of x", r"\sigma", "Pa"),
     }
+
+
+def _slope(displacement: Floats, step: Floats, axis: int, middle: Floats, size: float) -> Floats:
+    """Mean slopes between values; where rounding could explain how they differ from the one in the middle, that one."""
+    mean = np.diff(displacement, axis=axis) / step
+    rounding = ROUNDING * np.spacing(max(float(np.abs(displacement).max()), size)) / step
+    return np.where(np.abs(mean - middle) <= rounding, middle, mean)
 
 
 def axes_variables(time: Floats, x: Floats) -> dict[str, xr.Variable]:
