@@ -236,3 +236,18 @@ def test_a_block_has_no_inside_to_draw(draw: str) -> None:
     run = ss.simulate(BLOCK_PROBLEM, 2.0)
     with pytest.raises(ss.InputError, match="a block is rigid"):
         getattr(run, draw)()
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "text"),
+    [
+        (3.0, 3.0, "must end after it starts, at 3 s; got 3 s"),
+        (None, -1.0, "must end after it starts, at 0 s; got -1 s"),
+        (0.0, 13.0, "times must lie between 0 and the end of the run, 12 s"),
+        (-1.0, 3.0, "times must lie between 0"),
+    ],
+)
+def test_no_such_time(run: ss.Solution, start: float | None, end: float | None, text: str) -> None:
+    for draw in (space_time.data, animation.data):
+        with pytest.raises(ss.InputError, match=text):
+            draw(run, start, end)

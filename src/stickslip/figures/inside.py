@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from stickslip.errors import InputError
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.window import Window
 from stickslip.figures.curves import nearly_flat
@@ -34,7 +35,7 @@ ROUNDING = 64.0
 def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
     """What is drawn, from when to when (s): what is asked for; else all, or of a long run the last of its largest events.
 
-    Raises InputError for a block.
+    Raises InputError for a block, and where nothing lies between them.
     """
     round_trip = slab_of(readings).two_way_time
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
@@ -42,9 +43,11 @@ def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Re
         if len(slips):
             chosen = int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
             readings = readings.window(chosen, before=0.25 * round_trip)
-            end = readings.shown[1] + round_trip
-    first, last = readings.shown[0], min(readings.shown[1] if end is None else end, readings.history.span[1])
-    return readings, first if start is None else start, last
+            end = min(readings.shown[1] + round_trip, readings.history.span[1])
+    start, end = (given if given is not None else edge for given, edge in zip((start, end), readings.shown, strict=True))
+    if not start < end:
+        raise InputError(f"figure: must end after it starts, at {start:g} s; got {end:g} s")
+    return readings, start, end
 
 
 def run_of(readings: Readings) -> Solution:
