@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import stickslip
 from stickslip.errors import InputError
@@ -86,18 +86,36 @@ def origin(solution: Solution) -> dict[str, Any]:
     }
 
 
-def solution_dataset(solution: Solution, t: NDArray[np.float64]) -> xr.Dataset:
-    """Slip, slip rate, traction and load at times t (s), right limits, with units and provenance."""
-    values = {name: getattr(solution, name)(t) for name in solution.curves}
-    return _curves(solution, t, values).assign_attrs(provenance(solution))
+def solution_dataset(solution: Solution, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+    """Slip, slip rate, traction and load at times t (s), right limits, with units and provenance; with x (m) also the field."""
+    return _readings(solution, t, x).assign_attrs(provenance(solution))
 
 
-def window_dataset(window: Window, t: NDArray[np.float64]) -> xr.Dataset:
+def window_dataset(window: Window, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
     """As `solution_dataset`, in local time; attributes say when the event begins: `epoch_row` whole rows and `epoch_offset` s."""
-    dataset = _curves(window, t, {name: getattr(window, name)(t) for name in window.curves})
+    dataset = _readings(window, t, x)
     dataset.time.attrs["long_name"] = "time since the start of the event"
     about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
     return dataset.assign_attrs(provenance(window.solution) | about)
+
+
+def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Dataset:
+    time = np.atleast_1d(np.asarray(t, float))
+    dataset = _curves(readings, time, {name: getattr(readings, name)(time) for name in readings.curves})
+    return dataset if x is None else dataset.merge(_field(readings, time, np.atleast_1d(np.asarray(x, float))))
+
+
+def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -> xr.Dataset:
+    """Displacement, velocity and stress over time and x."""
+    found = readings.field(x, t[:, None])._asdict()
+    since = "since the event began, from where the contact stood then" if "event_slip" in readings.curves else "u"
+    about = {
+        "displacement": ("m", f"displacement, {since}"),
+        "velocity": ("m s-1", "velocity, v"),
+        "stress": ("Pa", "shear stress, sigma"),
+    }
+    variables = {name: (("time", "x"), found[name], {"units": unit, "long_name": text}) for name, (unit, text) in about.items()}
+    return xr.Dataset(variables, coords={"x": ("x", x, {"units": "m", "long_name": "distance from the contact"})})
 
 
 def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:

@@ -181,6 +181,14 @@ def test_run_draws_the_catalogue(command, tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["events.png"]
 
 
+def test_pictures_of_the_slabs_inside(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("stickslip.figures.animation.FRAMES", 3)
+    out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif", "--figure", "run.png").out
+    assert out.endswith("written: run.png\nwritten: waves.svg\nwritten: slab.gif\n")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.png", "slab.gif", "waves.svg"]
+    assert (tmp_path / "slab.gif").read_bytes().startswith(b"GIF89a")
+
+
 def test_run_says_what_is_trapped(command):
     shown = command("run", "fig5-slab-reconstructed").out
     assert re.search(r"trapped energy: 1\.86\d+e\+07 J/m2 in waves at the end, 0\.57 % of what", shown)

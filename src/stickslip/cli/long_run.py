@@ -12,13 +12,12 @@ from stickslip.cli.files import check_target
 from stickslip.errors import InputError
 
 if TYPE_CHECKING:
+    from stickslip.cli.pictures import Pictures
     from stickslip.evolution.report import Progress
     from stickslip.evolution.solution import Solution
     from stickslip.long_runs.catalogue import Catalogue
     from stickslip.problem import Problem
     from stickslip.scenarios.scenario import Scenario
-
-PICTURES = (".png", ".pdf", ".svg")
 
 
 @dataclass(frozen=True)
@@ -33,22 +32,20 @@ class Request:
     resume: Path | None
     out: Path | None
     catalog: Path | None
-    figure: Path | None
-    path: Path | None
-    catalog_figure: Path | None
+    pictures: Pictures
 
     def check(self) -> None:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
-        drawn = ((self.figure, "--figure"), (self.path, "--path"), (self.catalog_figure, "--catalog-figure"))
-        for target, option, suffixes in ((self.out, "--out", (".nc",)), *((*one, PICTURES) for one in drawn)):
-            if target is not None:
-                check_target(target, option, suffixes)
+        if self.out is not None:
+            check_target(self.out, "--out", (".nc",))
+        self.pictures.check()
         if self.name is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
         if self.resume is not None and (self.rtol is not None or self.selection is not None or self.catalog is not None):
             raise InputError("run: --resume goes on as the run began: leave --rtol, --selection and --catalog away")
-        if self.keeps_events_only and (self.out or self.figure or self.path or self.catalog_figure):
-            raise InputError("run: a catalogue keeps slip events only, no history: leave --out, --figure and --path away")
+        if self.keeps_events_only and (self.out or self.pictures.wanted):
+            options = ", ".join(["--out"] * (self.out is not None) + self.pictures.wanted)
+            raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
         if self.catalog is not None:
             from stickslip.long_runs.rows import SUFFIXES, check_catalogue
 

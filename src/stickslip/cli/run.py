@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from stickslip.cli.names import complete_rule, complete_scenario
-from stickslip.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.evolution.solution import Solution
     from stickslip.evolution.status import Status
-    from stickslip.problem import Problem
 
 
 def run(
@@ -34,6 +31,14 @@ def run(
     catalog_figure: Annotated[
         Path | None,
         typer.Option("--catalog-figure", help="Save a figure of the slip events (.png, .pdf or .svg).", show_default=False),
+    ] = None,
+    space_time: Annotated[
+        Path | None,
+        typer.Option("--space-time", help="Save a figure of the slab's inside over time (.png, .pdf or .svg).", show_default=False),
+    ] = None,
+    animation: Annotated[
+        Path | None,
+        typer.Option("--animation", help="Save the slab in motion (.gif; .mp4 and .webm need ffmpeg).", show_default=False),
     ] = None,
     catalog: Annotated[
         Path | None,
@@ -67,6 +72,7 @@ def run(
       stickslip run fig6-slab
       stickslip run mine.toml --out mine.nc --figure mine.png
       stickslip run fig6-slab --until "480 years" --selection maxwell
+      stickslip run fig6-slab --space-time waves.png --animation slab.gif
       stickslip run cycles-block --until "10000 years" --catalog events.csv
       stickslip run --resume mine.nc --until "1000 years"
 
@@ -76,20 +82,23 @@ def run(
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.long_run import Request, list_events, solve
+    from stickslip.cli.pictures import Pictures
     from stickslip.cli.summary import show_catalogue, show_solution
 
-    request = Request(scenario, until, events, rtol, selection, resume, out, catalog, figure, path, catalog_figure)
+    drawn = Pictures(figure, path, catalog_figure, space_time, animation)
+    request = Request(scenario, until, events, rtol, selection, resume, out, catalog, drawn)
     request.check()
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)
         _leave(found.status)
-    if path is not None and resume is None:
-        _check_path(request.scenario().problem)
+    if resume is None:
+        drawn.check_problem(request.scenario().problem)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
-    for line in _draw(solution, out or resume, figure, path, catalog_figure):
-        typer.echo(line)
+    for written in (out or resume, *drawn.draw(solution)):
+        if written is not None:
+            typer.echo(f"written: {written}")
     _leave(solution.status)
 
 
@@ -97,31 +106,3 @@ def _leave(status: Status) -> NoReturn:
     if status.name == "interrupted":
         raise KeyboardInterrupt
     raise typer.Exit(0 if status.ok else 1)
-
-
-def _check_path(problem: Problem) -> None:
-    """Refuse a figure that cannot be drawn before the run. Raises InputError."""
-    from stickslip.contact.uniqueness import uniqueness
-
-    if uniqueness(problem).resistance is None:
-        raise InputError("run: --path needs a slab without contact mass: with inertia the slip rate is a state, there is no set K")
-
-
-def _draw(solution: Solution, out: Path | None, figure: Path | None, path: Path | None, catalog_figure: Path | None) -> list[str]:
-    from stickslip.files import write_atomically
-
-    written = [] if out is None else [f"written: {out}"]
-    if figure is not None:
-        write_atomically(figure, solution.plot().savefig)
-        written.append(f"written: {figure}")
-    if path is not None:
-        from stickslip.figures import admissible
-
-        write_atomically(path, admissible.draw(admissible.data(solution.problem, solution)).savefig)
-        written.append(f"written: {path}")
-    if catalog_figure is not None:
-        from stickslip.figures import catalogue
-
-        write_atomically(catalog_figure, catalogue.draw(catalogue.data(solution)).savefig)
-        written.append(f"written: {catalog_figure}")
-    return written

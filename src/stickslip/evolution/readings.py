@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -16,6 +18,9 @@ from stickslip.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
+
+    from stickslip.observables.field import Field
 
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
@@ -69,6 +74,53 @@ class Readings:
             raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
         at, shape = self._at(t, "right")
         return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+
+    def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
+        """Displacement (m), velocity (m/s) and shear stress (Pa) inside the slab, x (m) away from the contact, at times t (s).
+
+        x and t are broadcast together: `field(x, t[:, None])` has a row a time. Raises InputError for a block and for x outside
+        the slab. See `stickslip.observables.field`.
+        """
+        from stickslip.observables.field import field
+
+        return field(self, x, t, side)
+
+    def plot_field(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Velocity and stress in the slab over time (s), with characteristics, and the contact below.
+
+        By default all of it; of a long run the last of the largest slip events. Raises InputError for a block.
+        """
+        from stickslip.figures import space_time
+
+        return space_time.plot(self, start, end)
+
+    def plot_snapshots(self, t: ArrayLike | None = None) -> Figure:
+        """Displacement, velocity and stress across the slab at times t (s; default: six over a round trip of the waves).
+
+        Raises InputError for a block.
+        """
+        from stickslip.figures import snapshots
+
+        return snapshots.plot(self, t)
+
+    def animate(
+        self,
+        path: str | Path,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        frames: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write the slab in motion to a file (.gif; .mp4 and .webm need ffmpeg), beside the contact's curves. Returns the path.
+
+        From `start` to `end` (s) as for `plot_field`, in 150 frames, 20 a second; `progress` is told how many are done.
+        Raises InputError for a block, and where what writes such a file is missing.
+        """
+        from stickslip.figures import animation
+
+        animation.check_animation(Path(path), "animate:")
+        return animation.write(animation.data(self, start, end, frames), path, progress=progress)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:

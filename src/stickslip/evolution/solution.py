@@ -83,11 +83,14 @@ class Solution(Readings):
 
         return energy(self, t)
 
-    def dataset(self, t: ArrayLike) -> xr.Dataset:
-        """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance."""
+    def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+        """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance.
+
+        With x (m from the contact, one-dimensional) also displacement, velocity and stress inside the slab, over time and x.
+        """
         from stickslip.storage import solution_dataset
 
-        return solution_dataset(self, np.atleast_1d(np.asarray(t, float)))
+        return solution_dataset(self, t, x)
 
     def save(self, path: str | Path) -> Path:
         """Write everything to a netCDF file, from which `stickslip.load` gives this solution back bit for bit."""

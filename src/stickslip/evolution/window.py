@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.errors import InputError
@@ -79,11 +78,14 @@ class Window(Readings):
 
         return energy(self, t, origin=0.0)
 
-    def dataset(self, t: ArrayLike) -> xr.Dataset:
-        """Slip since the event began, slip rate, traction and load at local times t (s), with units, provenance and the epoch."""
+    def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+        """Slip since the event began, slip rate, traction and load at local times t (s), with units, provenance and the epoch.
+
+        With x (m) also what is inside the slab: see `Solution.dataset`.
+        """
         from stickslip.storage import window_dataset
 
-        return window_dataset(self, np.atleast_1d(np.asarray(t, float)))
+        return window_dataset(self, t, x)
 
     def plot(self) -> Figure:
         """Slip since the event began, slip rate, traction and load against local time."""

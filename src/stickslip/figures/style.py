@@ -111,6 +111,12 @@ def time_unit(span: float) -> tuple[str, float]:
     return next(((name, size) for name, size in units.items() if span > 0.5 * size), ("µs", 1e-6))
 
 
+def length_unit(length: float) -> tuple[str, float]:
+    """Unit and its size (m) in which lengths up to this one (m) are readable."""
+    units = {"km": 1e3, "m": 1.0, "mm": 1e-3, "µm": 1e-6}
+    return next(((name, size) for name, size in units.items() if length > 0.5 * size), ("nm", 1e-9))
+
+
 def letter(axes: Axes, text: str) -> None:
     """Title of a panel: its letter and what it shows."""
     axes.set_title(text, pad=6)

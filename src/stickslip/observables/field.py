@@ -1,0 +1,108 @@
+"""Displacement, velocity and shear stress anywhere inside the slab, exactly, from what its contact sent and received.
+
+Two waves travel in the slab (d'Alembert): with x = 0 at the contact and x = h at the driver,
+
+    Z v(x, t) + sigma(x, t) = beta(t + x/c)      towards the contact
+    Z v(x, t) - sigma(x, t) = w(t - x/c)         away from it, w = 2 Z v(0, t) - beta(t)
+    u(x, t) = u(0, t) + [integral of beta over (t, t + x/c) - integral of w over (t - x/c, t)] / (2 Z)
+
+There is no grid. The load beta that is still on its way is what the driver made of an earlier w: so the past alone says what the
+slab holds now, and a longer run says the same.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.bodies import ElasticSlab
+from stickslip.errors import InputError
+from stickslip.evolution.history import Floats, Side
+from stickslip.evolution.readings import Readings
+from stickslip.observables.stretch import Stretch, rounding
+from stickslip.observables.waves import Waves
+
+ROUNDS = 8
+"""Round trips that are read together."""
+
+
+class Field(NamedTuple):
+    """What a slab does at places and times: arrays of one shape."""
+
+    displacement: Floats
+    """u, m: absolute, as the slip is; in a window measured from where the contact stood when the event began."""
+    velocity: Floats
+    """v, m/s."""
+    stress: Floats
+    """Shear stress sigma, Pa: positive where it pulls the contact forwards."""
+
+
+def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
+    """Displacement, velocity and stress at distances x (m) from the contact and times t (s), which are broadcast together.
+
+    `side` is the limit in time at a front: "left" before it passes, "right" behind it; what is within rounding of a front lies on
+    it. Raises InputError for a block, for places outside the slab and for times outside the run.
+    """
+    body = slab_of(readings)
+    place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
+    if not np.all((place >= 0.0) & (place <= body.thickness)):
+        raise InputError(f"field: x must lie between 0 (the contact) and the thickness, {body.thickness:g} m (the driver)")
+    if side not in get_args(Side):
+        raise InputError(f"side must be 'left' or 'right', got {side!r}")
+    slip = np.broadcast_to(getattr(readings, readings.curves[0])(t), time.shape)  # InputError for times outside the run
+    waves, away, moment = Waves(readings.history, body), place.ravel() / body.wave_speed, time.ravel()
+    rise, velocity, stress = np.empty((3, moment.size))
+    batch = np.floor(moment / (ROUNDS * waves.round))
+    for number in np.unique(batch):
+        chosen = batch == number
+        rise[chosen], velocity[chosen], stress[chosen] = _Inside(waves, moment[chosen]).field(away[chosen], side)
+    return Field(*(np.reshape(values, place.shape) for values in (slip.ravel() + rise, velocity, stress)))
+
+
+def slab_of(readings: Readings) -> ElasticSlab:
+    """The slab of a run. Raises InputError for a block."""
+    body = readings.problem.body
+    if not isinstance(body, ElasticSlab):
+        raise InputError("field: a block is rigid, it has no inside: only an ElasticSlab has a field")
+    return body
+
+
+class _Inside:
+    """The slab at some times (s since the epoch), read from one stretch of its past."""
+
+    def __init__(self, waves: Waves, time: Floats) -> None:
+        self.waves, self.time = waves, time
+        self.stretch = Stretch(waves, float(time.min()) - waves.round, float(time.max()))
+
+    def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
+        """Displacement minus that of the contact, velocity, stress at travel times away from it."""
+        impedance, reference = self.waves.body.impedance, self.waves.reference
+        load, leaving = self._coming(away, side), self.stretch.leaving(self.time - away, side)
+        rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)
+        return rise / (2.0 * impedance), (load + leaving) / (2.0 * impedance), reference + 0.5 * (load - leaving)
+
+    def _coming(self, away: Floats, side: Side) -> Floats:
+        """The load minus the reference that will be at the contact in so much time: of the start, or sent back by the driver."""
+        waves, half = self.waves, self.waves.half
+        since = self.time - self.stretch.first + away
+        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)
+        left = self.time - (waves.round - away)  # the contact
+        sent_back = waves.arriving(self.stretch.leaving(left, side), left - self.stretch.first)
+        return np.where(since < half + slack, waves.excess + waves.slope * since, sent_back)
+
+    def _load_coming(self, away: Floats) -> Floats:
+        """Integral of that over the time until then, Pa s."""
+        waves, first = self.waves, self.stretch.first
+        since = np.minimum(self.time - first, waves.half)
+        until = np.minimum(self.time - first + away, waves.half)
+        of_start = (until - since) * (waves.excess + 0.5 * waves.slope * (since + until))
+        low, high = (np.maximum(time, first + waves.half) - waves.round for time in (self.time, self.time + away))
+        middle = 0.5 * (low + high) + waves.round - first
+        inflow = (high - low) * (waves.inflow + waves.inflow_rate * middle)
+        return of_start + waves.body.reflection * self._left(low, high) + inflow
+
+    def _left(self, low: Floats, high: Floats) -> Floats:
+        """Integral of the leaving wave plus the reference between times, Pa s."""
+        return self.stretch.total(high) - self.stretch.total(low)

@@ -1,0 +1,175 @@
+"""The equations that the field inside the slab obeys, on random problems: waves, contact, driver, start.
+
+Tolerances are shares of the normal stress S, of the rate S/Z and of the displacement S h/G, without relative part, unless said.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import stickslip as ss
+from stickslip.observables.field import Field
+from tests.evolution import problems
+from tests.evolution.test_properties import few, ran
+from tests.evolution.test_properties import problems as random_problems
+
+Floats = NDArray[np.float64]
+ROUNDING = 1e-13
+DRIVERS = {"rigid": math.inf, "dead load": 0.0, "matched": 1.0, "softer": 0.3, "stiffer": 3.0}
+LAWS = {"slip law": problems.slip_law, "rate law": problems.rate_law}
+
+
+def random_run(driver: str, law: str, mass: float, seed: int) -> ss.Solution:
+    """Three round trips of a slab that slips at once; under a driver that gives way also with a far stress of its own."""
+    rng = np.random.default_rng([seed, 5, *driver.encode(), *law.encode()])
+    slab = problems.slab(rng)
+    slab = replace(slab, driver_impedance=DRIVERS[driver] * slab.impedance, contact_mass=mass * slab.density * slab.thickness)
+    problem = problems.problem(rng, slab, LAWS[law](rng, slab))
+    if driver != "rigid":
+        stress = rng.uniform(0.2, 1.0) * slab.normal_stress
+        problem = replace(problem, far_stress=stress, far_stress_rate=rng.uniform(0.0, 0.1) * stress / slab.two_way_time)
+    return ss.simulate(problem, 3.3 * slab.two_way_time, rtol=1e-12)
+
+
+@pytest.fixture(
+    scope="module",
+    params=[(driver, law, mass) for driver in DRIVERS for law in LAWS for mass in (0.0, 0.03)],
+    ids=lambda of: f"{of[0]}, {of[1]}, {'with' if of[2] else 'no'} contact mass",
+)
+def run(request: pytest.FixtureRequest) -> ss.Solution:
+    return random_run(*request.param, seed=1)
+
+
+def slab_of(run: ss.Solution) -> ss.ElasticSlab:
+    assert isinstance(run.problem.body, ss.ElasticSlab)
+    return run.problem.body
+
+
+def scales(slab: ss.ElasticSlab) -> Field:
+    """Displacement, rate and stress that the normal stress makes."""
+    stress = slab.normal_stress
+    return Field(*(np.asarray(size) for size in (stress / slab.stiffness, stress / slab.impedance, stress)))
+
+
+def moments(run: ss.Solution, count: int = 400) -> Floats:
+    return np.random.default_rng(7).uniform(0.0, run.history.duration, count)
+
+
+# ---- the equations, on random problems ----------------------------------------------------------------------------------------
+
+
+def parallelogram(run: ss.Solution, speed: float = 1.0) -> Field:
+    """What the corners of parallelograms of characteristics sum to, with alternating signs; zero for every wave of that speed."""
+    slab, time = slab_of(run), moments(run)
+    rng, duration = np.random.default_rng(8), run.history.duration
+    place = rng.uniform(0.0, slab.thickness, len(time))
+    room = np.minimum(np.minimum(place, slab.thickness - place) / slab.wave_speed, np.minimum(time, duration - time))
+    delay = room * rng.uniform(0.2, 0.9, len(time))
+    length = speed * slab.wave_speed * delay
+    corners = (place, time + delay), (place, time - delay), (place + length, time), (place - length, time)
+    later, earlier, ahead, behind = (run.field(*corner) for corner in corners)
+    sums = (np.abs(a + b - c - d) / size for a, b, c, d, size in zip(later, earlier, ahead, behind, scales(slab), strict=True))
+    return Field(*sums)
+
+
+def test_the_wave_equation(run: ss.Solution) -> None:
+    """d'Alembert: f(x, t + a) + f(x, t - a) = f(x + ca, t) + f(x - ca, t), for displacement, velocity and stress."""
+    assert max(float(error.max()) for error in parallelogram(run)) < ROUNDING
+    assert min(float(error.max()) for error in parallelogram(run, speed=1.01)) > 1e-6
+
+
+def contact_errors(run: ss.Solution) -> Field:
+    """Differences from the contact's slip and slip rate, and from beta - Z v."""
+    slab, time = slab_of(run), moments(run)
+    at, rate, size = run.field(0.0, time), run.slip_rate(time), scales(slab)
+    errors = at.displacement - run.slip(time), at.velocity - rate, at.stress + slab.impedance * rate - run.load(time)
+    return Field(*(np.abs(error) / share for error, share in zip(errors, size, strict=True)))
+
+
+def test_the_contact(run: ss.Solution) -> None:
+    """Slip and slip rate are the contact's; the slab pulls it with beta - Z v, which without contact mass is the friction."""
+    slab, time = slab_of(run), moments(run)
+    size = scales(slab)
+    displacement, velocity, stress = (float(error.max()) for error in contact_errors(run))
+    assert displacement == 0.0
+    assert max(velocity, stress) < ROUNDING
+    from_friction = float(np.abs(run.field(0.0, time).stress - run.traction(time)).max() / size.stress)
+    assert (from_friction < ROUNDING) if slab.contact_mass == 0.0 else (from_friction > 1e-6)
+    assert np.abs(run.slip_rate(time)).max() > 1e-3 * size.velocity
+
+
+def test_the_contact_notices_a_wrong_history(run: ss.Solution) -> None:
+    """A slip rate that is a thousandth too large everywhere sends back another load than the contact received."""
+    store = run.history.store
+    history = replace(run.history, store=store._replace(rate=store.rate * 1.001))
+    error = float(contact_errors(replace(run, history=history)).stress.max())
+    assert error > 1e-7 or slab_of(run).reflection == 0.0  # of a matched driver nothing comes back
+
+
+def driver_error(run: ss.Solution, wrong: float = 1.0) -> float:
+    """Rigid: from u = D0 + V t and v = V. Else from a half-space that moves at V under the far stress s: sigma = s + Zd (V - v)."""
+    slab, problem, time = slab_of(run), run.problem, moments(run)
+    size, at = scales(slab), run.field(slab.thickness, time)
+    if math.isinf(slab.driver_impedance):
+        pulled = problem.initial_slip + problem.load / slab.stiffness + problem.pull_rate * time
+        moved = np.abs(at.displacement - pulled) / size.displacement
+        return float(np.maximum(moved, np.abs(at.velocity - problem.pull_rate) / size.velocity).max())
+    far = (problem.load if problem.far_stress is None else problem.far_stress) + problem.far_stress_rate * time
+    by_driver = far + wrong * slab.driver_impedance * (problem.pull_rate - at.velocity)
+    return float(np.abs(at.stress - by_driver).max() / size.stress)
+
+
+def test_the_driver(run: ss.Solution) -> None:
+    """It does so, and its stress (rigid) or rate (else) is not just what it was at the start."""
+    assert driver_error(run) < ROUNDING
+    at, size = run.field(run.problem.body.thickness, moments(run)), scales(slab_of(run))
+    moves = np.abs(at.velocity - run.problem.pull_rate).max() > 1e-2 * size.velocity
+    assert moves or np.ptp(at.stress) > 1e-3 * size.stress
+    if 0.0 < slab_of(run).driver_impedance < math.inf:
+        assert driver_error(run, wrong=1.01) > 1e-5
+
+
+@pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "sinusoidal-slip", "rate-and-state", "lagged"])
+@given(data=st.data())
+@few
+def test_whatever_the_law(kind: str, data: st.DataObject) -> None:
+    """Laws, drivers, loads and rules at random, at a loose rtol: the wave equation and both boundaries still hold to rounding."""
+    problem = data.draw(random_problems(kind))
+    assume(isinstance(problem.body, ss.ElasticSlab))
+    run = ran(problem)
+    assert max(float(error.max()) for error in parallelogram(run)) < ROUNDING
+    assert max(float(error.max()) for error in contact_errors(run)) < ROUNDING
+    assert driver_error(run) < ROUNDING
+
+
+def test_the_start(run: ss.Solution) -> None:
+    """Before anything has moved: uniform stress, displacement and velocity linear in x; the driver may start to pull at once."""
+    slab, problem = slab_of(run), run.problem
+    x = np.linspace(0.0, slab.thickness, 33)
+    size = scales(slab)
+    start = run.field(x, 0.0, side="left")
+    assert np.abs(start.stress - problem.load).max() < 1e-15 * size.stress
+    assert np.abs(start.velocity - problem.pull_rate * x / slab.thickness).max() < 1e-15 * size.velocity
+    sheared = problem.initial_slip + problem.load * x / slab.shear_modulus
+    assert np.abs(start.displacement - sheared).max() < 1e-14 * size.displacement
+    for name in ("velocity", "stress"):
+        inside = slice(1, -1)
+        now = getattr(run.field(x, 0.0), name)
+        assert np.abs(now - getattr(start, name))[inside].max() < 1e-15 * getattr(size, name)
+
+
+def test_a_shorter_run_knows_the_same_field(run: ss.Solution) -> None:
+    """What is on its way to the contact comes from the past alone."""
+    slab = slab_of(run)
+    cut = 1.7 * slab.two_way_time
+    short = ss.simulate(run.problem, cut, rtol=1e-12)
+    x = np.linspace(0.0, slab.thickness, 101)
+    for name, size in zip(Field._fields, scales(slab), strict=True):
+        assert np.abs(getattr(short.field(x, cut), name) - getattr(run.field(x, cut), name)).max() < 1e-11 * size, name
