@@ -100,7 +100,10 @@ class Phases:
         return cls(edges, leaves, begins, members)
 
     def latest(self, phase: Floats, upto: Integers, side: Literal["left", "right"] = "right") -> Integers:
-        """The last piece up to `upto` at each phase; at an edge, that on the `side`. -1 where there is none."""
+        """The last piece up to `upto` at each phase; at an edge, that on the `side`. -1 where there is none.
+
+        Beyond the first and last edge (by rounding) what holds next to them.
+        """
         leaf = np.searchsorted(self.edges, phase, side=side) - 1
         found = np.empty(len(leaf), np.int64)
         _latest(self.begins, self.members, self.leaves, np.clip(leaf, 0, len(self.edges) - 2), upto, found)
