@@ -155,7 +155,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
 
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
-    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on.
+    PAUSED: row PAUSE_AT comes next. NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """
@@ -182,6 +182,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             if not next_piece(run):
                 limit = rest_limit(run)
                 locked = end_row(run, limit, last_row) == at.LOCKED
+                if run.counts[at.ROW] >= run.counts[at.PAUSE_AT]:
+                    return at.PAUSED
                 continue
             if run.counts[at.FOLDS_MOVE] == 1:
                 continue

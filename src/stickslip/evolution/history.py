@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -27,6 +27,9 @@ def horner(coefficients: Floats, x: Floats) -> Floats:
     return value
 
 
+NO_LEAPS = np.empty((0, 4))
+
+
 @dataclass(frozen=True)
 class Moments:
     """Times found in the history: piece, place xi in it, whole round trips since (a leap over rest), before = left of t = 0."""
@@ -46,6 +49,8 @@ class History:
     row_time: float
     ramp: float
     duration: float
+    creep: Floats = field(default_factory=NO_LEAPS.copy)
+    """Leaps over creep, one a row: start and end (s), round trips, bound of the error of slip (m)."""
 
     @cached_property
     def start(self) -> Floats:

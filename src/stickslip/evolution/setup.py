@@ -76,6 +76,7 @@ def _parameters(problem: Problem) -> at.Floats:
 
 
 DAY = 86_400.0
+NEVER = 2**62
 SMALLEST, SLOWEST = 1e-300, 1e-12
 """Slip rates that are resolved to the last digit: down to nothing where slip begins from rest, to a share of the law's own scale
 where friction has no rest."""
@@ -166,6 +167,7 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     state[at.STATE_NOW] = problem.state
     if not problem.friction.sticks:
         count[at.MODE] = 1 if problem.load >= 0.0 else -1
+    count[at.PAUSE_AT] = NEVER
     count[at.FOLDS_MOVE] = folds_move(problem)
     count[at.KNOTS_IN_RATE] = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

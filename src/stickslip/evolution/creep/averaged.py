@@ -1,0 +1,138 @@
+"""Creep of a slab under a law of slip, averaged over round trips: in closed form.
+
+Under a rigid driver beta(t) = beta(t-R) - 2 Z v(t-R) + 2 Z V is a sum: at each offset theta of the round trip, n round trips
+after one whose load is beta_0(theta),
+
+    tau_n = beta_0 + 2 Z V n - 2 Z C_n,        C_n = sum of v over the round trips before + v_n / 2.
+
+Where it slips tau = S mu(u), where it has not it is below: as slip goes on, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
+whatever echoes are in beta_0, and however v jumps from one round trip to the next (where it slips the contact reflects with a
+change of sign: v_n and v_(n+1) add up to twice their mean). Slip over a round trip then obeys, exactly,
+
+    ubar = u_0 + integral of C_n over theta,    ubar the mean of the slips at the start and the end of round trip n.
+
+With S mu(u) at ubar, which has no error of first order in the slip per round trip, ubar and n are explicit functions of the
+*lift* L = 2 Z V n - S mu(ubar):  ubar = u_0 + M(L) / (2 Z),  n = (L + S mu(ubar)) / (2 Z V), where M is the part of beta_0 + L
+above zero and A = M' the share of the round trip, in s, in which the contact slips. dn/dL = room / (2 Z V), with
+room = 1 + S mu'(ubar) A / (2 Z): no room is left where creep turns dynamic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.evolution.creep.pattern import Pattern
+from stickslip.evolution.layout import Floats
+from stickslip.evolution.moving_branches import strength_change
+from stickslip.problem import Problem
+
+COMPLEX_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class Strength:
+    """Friction (Pa) against growing slip x >= 0 (m) from here on, minus the reference strength."""
+
+    problem: Problem
+    law_slip: float  # here, minus that at the start of the run, m
+    sign: float  # change of the law's slip with x
+    step: float  # slip over which a second derivative is seen, m: that of a round trip
+
+    def __call__(self, x: float) -> float:
+        return strength_change(self.problem, self.law_slip + self.sign * x)
+
+    @cached_property
+    def piece(self) -> int:
+        """Piece of the law that holds here."""
+        law = self.problem.friction
+        return int(law.piece_at(self.problem.law_slip + self.law_slip)) if law.knot_variable == "slip" else 0
+
+    @cached_property
+    def room(self) -> float:
+        """How far x may grow within the piece, m."""
+        knots = (-np.inf, *self.problem.friction.knots, np.inf)
+        here = self.problem.law_slip + self.law_slip
+        return float(knots[self.piece + 1] - here if self.sign > 0 else here - knots[self.piece])
+
+    def slope(self, x: float) -> float:
+        """Its derivative, Pa/m, by a complex step."""
+        slip = complex(self.problem.law_slip + self.law_slip + self.sign * x, self.sign * COMPLEX_STEP)
+        return self.problem.normal * float(np.imag(self.problem.friction.piece_coefficient(self.piece, slip, 0.0))) / COMPLEX_STEP
+
+    def curvature(self, x: float) -> float:
+        """Its second derivative, Pa/m^2, from slopes a little apart."""
+        return (self.slope(x + self.step) - self.slope(x - self.step)) / (2.0 * self.step)
+
+
+@dataclass(frozen=True)
+class Creep:
+    """The averaged state at one lift. Slip is counted from the start of the round trip whose load is the pattern's."""
+
+    lift: float  # Pa
+    trips: float  # round trips since: n
+    slip: float  # ubar, m
+    rate: float  # d ubar / dn, m a round trip
+    bend: float  # d2 ubar / dn2
+    room: float
+    length: float  # of the part of the round trip in which the contact slips, s
+    mean_rate: float  # m/s, where the contact slips
+    mean_bend: float  # its change in a round trip
+    error: float  # of ubar, m
+
+
+@dataclass(frozen=True)
+class AveragedCreep:
+    """Creep from a round trip with a given load on, driven at `speed` > 0 (m/s), seen in the direction of slip."""
+
+    pattern: Pattern
+    strength: Strength
+    impedance: float
+    speed: float
+
+    @property
+    def gain(self) -> float:
+        """Load gained in a round trip, Pa."""
+        return 2.0 * self.impedance * self.speed
+
+    def at(self, lift: float) -> Creep:
+        """The state at a lift (Pa), with the size of the terms left out: those of second order in the slip per round trip."""
+        above, z2 = self.pattern.above(np.array([lift])), 2.0 * self.impedance
+        length, border = float(above.length[0]), float(above.border[0])
+        slip = float(above.area[0]) / z2
+        slope = self.strength.slope(slip)
+        room = 1.0 + slope * length / z2
+        if room <= 0.0:
+            return Creep(lift, np.inf, slip, np.inf, np.inf, room, length, np.inf, np.inf, np.inf)
+        rate, mean_rate = length * self.speed / room, self.speed / room
+        curvature = self.strength.curvature(slip)
+        closing = (curvature * length * length / z2 + slope * border) / z2 / room * self.gain  # d room / dn
+        bend = (border * self.speed * self.gain / room - rate * closing) / room
+        mean_bend = -mean_rate * closing / room
+        left_out = abs(slope) * length * abs(bend) / 12.0 + abs(curvature) * rate * rate * length / 24.0
+        left_out += (0.5 * slope * rate) ** 2 * border / 2.0
+        trips = (lift + self.strength(slip)) / self.gain
+        return Creep(lift, trips, slip, rate, bend, room, length, mean_rate, mean_bend, left_out / z2 / room)
+
+    def start(self) -> Creep:
+        """The state at n = 0."""
+        low = high = -self.strength(0.0)
+        while self.at(low).trips > 0.0:
+            low -= self.gain
+        while self.at(high).trips < 0.0:
+            high += self.gain
+        return self.reaching(0.0, low, high)
+
+    def reaching(self, trips: float, low: float, high: float) -> Creep:
+        """The state after so many round trips, between two lifts, by bisection."""
+        for _ in range(200):
+            middle = 0.5 * (low + high)
+            if middle in (low, high):
+                break
+            if self.at(middle).trips < trips:
+                low = middle
+            else:
+                high = middle
+        return self.at(0.5 * (low + high))

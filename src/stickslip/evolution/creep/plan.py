@@ -1,0 +1,110 @@
+"""How far a leap over creep may go, and the slip on the way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stickslip.evolution.creep.averaged import AveragedCreep, Creep
+from stickslip.evolution.layout import Floats
+
+SAFETY = 4.0
+"""The terms left out also set off small oscillations, which do not die: seen up to 2.5 times their estimate."""
+FIRST_STRIDE, LONGER = 4.0, 1.5
+SHORTEST_STRIDE = 0.5
+"""Strides in round trips at the rate of rest: nothing is resolved within a round trip."""
+SMOOTH = 0.05
+INTERPOLATION = 0.1
+"""Share of the tolerance that the interpolation between two states may use."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """States from the round trip of the pattern on, the last one a whole number of round trips later; error of slip there (m)."""
+
+    states: list[Creep]
+    error: float
+
+    @property
+    def trips(self) -> int:
+        """Round trips from the pattern's to that of the landing."""
+        return round(self.states[-1].trips)
+
+
+@dataclass
+class Planner:
+    """Strides along a creep, state by state, as long as the error stays below `tolerance` times the slip since the start."""
+
+    averaged: AveragedCreep
+    slipped: float  # before, since the start of the run, m
+    tolerance: float
+    fastest: float  # slip rate where the contact slips: the largest mean so far, m/s
+    largest: float = 0.0  # of the terms left out so far, m
+
+    def plan(self, most: int) -> Plan | None:
+        """A leap of at most so many round trips; None if there is none."""
+        start = self.averaged.start()
+        if not self._fits(start, math.inf):
+            return None
+        states, stride, growth = [start], FIRST_STRIDE * self.averaged.gain, LONGER
+        while stride >= SHORTEST_STRIDE * self.averaged.gain:
+            state = self._stride(states[-1], stride, most)
+            if state is None:
+                stride, growth = 0.5 * stride, 1.0
+                continue
+            self._note(state)
+            states.append(state)
+            stride, growth = stride * growth, min(growth + 0.1, LONGER)
+        whole = math.floor(states[-1].trips)
+        while len(states) > 1 and states[-1].trips > whole:
+            last = states.pop()
+        if states[-1].trips < whole:
+            states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
+        return Plan(states, self.error(states[-1])) if whole > 0 else None
+
+    def error(self, state: Creep) -> float:
+        """Bound of the error of slip (m): the terms left out, and slip that rests for a while instead of slowing down.
+
+        Where the mean rate falls, what had begun to slip at twice a larger one comes to rest for a round trip now and then.
+        """
+        resting = 0.5 * state.length * max(self.fastest - state.mean_rate, 0.0) / state.room
+        return SAFETY * max(self.largest, state.error) + resting
+
+    def _allowed(self, state: Creep) -> float:
+        return self.tolerance * (self.slipped + state.slip)
+
+    def _note(self, state: Creep) -> None:
+        self.largest, self.fastest = max(self.largest, state.error), max(self.fastest, state.mean_rate)
+
+    def _fits(self, state: Creep, most: float) -> bool:
+        if state.room <= 0.0 or not state.trips <= most or state.slip >= self.averaged.strength.room:
+            return False
+        return self.error(state) <= self._allowed(state)
+
+    def _stride(self, begin: Creep, stride: float, most: int) -> Creep | None:
+        """The state one stride on, if it can be trusted and the way there interpolated."""
+        middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
+        if not (self._fits(middle, most) and self._fits(end, most)):
+            return None
+        if stride <= self.averaged.gain:
+            return end if end.trips > begin.trips else None
+        expected = stride * (begin.room + 4.0 * middle.room + end.room) / 6.0 / self.averaged.gain
+        if abs(end.trips - begin.trips - expected) > SMOOTH * expected:
+            return None
+        error = abs(between(begin, end, middle.trips) - middle.slip)
+        return end if error <= INTERPOLATION * self._allowed(end) else None
+
+
+def hermite(length: float, rise: float, first: float, last: float) -> Floats:
+    """Coefficients in xi on [0, 1] of the cubic that starts at 0, rises by `rise` over `length`, with slopes first and last."""
+    a, b = first * length, last * length
+    return np.array([0.0, a, 3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise])
+
+
+def between(begin: Creep, end: Creep, trips: float) -> float:
+    """Slip (m) after so many round trips, interpolated between two states."""
+    length = end.trips - begin.trips
+    xi = (trips - begin.trips) / length
+    return begin.slip + float(hermite(length, end.slip - begin.slip, begin.rate, end.rate) @ xi ** np.arange(4))
