@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import stickslip
 from stickslip.errors import InputError
-from stickslip.evolution.history import History
+from stickslip.evolution.history import NO_LEAPS, History
 from stickslip.evolution.layout import Store
 from stickslip.evolution.solution import Curve, Solution
 from stickslip.evolution.status import Status
@@ -109,6 +109,9 @@ def _history(solution: Solution) -> xr.Dataset:
             "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
         }
     )
+    if len(history.creep):
+        about = {"columns": "start end round_trips error", "units": "s s 1 m", "long_name": "leaps over creep"}
+        dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
         dataset["history_state"] = (("piece", "term"), store.state, about)
@@ -158,6 +161,7 @@ def load(path: str | Path) -> Solution:
     state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, load.shape[1]))
     store = Store(whole, real, load, rate, np.ascontiguousarray(state))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
-    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
+    creep = dataset["history_creep"].to_numpy() if "history_creep" in dataset else NO_LEAPS
+    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached), creep)
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
     return Solution(problem, duration, rtol, status, history)

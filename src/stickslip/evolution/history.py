@@ -65,6 +65,16 @@ class History:
     def __len__(self) -> int:
         return len(self.store.whole)
 
+    def rested(self, piece: int) -> int:
+        """Whole round trips at rest that were leaped over just before a piece."""
+        if piece == 0 or self.start[piece] <= self.end[piece - 1]:
+            return 0  # at once behind it, be that a leap over creep
+        return max(int(self.store.row[piece] - self.store.row[piece - 1]) - 1, 0)
+
+    def in_creep_leap(self, row: int) -> bool:
+        """Whether a stored row is a leap over creep, and its pieces so are averages over round trips."""
+        return bool((np.round(self.creep[:, 0] / self.row_time) == row).any())
+
     def find(self, time: Floats, side: Side) -> Moments:
         """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
         if side not in ("left", "right"):

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.errors import InputError, nearest
 from stickslip.evolution.history import History, Moments, Side
 from stickslip.evolution.status import Status
-from stickslip.evolution.tables import default_event_rate, events_table, shocks_table
+from stickslip.evolution.tables import creep_table, default_event_rate, events_table, shocks_table
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
@@ -97,6 +97,15 @@ class Solution:
         return shocks_table(self.history)
 
     @cached_property
+    def creep(self) -> pd.DataFrame:
+        """Leaps over creep (`simulate(..., creep_rtol=...)`): start, end (s), round_trips, error (of slip where it lands, m).
+
+        There the slip is an average over round trips, right to the error where one begins and to half a round trip's slip within
+        it; slip rate, traction and load are averages too.
+        """
+        return creep_table(self.history)
+
+    @cached_property
     def breaks(self) -> Floats:
         """Times (s) at which pieces of the history meet, 0 and the end included."""
         return np.append(self.history.start, self.history.end[-1:])
@@ -167,7 +176,13 @@ class Solution:
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
+            *([("creep", self._creep_note)] if len(self.creep) else []),
         ]
+
+    @property
+    def _creep_note(self) -> str:
+        leaps, trips = len(self.creep), self.creep.round_trips.sum()
+        return f"{leaps} leap{'s' * (leaps > 1)} over {trips} round trips, error of slip up to {self.creep.error.max():.1e} m"
 
     @cached_property
     def selection_note(self) -> str:

@@ -164,7 +164,7 @@ def _friction_before(history: History, piece: int, xi: float) -> float:
         return float(history.friction(_moments(piece, xi))[0])
     if piece == 0:
         return history.problem.excess
-    leaped = np.array([float(max(history.store.row[piece] - history.store.row[piece - 1] - 1, 0))])
+    leaped = np.array([float(history.rested(piece))])
     at = Moments(np.array([piece - 1]), np.array([1.0]), leaped, np.array([False]))
     return float(history.friction(at)[0])
 
@@ -208,3 +208,10 @@ def shocks_table(history: History) -> pd.DataFrame:
         for n in at
     ]
     return pd.DataFrame(rows, columns=["time", "cause", "rate_before", "rate_after", "traction_before", "traction_after"])
+
+
+def creep_table(history: History) -> pd.DataFrame:
+    """One row a leap over creep."""
+    import pandas as pd
+
+    return pd.DataFrame(history.creep, columns=["start", "end", "round_trips", "error"]).astype({"round_trips": int})

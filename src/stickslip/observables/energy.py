@@ -36,7 +36,8 @@ def energy(solution: Solution, t: ArrayLike) -> xr.Dataset:
     """Energies at times t (s) minus their values at the start: work, stored, heat, damped, balance (slab: J/m^2, block: J).
 
     Work is what the driver puts in (net of what radiates through a driver of finite impedance); balance is
-    work - stored - heat - damped, zero for an exact solution. Raises InputError for times outside the run.
+    work - stored - heat - damped, zero for an exact solution. Raises InputError for times outside the run, and in
+    a leap over creep or within a round trip behind it, where the waves in the slab are not known.
     """
     time = np.atleast_1d(np.asarray(t, float))
     solution.history.find(time, "right")

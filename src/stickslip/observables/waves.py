@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
+from stickslip.errors import InputError
 from stickslip.evolution.history import History, Moments
 from stickslip.evolution.setup import inflow
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
@@ -74,6 +75,9 @@ class Waves:
         for first, last, begin, rows in self._rows():
             if begin > row:
                 break
+            if self.history.in_creep_leap(begin):  # averages, which have the work of what they stand for
+                total += self._in_row(first, last, 0, 0.0, end - begin * self.round, self.power)
+                continue
             whole = min(rows, row - begin)  # round trips like this one that lie wholly before the end
             total += self._row_work(first, last, whole)
             if row < begin + rows:
@@ -134,6 +138,8 @@ class Waves:
             first, last = (int(np.searchsorted(self.history.store.row, begin, side=side)) for side in ("left", "right"))
             low, high = max(start - row * self.round, 0.0), min(end - row * self.round, self.round)
             if high > low:
+                if self.history.in_creep_leap(begin):
+                    raise InputError(f"the waves at {end:g} s are not known: they left the contact in a leap over creep")
                 total += self._in_row(first, last, row - begin, low, high, density)
         return total
 

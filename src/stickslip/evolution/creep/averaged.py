@@ -7,7 +7,8 @@ after one whose load is beta_0(theta),
 
 Where it slips tau = S mu(u), where it has not it is below: as slip goes on, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
 whatever echoes are in beta_0, and however v jumps from one round trip to the next (where it slips the contact reflects with a
-change of sign: v_n and v_(n+1) add up to twice their mean). Slip over a round trip then obeys, exactly,
+change of sign: v_n and v_(n+1) add up to twice their mean; a rate above twice the mean is followed by as much rest as makes up
+for it). Slip over a round trip then obeys, exactly,
 
     ubar = u_0 + integral of C_n over theta,    ubar the mean of the slips at the start and the end of round trip n.
 
@@ -113,6 +114,7 @@ class AveragedCreep:
         mean_bend = -mean_rate * closing / room
         left_out = abs(slope) * length * abs(bend) / 12.0 + abs(curvature) * rate * rate * length / 24.0
         left_out += (0.5 * slope * rate) ** 2 * border / 2.0
+        left_out += z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
         trips = (lift + self.strength(slip)) / self.gain
         return Creep(lift, trips, slip, rate, bend, room, length, mean_rate, mean_bend, left_out / z2 / room)
 

@@ -88,7 +88,7 @@ class CreepLeaps:
         self.wait = min(2 * self.wait, LONGEST_WAIT)
         averaged = self._averaged(store, state, count)
         rate = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
-        planner = Planner(averaged, abs(float(state[at.SLIP_NOW])), self.tolerance, 0.5 * rate)
+        planner = Planner(averaged, abs(float(state[at.SLIP_NOW])), self.tolerance, rate)
         plan = planner.plan(most)
         if plan is None or plan.trips < SHORTEST_LEAP:
             return store
@@ -171,7 +171,8 @@ class CreepLeaps:
     ) -> int:
         """The leap itself: slip averaged over round trips, as cubics from state to state. Returns the next free piece."""
         inside = [c for c in plan.states if c.trips > 0.0][:-1]
-        ends = [(s.rate - 0.5 * s.bend) / self.row_time for s in (plan.states[0], plan.states[-1])]
+        first, second, last = plan.states[0], plan.states[1], plan.states[-1]
+        ends = [(rate - 0.5 * bend) / self.row_time for rate, bend in ((first.rate, second.bend), (last.rate, last.bend))]
         nodes = [(0.0, 0.0, ends[0])]
         nodes += [((c.trips + 0.5) * self.row_time, c.slip, c.rate / self.row_time) for c in inside if c.trips < plan.trips - 1.0]
         nodes.append((plan.trips * self.row_time, slip_end, ends[1]))
