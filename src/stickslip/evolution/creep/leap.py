@@ -73,11 +73,12 @@ class CreepLeaps:
     @property
     def table(self) -> Floats:
         """The leaps, (n, 4): start and end (s), round trips, bound of the error of slip (m)."""
-        return np.array(self.taken).reshape(-1, 4)
+        unchecked = [self.landed.summary] if self.landed is not None else []
+        return np.array(self.taken + unchecked).reshape(-1, 4)
 
     def at_row_end(self, store: Store, state: Floats, count: Integers, last_row: int) -> Store:
         """A round trip has ended: check the last leap, or leap if one is due. Returns the history, which may have grown."""
-        most = last_row - 1 - int(count[at.ROW])
+        most = last_row - CHECKED - 1 - int(count[at.ROW])
         if self.landed is not None:
             most = min(most, self._check(store, state, count))
         count[at.PAUSE_AT] = count[at.ROW] + 1

@@ -65,7 +65,7 @@ class Planner:
             last = states.pop()
         if states[-1].trips < whole:
             states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
-        return Plan(states, self.error(states[-1])) if whole > 0 else None
+        return Plan(states, SAFETY * max(state.error for state in states[1:])) if whole > 0 else None
 
     def error(self, state: Creep) -> float:
         """Bound of the error of slip so far, m."""
