@@ -93,6 +93,6 @@ def by_grid(points: int, pull_rate: float, first_slip: float, excess: float) -> 
 if __name__ == "__main__":
     method, problem = sys.argv[1], printed(float(sys.argv[2]))
     if method == "engine":
-        print(repr(by_engine(problem)))
+        sys.stdout.write(f"{by_engine(problem)!r}\n")
     else:
-        print(repr(by_grid(int(sys.argv[3]), problem.pull_rate, problem.initial_slip, problem.excess)))
+        sys.stdout.write(f"{by_grid(int(sys.argv[3]), problem.pull_rate, problem.initial_slip, problem.excess)!r}\n")

@@ -23,7 +23,7 @@ SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=10e3, normal_stre
 PULSE_BY_ENGINE = {10: 23541.221458850272, 100: 2384.9928651208907}
 """faster -> time (s) at which slip has grown by GROWN: `tests.evolution.creep_truth engine`."""
 PULSE_BY_GRID = 234901.286195246
-"""The same for the printed pull rate: `tests.evolution.creep_truth grid 1 64000`; 16000 offsets give 234901.285855, 4000 give 234901.285281."""
+"""The same for the printed pull rate: `tests.evolution.creep_truth grid 1 64000`; with 16000 offsets 234901.285855."""
 
 
 def pulse(solution: ss.Solution, near: float) -> float:
@@ -55,22 +55,19 @@ KINKED = F.PiecewiseLinearSlip(slips=(0.0, 8e-4, 1.2e-3, 1e-2), coefficients=(0.
 
 
 def test_first_pulse_of_the_printed_slab() -> None:
-    """It comes 2.72 days after the start: 41 107 round trips, by a method that shares nothing with this one, to 3 ms
-
-    of 2.7 days. The bound of the error of slip, 1.4e-10 m, allows for 8 ms: 1.4e-10 m / pull rate times the room (0.09).
-    """
-    solution = ss.simulate(printed(1), PULSE_BY_GRID + 60.0, creep_rtol=1e-7)
+    """It comes 2.72 days after the start, 41 107 round trips, by a method that shares nothing with this one: to 0.1 ms."""
+    solution = ss.simulate(printed(1), PULSE_BY_GRID + 60.0, creep_rtol=1e-6)
     assert solution.status.ok
-    assert pulse(solution, PULSE_BY_GRID) == pytest.approx(PULSE_BY_GRID, rel=0.0, abs=3e-3)
-    assert solution.creep.round_trips.sum() > 39_000
-    assert len(solution.history) < 200_000
+    assert pulse(solution, PULSE_BY_GRID) == pytest.approx(PULSE_BY_GRID, rel=0.0, abs=1e-4)
+    assert solution.creep.round_trips.sum() > 40_000
+    assert len(solution.history) < 50_000
 
 
 def test_first_pulse_against_the_engine_round_trip_by_round_trip() -> None:
     """Ten times faster: 134 million pieces by brute force, some thousand here."""
     near = PULSE_BY_ENGINE[10]
     solution = ss.simulate(printed(10), near + 60.0, creep_rtol=1e-6)
-    assert pulse(solution, near) == pytest.approx(near, rel=0.0, abs=5e-3)
+    assert pulse(solution, near) == pytest.approx(near, rel=0.0, abs=5e-5)
     assert len(solution.history) < 20_000
 
 
@@ -86,14 +83,11 @@ def test_slip_within_the_bound(tolerance: float) -> None:
         assert (np.abs(means(solution, inside) - means(exact, inside)) <= tolerance * means(exact, inside)).all()
 
 
-def test_tighter_tolerances_bring_the_pulse_closer() -> None:
-    """The error of the pulse's time falls with the tolerance."""
+@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 1e-2), (1e-4, 5e-3), (1e-6, 2e-3)])
+def test_time_of_the_pulse(tolerance: float, error: float) -> None:
+    """A hundred times faster: the error of the pulse's time (s) falls with the tolerance."""
     near = PULSE_BY_ENGINE[100]
-    errors = [abs(pulse(ss.simulate(printed(100), near + 30, creep_rtol=rtol), near) - near) for rtol in (1e-3, 1e-4, 1e-6)]
-    assert errors[0] < 0.5
-    assert errors[1] < 0.1
-    assert errors[2] < 2e-3
-    assert errors[2] < 0.1 * errors[0]
+    assert pulse(ss.simulate(printed(100), near + 30, creep_rtol=tolerance), near) == pytest.approx(near, rel=0.0, abs=error)
 
 
 def test_exact_before_anything_dynamic() -> None:
@@ -140,19 +134,20 @@ def test_no_leap_over_a_kink_of_the_law() -> None:
         assert KINKED.piece_at(slips[0]) == KINKED.piece_at(slips[1])
 
 
-def test_decades_of_the_printed_slab() -> None:
-    """Creep between pulses after the first as well: 5 years, 5 million round trips, two pulses, and the energy balances."""
-    solution = ss.simulate(printed(1), 5.03e6 * ROUND, creep_rtol=1e-7)
-    events = solution.events
-    large = events[events.slip > 1e-2]
-    assert len(large) == 2
-    assert large.start.iloc[1] / ROUND == pytest.approx(5_025_694.22, rel=0.0, abs=0.05)
-    before = large.start.to_numpy() - 5 * ROUND
+def test_years_of_the_printed_slab() -> None:
+    """Creep behind the first pulse as well: 330 days, 5 million round trips, the second pulse; and the energy balances."""
+    second = []
+    for tolerance in (1e-5, 1e-6):
+        solution = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=tolerance)
+        start, end = solution.creep.end.iloc[1], solution.duration
+        second.append(brentq(lambda t: float(solution.slip(t)) - solution.problem.initial_slip - 1.6, start, end, xtol=1e-6))  # noqa: B023
+    assert solution.creep.round_trips.sum() > 5_000_000
+    assert second[0] == pytest.approx(second[1], rel=0.0, abs=0.2 * ROUND)
+    before = solution.creep.end.to_numpy()[:2] + 1.5 * ROUND
     energy = solution.energy(before)
-    # an error of slip is an error of heat: 1.5e8 Pa times the bounds of the leaps before
-    bound = 1.5e8 * np.cumsum(solution.creep.error.to_numpy())[:2]
+    bound = 1.5e8 * np.cumsum(solution.creep.error.to_numpy())[:2]  # an error of slip is one of heat
     assert (np.abs(energy.balance.to_numpy()) < bound).all()
-    assert (bound < 1e-6 * energy.heat.to_numpy()).all()
+    assert (bound < 1e-5 * energy.heat.to_numpy()).all()
 
 
 # ---- the machinery ------------------------------------------------------------------------------------------------------------
@@ -229,6 +224,6 @@ def test_what_lies_above_a_level() -> None:
     np.testing.assert_allclose(found.area, [above(lift, 1) for lift in lifts], rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(found.length, [above(lift, 0) for lift in lifts], rtol=1e-3, atol=1e-3)
     step = 1e-6
-    difference = (pattern.above(lifts + step).length - pattern.above(lifts - step).length) / (2 * step)
-    np.testing.assert_allclose(found.border, difference, rtol=1e-6, atol=1e-6)
-    np.testing.assert_allclose(found.length, (pattern.above(lifts + step).area - pattern.above(lifts - step).area) / (2 * step), rtol=1e-8)
+    below, beyond = pattern.above(lifts - step), pattern.above(lifts + step)
+    np.testing.assert_allclose(found.border, (beyond.length - below.length) / (2 * step), rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(found.length, (beyond.area - below.area) / (2 * step), rtol=1e-8, atol=0.0)

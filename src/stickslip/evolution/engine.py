@@ -155,7 +155,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
 
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
-    PAUSED: row PAUSE_AT comes next. NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on.
+    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. PAUSED: row PAUSE_AT
+    comes next.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """

@@ -16,6 +16,13 @@ With S mu(u) at ubar, which has no error of first order in the slip per round tr
 *lift* L = 2 Z V n - S mu(ubar):  ubar = u_0 + M(L) / (2 Z),  n = (L + S mu(ubar)) / (2 Z V), where M is the part of beta_0 + L
 above zero and A = M' the share of the round trip, in s, in which the contact slips. dn/dL = room / (2 Z V), with
 room = 1 + S mu'(ubar) A / (2 Z): no room is left where creep turns dynamic.
+
+Terms of second order come from how slip grows within a round trip, u = ubar + ubar' (phi - 1/2) + A vbar' (phi^2 - phi) / 2 with
+phi the share of the slip that has been, ' = d/dn and vbar = V / room the mean rate where it slips:
+
+    2 Z (ubar - u_0) = M + S mu' A^2 vbar' / 12 - S mu'' ubar'^2 A / 24 + [S mu' ubar' (phi - 1/2)]^2 / (2 |dbeta_0/dtheta|),
+
+the last summed over the borders of slip.
 """
 
 from __future__ import annotations
@@ -26,7 +33,6 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.evolution.creep.pattern import Pattern
-from stickslip.evolution.layout import Floats
 from stickslip.evolution.moving_branches import strength_change
 from stickslip.problem import Problem
 
@@ -99,7 +105,7 @@ class AveragedCreep:
         return 2.0 * self.impedance * self.speed
 
     def at(self, lift: float) -> Creep:
-        """The state at a lift (Pa), with the size of the terms left out: those of second order in the slip per round trip."""
+        """The state at a lift (Pa), with the size of the terms of second order as its error."""
         above, z2 = self.pattern.above(np.array([lift])), 2.0 * self.impedance
         length, border = float(above.length[0]), float(above.border[0])
         slip = float(above.area[0]) / z2
@@ -112,11 +118,16 @@ class AveragedCreep:
         closing = (curvature * length * length / z2 + slope * border) / z2 / room * self.gain  # d room / dn
         bend = (border * self.speed * self.gain / room - rate * closing) / room
         mean_bend = -mean_rate * closing / room
-        left_out = abs(slope) * length * abs(bend) / 12.0 + abs(curvature) * rate * rate * length / 24.0
-        left_out += (0.5 * slope * rate) ** 2 * border / 2.0
-        left_out += z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
+        terms = (
+            slope * length * length * mean_bend / 12.0,
+            -curvature * rate * rate * length / 24.0,
+            0.5 * (slope * rate) ** 2 * float(above.spread[0]),
+        )
+        resting = z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
+        slip += sum(terms) / z2 if abs(sum(terms)) < z2 * rate else 0.0  # where an extremum is touched they say nothing
         trips = (lift + self.strength(slip)) / self.gain
-        return Creep(lift, trips, slip, rate, bend, room, length, mean_rate, mean_bend, left_out / z2 / room)
+        error = (sum(abs(term) for term in terms) + resting) / z2 / room
+        return Creep(lift, trips, slip, rate, bend, room, length, mean_rate, mean_bend, error)
 
     def start(self) -> Creep:
         """The state at n = 0."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -76,7 +77,7 @@ class Walk:
             low, high = sorted((load[0], load.sum()))
             inside = [level - (load[0] - parts.load[k, 0]) for level in levels if low < level < high]
             cuts = [0.0, *sorted(parts.crossing(k, level) for level in inside), 1.0]
-        for left, right in zip(cuts[:-1], cuts[1:], strict=True):
+        for left, right in pairwise(cuts):
             if right > left:
                 self._stretch(k, load, left, right, levels)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -163,7 +164,7 @@ class CreepLeaps:
         """Lifts between which the checked round trips lie."""
         low = plan.states[-1].lift
         high = low + CHECKED * averaged.gain
-        while 0.0 < averaged.at(high).room and averaged.at(high).trips < plan.trips + CHECKED - 1.0:
+        while averaged.at(high).room > 0.0 and averaged.at(high).trips < plan.trips + CHECKED - 1.0:
             high += averaged.gain
         return low, high
 
@@ -178,7 +179,7 @@ class CreepLeaps:
         nodes += [((c.trips + 0.5) * self.row_time, c.slip, c.rate / self.row_time) for c in inside if c.trips < plan.trips - 1.0]
         nodes.append((plan.trips * self.row_time, slip_end, ends[1]))
         whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
-        for (t0, x0, v0), (t1, x1, v1) in zip(nodes[:-1], nodes[1:], strict=True):
+        for (t0, x0, v0), (t1, x1, v1) in pairwise(nodes):
             grown = hermite(t1 - t0, x1 - x0, v0, v1)
             rate, load = np.zeros(TERMS), np.zeros(TERMS)
             rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)

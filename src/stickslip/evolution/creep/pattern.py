@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,10 @@ class Parts:
     def integral(self, part: NDArray[np.intp], xi: Floats) -> Floats:
         """Integral of the load over theta from the start of each part up to xi, Pa s."""
         powers = np.arange(1, TERMS + 1)
-        straight, bent = self.speed[part, None] * self.load[part] / powers, 2.0 * self.bend[part, None] * self.load[part] / (powers + 1)
+        straight, bent = (
+            self.speed[part, None] * self.load[part] / powers,
+            2.0 * self.bend[part, None] * self.load[part] / (powers + 1),
+        )
         return np.asarray(xi * (horner(straight, xi) + xi * horner(bent, xi)))
 
     def slope(self, part: NDArray[np.intp], xi: Floats) -> Floats:
@@ -56,7 +60,7 @@ def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats
     for p, start, a, b in zip(load, theta_from, speed, bend, strict=True):
         slope[:-1] = p[1:] * np.arange(1, TERMS)
         cuts = [0.0, *places[: crossings(slope, places)].tolist(), 1.0]
-        for left, right in zip(cuts[:-1], cuts[1:], strict=True):
+        for left, right in pairwise(cuts):
             part, width = np.empty(TERMS), right - left
             restrict(p, left, width, part)
             rows.append((part, start + left * (a + left * b), (a + 2.0 * b * left) * width, b * width * width))
@@ -70,6 +74,7 @@ class Above:
     area: Floats  # integral over theta of the part above zero, Pa s
     length: Floats  # measure of the offsets above zero, s: d area / d lift
     border: Floats  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
+    spread: Floats  # the same, weighted with the squared distance from the middle of what lies above (1/4 at its ends)
 
 
 @dataclass(frozen=True)
@@ -98,15 +103,20 @@ class Pattern:
         """What lies above zero when the load is lifted by `lift` (Pa, one-dimensional)."""
         (low, high), level = self.ends, -lift
         inside = low[:, None] >= level
-        length = self.width @ inside
-        area, border = self.whole @ inside + lift * length, np.zeros(len(lift))
+        area, lengths = self.whole @ inside, self.width[:, None] * inside
+        border, spread = np.zeros(len(lift)), np.zeros(len(lift))
         part, which = np.nonzero((low[:, None] < level) & (high[:, None] > level))
-        if len(part):
-            xi = np.array([self.parts.crossing(k, level[n]) for k, n in zip(part.tolist(), which.tolist(), strict=True)])
-            rises = self.parts.load[part].sum(axis=1) > self.parts.load[part, 0]
-            covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
-            beyond = np.where(rises, self.width[part] - time, time)
-            np.add.at(area, which, np.where(rises, self.whole[part] - covered, covered) + lift[which] * beyond)
-            np.add.at(length, which, beyond)
-            np.add.at(border, which, 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), 1e-300))
-        return Above(area, length, border)
+        if len(part) == 0:
+            length = lengths.sum(axis=0)
+            return Above(area + lift * length, length, border, spread)
+        xi = np.array([self.parts.crossing(k, level[n]) for k, n in zip(part.tolist(), which.tolist(), strict=True)])
+        rises = self.parts.load[part].sum(axis=1) > self.parts.load[part, 0]
+        covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
+        lengths[part, which] = np.where(rises, self.width[part] - time, time)
+        np.add.at(area, which, np.where(rises, self.whole[part] - covered, covered))
+        length, before = lengths.sum(axis=0), np.cumsum(lengths, axis=0)
+        steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), 1e-300)
+        place = (before[part, which] - np.where(rises, lengths[part, which], 0.0)) / np.maximum(length[which], 1e-300)
+        np.add.at(border, which, steep)
+        np.add.at(spread, which, steep * (place - 0.5) ** 2)
+        return Above(area + lift * length, length, border, spread)

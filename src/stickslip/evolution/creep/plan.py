@@ -11,10 +11,12 @@ from stickslip.evolution.creep.averaged import AveragedCreep, Creep
 from stickslip.evolution.layout import Floats
 
 SAFETY = 10.0
-"""The terms left out also set off small oscillations from one round trip to the next, which do not die: seen up to 8 times their
-estimate (docs/numerics.md)."""
+"""Bound of the error in sizes of the terms of second order. Those are counted in: where all is smooth the error is a hundredth of
+them. But where slip reaches an extremum or a kink of the load in no time, it goes on with small oscillations from one round trip
+to the next, which do not die: ten times them have been seen."""
 SETTLED = 3.0
-"""Largest slip rate at the start, in mean rates: what has slipped faster rests until the mean has caught up; at 2 there is no rest."""
+"""Largest slip rate at the start, in mean rates. Up to 2 there is no rest; what has slipped faster rests until the mean has
+caught up."""
 FIRST_STRIDE, LONGER = 4.0, 1.5
 SHORTEST_STRIDE = 0.5
 """Strides in round trips at the rate of rest: nothing is resolved within a round trip."""
@@ -65,7 +67,9 @@ class Planner:
             last = states.pop()
         if states[-1].trips < whole:
             states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
-        return Plan(states, SAFETY * max(state.error for state in states[1:])) if whole > 0 else None
+        if len(states) == 1:
+            return None
+        return Plan(states, SAFETY * max(state.error for state in states[1:]))
 
     def error(self, state: Creep) -> float:
         """Bound of the error of slip so far, m."""
