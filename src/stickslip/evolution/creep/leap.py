@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 
@@ -12,10 +10,11 @@ from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.creep.averaged import AveragedCreep, Strength
-from stickslip.evolution.creep.landing import Piece, landing
+from stickslip.evolution.creep.landing import landing
 from stickslip.evolution.creep.pattern import Pattern, monotone_parts
-from stickslip.evolution.creep.plan import Plan, Planner, hermite
-from stickslip.evolution.layout import TERMS, Floats, Integers, Store
+from stickslip.evolution.creep.plan import Plan, Planner
+from stickslip.evolution.creep.scribe import Scribe, seen
+from stickslip.evolution.layout import Floats, Integers, Store
 from stickslip.problem import Problem
 
 SHORTEST_LEAP = 16
@@ -111,7 +110,7 @@ class CreepLeaps:
     def _averaged(self, store: Store, state: Floats, count: Integers) -> AveragedCreep:
         """Creep from the coming round trip on."""
         rows = self._previous(count)
-        load = self._seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows])
+        load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
         speed = abs(self.problem.pull_rate)
         load[:, 0] += 2.0 * self.impedance * speed
         pattern = Pattern(monotone_parts(load, store.theta_from[rows], store.speed[rows], store.bend[rows]))
@@ -119,45 +118,31 @@ class CreepLeaps:
         strength = Strength(self.problem, float(state[at.LAW_SLIP]), sign, speed * self.row_time)
         return AveragedCreep(pattern, strength, self.impedance, speed)
 
-    def _seen(self, load: Floats) -> Floats:
-        """Loads in the direction of slip; the same turns them back."""
-        seen = load if self.direction > 0 else -load
-        if self.direction < 0:
-            seen[:, 0] -= 2.0 * self.problem.strength
-        return seen
-
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
     def _leap(self, store: Store, state: Floats, count: Integers, averaged: AveragedCreep, plan: Plan) -> Store:
         begin, before = int(count[at.ROW]), (state.copy(), count.copy())
-        landed = landing(averaged, plan.states[-1])
-        length, pieces = int(count[at.LENGTH]), len(plan.states) - 1 + len(landed)
-        if length + pieces + 16 > len(store.whole):
-            store = at.resized(store, length, 2 * (length + pieces))
-        row = begin + plan.trips
-        after = self._write_way(store, length, begin, state, averaged, plan, landed[0].slip)
-        self._write_landing(store, after, row, state, landed)
-        end = landed[-1]
-        grown = end.slip + end.grown
+        pieces = landing(averaged, plan.states[-1])
+        length, added = int(count[at.LENGTH]), len(plan.states) + len(pieces)
+        if length + added > len(store.whole):
+            store = at.resized(store, length, 2 * (length + added))
+        row, end, sign = begin + plan.trips, pieces[-1], averaged.strength.sign
+        scribe = Scribe(store, self.problem, self.row_time, self.direction, sign, *before)
+        landed_from = scribe.write_way(length, begin, averaged, plan, pieces[0].slip)
+        scribe.write_landing(landed_from, row, pieces)
         beyond = averaged.reaching(plan.trips + CHECKED - 1.0, *self._lifts(averaged, plan))
-        start, stop = begin * self.row_time, row * self.row_time
-        self.landed = Landed(
-            *before,
-            float(state[at.SLIP_NOW]),
-            beyond.slip,
-            max(self.tolerance * (abs(float(state[at.SLIP_NOW])) + beyond.slip), plan.error),
-            (start, stop, float(plan.trips), plan.error),
-            plan.trips // 2,
-        )
+        slip = float(state[at.SLIP_NOW])
+        summary = begin * self.row_time, row * self.row_time, float(plan.trips), plan.error
+        tolerance = max(self.tolerance * (abs(slip) + beyond.slip), plan.error)
+        self.landed = Landed(*before, slip, beyond.slip, tolerance, summary, plan.trips // 2)
+        grown = end.slip + end.grown
         state[at.SLIP_NOW] += self.direction * grown
-        state[at.LAW_SLIP] += averaged.strength.sign * grown
+        state[at.LAW_SLIP] += sign * grown
         state[at.RATE_NOW] = self.direction * end.rate.sum()
-        count[at.MODE] = self.direction if end.slips else 0
-        count[at.LENGTH] = after + len(landed)
-        count[at.PREVIOUS_FROM], count[at.PREVIOUS_TO], count[at.ROW_FROM] = after, count[at.LENGTH], count[at.LENGTH]
-        count[at.ROW] = row + 1
+        count[at.MODE], count[at.LENGTH] = self.direction if end.slips else 0, landed_from + len(pieces)
+        count[at.PREVIOUS_FROM], count[[at.PREVIOUS_TO, at.ROW_FROM]] = landed_from, count[at.LENGTH]
+        count[at.ROW], count[at.PAUSE_AT] = row + 1, row + CHECKED
         count[[at.SOURCE, at.MOVED, at.LEAP, at.STUCK_ROWS, at.EDGE, at.JUMP, at.CAUSE, at.STALLED]] = 0
-        count[at.PAUSE_AT] = row + CHECKED
         return store
 
     def _lifts(self, averaged: AveragedCreep, plan: Plan) -> tuple[float, float]:
@@ -167,43 +152,6 @@ class CreepLeaps:
         while averaged.at(high).room > 0.0 and averaged.at(high).trips < plan.trips + CHECKED - 1.0:
             high += averaged.gain
         return low, high
-
-    def _write_way(
-        self, store: Store, n: int, row: int, state: Floats, averaged: AveragedCreep, plan: Plan, slip_end: float
-    ) -> int:
-        """The leap itself: slip averaged over round trips, as cubics from state to state. Returns the next free piece."""
-        inside = [c for c in plan.states if c.trips > 0.0][:-1]
-        first, second, last = plan.states[0], plan.states[1], plan.states[-1]
-        ends = [(rate - 0.5 * bend) / self.row_time for rate, bend in ((first.rate, second.bend), (last.rate, last.bend))]
-        nodes = [(0.0, 0.0, ends[0])]
-        nodes += [((c.trips + 0.5) * self.row_time, c.slip, c.rate / self.row_time) for c in inside if c.trips < plan.trips - 1.0]
-        nodes.append((plan.trips * self.row_time, slip_end, ends[1]))
-        whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
-        for (t0, x0, v0), (t1, x1, v1) in pairwise(nodes):
-            grown = hermite(t1 - t0, x1 - x0, v0, v1)
-            rate, load = np.zeros(TERMS), np.zeros(TERMS)
-            rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)
-            load[:4] = -2.0 * self.impedance * grown / width
-            load[0] += whole / width + averaged.gain * (t0 / self.row_time - 0.5) - 2.0 * self.impedance * x0 / width
-            load[1] += averaged.gain * (t1 - t0) / self.row_time
-            load += self.impedance * rate
-            end = math.nextafter(t1, math.inf) if t1 == nodes[-1][0] else t1  # no gap before the next row
-            self._write(store, n, row, state, Piece(True, t0, end - t0, 0.0, x0, load, rate))
-            n += 1
-        return n
-
-    def _write_landing(self, store: Store, n: int, row: int, state: Floats, landed: list[Piece]) -> None:
-        for k, piece in enumerate(landed):
-            self._write(store, n + k, row, state, piece)
-            store.real[n + k, at.S_THETA_TO] = landed[k + 1].theta_from if k + 1 < len(landed) else self.row_time
-
-    def _write(self, store: Store, n: int, row: int, state: Floats, piece: Piece) -> None:
-        sign = self.direction if self.problem.friction.counts == "net" else 1
-        store.whole[n] = row, self.direction * piece.slips, 0, 0, 0
-        slip = state[at.SLIP_NOW] + self.direction * piece.slip
-        store.real[n] = piece.theta_from, piece.theta_to, piece.speed, piece.bend, slip, state[at.LAW_SLIP] + sign * piece.slip
-        store.load[n] = self._seen(piece.load[None, :].copy())[0]
-        store.rate[n] = self.direction * piece.rate
 
     # ---- behind -------------------------------------------------------------------------------------------------------------
 
