@@ -63,14 +63,6 @@ def test_first_pulse_of_the_printed_slab() -> None:
     assert len(solution.history) < 50_000
 
 
-def test_first_pulse_against_the_engine_round_trip_by_round_trip() -> None:
-    """Ten times faster: 134 million pieces by brute force, some thousand here."""
-    near = PULSE_BY_ENGINE[10]
-    solution = ss.simulate(printed(10), near + 60.0, creep_rtol=1e-6)
-    assert pulse(solution, near) == pytest.approx(near, rel=0.0, abs=5e-5)
-    assert len(solution.history) < 20_000
-
-
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-4, 1e-3])
 def test_slip_within_the_bound(tolerance: float) -> None:
     """A hundred times faster: averaged slip within the bound where a leap lands, within the tolerance all along."""
@@ -83,11 +75,11 @@ def test_slip_within_the_bound(tolerance: float) -> None:
         assert (np.abs(means(solution, inside) - means(exact, inside)) <= tolerance * means(exact, inside)).all()
 
 
-@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 1e-2), (1e-4, 5e-3), (1e-6, 2e-3)])
+@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 0.2), (1e-4, 5e-3), (1e-5, 2e-4), (1e-6, 5e-5)])
 def test_time_of_the_pulse(tolerance: float, error: float) -> None:
-    """A hundred times faster: the error of the pulse's time (s) falls with the tolerance."""
-    near = PULSE_BY_ENGINE[100]
-    assert pulse(ss.simulate(printed(100), near + 30, creep_rtol=tolerance), near) == pytest.approx(near, rel=0.0, abs=error)
+    """Ten times faster, 134 million pieces by brute force: the error of the pulse's time (s) falls with the tolerance."""
+    near = PULSE_BY_ENGINE[10]
+    assert pulse(ss.simulate(printed(10), near + 30, creep_rtol=tolerance), near) == pytest.approx(near, rel=0.0, abs=error)
 
 
 def test_exact_before_anything_dynamic() -> None:
@@ -203,6 +195,14 @@ def test_tolerance_out_of_range(rtol: float) -> None:
         ss.simulate(printed(1), 10.0, creep_rtol=rtol)
 
 
+class Columns:
+    """`Pattern.above` for several lifts."""
+
+    def __init__(self, pattern: Pattern, lifts: np.ndarray) -> None:
+        found = [pattern.above(float(lift)) for lift in lifts]
+        self.area, self.length, self.border = (np.array([getattr(a, name) for a in found]) for name in ("area", "length", "border"))
+
+
 def test_what_lies_above_a_level() -> None:
     """Area, length and border sum of a load in pieces, against quadrature and differences."""
     rng = np.random.default_rng(3)
@@ -223,10 +223,10 @@ def test_what_lies_above_a_level() -> None:
         return total
 
     lifts = np.array([-0.7, 0.0, 0.4, 1.3])
-    found = pattern.above(lifts)
+    found = Columns(pattern, lifts)
     np.testing.assert_allclose(found.area, [above(lift, 1) for lift in lifts], rtol=1e-7, atol=1e-9)
     np.testing.assert_allclose(found.length, [above(lift, 0) for lift in lifts], rtol=1e-3, atol=1e-3)
     step = 1e-6
-    below, beyond = pattern.above(lifts - step), pattern.above(lifts + step)
+    below, beyond = Columns(pattern, lifts - step), Columns(pattern, lifts + step)
     np.testing.assert_allclose(found.border, (beyond.length - below.length) / (2 * step), rtol=1e-6, atol=1e-6)
     np.testing.assert_allclose(found.length, (beyond.area - below.area) / (2 * step), rtol=1e-8, atol=0.0)

@@ -85,6 +85,7 @@ class Creep:
     bend: float  # d2 ubar / dn2
     room: float
     length: float  # of the part of the round trip in which the contact slips, s
+    widening: float  # its change in a round trip, s
     mean_rate: float  # m/s, where the contact slips
     mean_bend: float  # its change in a round trip
     error: float  # of ubar, m
@@ -106,13 +107,13 @@ class AveragedCreep:
 
     def at(self, lift: float) -> Creep:
         """The state at a lift (Pa), with the size of the terms of second order as its error."""
-        above, z2 = self.pattern.above(np.array([lift])), 2.0 * self.impedance
-        length, border = float(above.length[0]), float(above.border[0])
-        slip = float(above.area[0]) / z2
+        above, z2 = self.pattern.above(lift), 2.0 * self.impedance
+        length, border = above.length, above.border
+        slip = above.area / z2
         slope = self.strength.slope(slip)
         room = 1.0 + slope * length / z2
         if room <= 0.0:
-            return Creep(lift, np.inf, slip, np.inf, np.inf, room, length, np.inf, np.inf, np.inf)
+            return Creep(lift, np.inf, slip, np.inf, np.inf, room, length, np.inf, np.inf, np.inf, np.inf)
         rate, mean_rate = length * self.speed / room, self.speed / room
         curvature = self.strength.curvature(slip)
         closing = (curvature * length * length / z2 + slope * border) / z2 / room * self.gain  # d room / dn
@@ -121,13 +122,17 @@ class AveragedCreep:
         terms = (
             slope * length * length * mean_bend / 12.0,
             -curvature * rate * rate * length / 24.0,
-            0.5 * (slope * rate) ** 2 * float(above.spread[0]),
+            0.5 * (slope * rate) ** 2 * above.spread,
         )
         resting = z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
         slip += sum(terms) / z2 if abs(sum(terms)) < z2 * rate else 0.0  # where an extremum is touched they say nothing
         trips = (lift + self.strength(slip)) / self.gain
         error = (sum(abs(term) for term in terms) + resting) / z2 / room
-        return Creep(lift, trips, slip, rate, bend, room, length, mean_rate, mean_bend, error)
+        return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
+
+    def swing(self, creep: Creep) -> float:
+        """Amplitude of slip (m) with which rates in the first round trip go up and down around their mean."""
+        return self.pattern.swing(creep.lift, self.impedance * creep.mean_rate) / self.impedance
 
     def start(self) -> Creep:
         """The state at n = 0."""
@@ -136,14 +141,11 @@ class AveragedCreep:
             low -= self.gain
         while self.at(high).trips < 0.0:
             high += self.gain
-        return self.reaching(0.0, low, high)
+        return self.reaching(0.0, low, high, 1e-6 * self.gain)
 
-    def reaching(self, trips: float, low: float, high: float) -> Creep:
-        """The state after so many round trips, between two lifts, by bisection."""
-        for _ in range(200):
-            middle = 0.5 * (low + high)
-            if middle in (low, high):
-                break
+    def reaching(self, trips: float, low: float, high: float, within: float = 0.0) -> Creep:
+        """The state after so many round trips, between two lifts, by bisection: to rounding, or `within` (Pa)."""
+        while high - low > within and low < (middle := 0.5 * (low + high)) < high:
             if self.at(middle).trips < trips:
                 low = middle
             else:

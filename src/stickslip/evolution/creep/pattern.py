@@ -13,6 +13,8 @@ from stickslip.evolution.history import horner
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import crossings, restrict
 
+SMALLEST = 1e-300
+
 
 @dataclass(frozen=True)
 class Parts:
@@ -71,10 +73,10 @@ def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats
 class Above:
     """Of a load lifted by so much: what lies above zero."""
 
-    area: Floats  # integral over theta of the part above zero, Pa s
-    length: Floats  # measure of the offsets above zero, s: d area / d lift
-    border: Floats  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
-    spread: Floats  # the same, weighted with the squared distance from the middle of what lies above (1/4 at its ends)
+    area: float  # integral over theta of the part above zero, Pa s
+    length: float  # measure of the offsets above zero, s: d area / d lift
+    border: float  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
+    spread: float  # the same, weighted with the squared distance from the middle of what lies above (1/4 at its ends)
 
 
 @dataclass(frozen=True)
@@ -99,24 +101,32 @@ class Pattern:
         """Length of each part, s."""
         return np.asarray(self.parts.speed + self.parts.bend)
 
-    def above(self, lift: Floats) -> Above:
-        """What lies above zero when the load is lifted by `lift` (Pa, one-dimensional)."""
-        (low, high), level = self.ends, -lift
-        inside = low[:, None] >= level
-        area, lengths = self.whole @ inside, self.width[:, None] * inside
-        border, spread = np.zeros(len(lift)), np.zeros(len(lift))
-        part, which = np.nonzero((low[:, None] < level) & (high[:, None] > level))
-        if len(part) == 0:
-            length = lengths.sum(axis=0)
-            return Above(area + lift * length, length, border, spread)
-        xi = np.array([self.parts.crossing(k, level[n]) for k, n in zip(part.tolist(), which.tolist(), strict=True)])
-        rises = self.parts.load[part].sum(axis=1) > self.parts.load[part, 0]
+    def above(self, lift: float) -> Above:
+        """What lies above zero when the load is lifted by `lift` (Pa)."""
+        part, xi, rises = self._crossings(-lift)
+        areas, lengths = self._shares(lift, part, xi, rises)
+        length, before = float(lengths.sum()), np.cumsum(lengths)
+        steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), SMALLEST)
+        place = (before[part] - lengths[part] * rises) / max(length, SMALLEST)
+        return Above(float(areas.sum()), length, float(steep.sum()), float((steep * (place - 0.5) ** 2).sum()))
+
+    def swing(self, lift: float, mean: float) -> float:
+        """Of a lifted load the largest amplitude, up to any offset, of the integral of (what lies above zero - mean), Pa s."""
+        areas, lengths = self._shares(lift, *self._crossings(-lift))
+        return 0.5 * float(np.ptp(np.cumsum([0.0, *(areas - mean * lengths)])))
+
+    def _shares(self, lift: float, part: NDArray[np.intp], xi: Floats, rises: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """Area (Pa s) and length (s) above zero of each part of a lifted load, with its crossings."""
+        inside = self.ends[0] >= -lift
+        areas, lengths = self.whole * inside, self.width * inside
         covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
-        lengths[part, which] = np.where(rises, self.width[part] - time, time)
-        np.add.at(area, which, np.where(rises, self.whole[part] - covered, covered))
-        length, before = lengths.sum(axis=0), np.cumsum(lengths, axis=0)
-        steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), 1e-300)
-        place = (before[part, which] - np.where(rises, lengths[part, which], 0.0)) / np.maximum(length[which], 1e-300)
-        np.add.at(border, which, steep)
-        np.add.at(spread, which, steep * (place - 0.5) ** 2)
-        return Above(area + lift * length, length, border, spread)
+        areas[part] = np.where(rises, self.whole[part] - covered, covered)
+        lengths[part] = np.where(rises, self.width[part] - time, time)
+        return areas + lift * lengths, lengths
+
+    def _crossings(self, level: float) -> tuple[NDArray[np.intp], Floats, NDArray[np.bool_]]:
+        """Parts that cross a level (Pa): which, where, and whether upwards."""
+        low, high = self.ends
+        part = np.flatnonzero((low < level) & (high > level))
+        xi = np.array([self.parts.crossing(k, level) for k in part.tolist()])
+        return part, xi, self.parts.load[part].sum(axis=1) > self.parts.load[part, 0]

@@ -10,10 +10,11 @@ import numpy as np
 from stickslip.evolution.creep.averaged import AveragedCreep, Creep
 from stickslip.evolution.layout import Floats
 
-SAFETY = 10.0
-"""Bound of the error in sizes of the terms of second order. Those are counted in: where all is smooth the error is a hundredth of
-them. But where slip reaches an extremum or a kink of the load in no time, it goes on with small oscillations from one round trip
-to the next, which do not die: ten times them have been seen."""
+SAFETY = 2.0
+"""Bound of the error in sizes of the terms of second order (which are counted in: where all is smooth the error is a hundredth of
+them)."""
+SHARE = 0.5
+"""Amplitude of slip that goes up and down from one round trip to the next, in what slips meanwhile where slip has just begun."""
 SETTLED = 3.0
 """Largest slip rate at the start, in mean rates. Up to 2 there is no rest; what has slipped faster rests until the mean has
 caught up."""
@@ -46,12 +47,16 @@ class Planner:
     slipped: float  # before, since the start of the run, m
     tolerance: float
     fastest: float  # slip rate at the start, m/s
-    largest: float = 0.0  # of the terms left out so far, m
+    largest: float = 0.0  # of the terms of second order so far, m
+    swing: float = 0.0  # amplitude of slip from one round trip to the next so far, m
 
     def plan(self, most: int) -> Plan | None:
         """A leap of at most so many round trips; None if there is none."""
         start = self.averaged.start()  # its own error says little: rates next to 0 look like borders of slip for a round trip
         if start.room <= 0.0 or self.fastest > SETTLED * start.mean_rate:
+            return None
+        self.swing = self.averaged.swing(start)
+        if self.swing > self._allowed(start):
             return None
         states, stride, growth = [start], FIRST_STRIDE * self.averaged.gain, LONGER
         while stride >= SHORTEST_STRIDE * self.averaged.gain:
@@ -59,7 +64,6 @@ class Planner:
             if state is None:
                 stride, growth = 0.5 * stride, 1.0
                 continue
-            self.largest = max(self.largest, state.error)
             states.append(state)
             stride, growth = stride * growth, min(growth + 0.1, LONGER)
         whole = math.floor(states[-1].trips)
@@ -69,32 +73,51 @@ class Planner:
             states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
         if len(states) == 1:
             return None
-        return Plan(states, SAFETY * max(state.error for state in states[1:]))
+        return Plan(states, SAFETY * max(state.error for state in states[1:]) + self.swing)
 
-    def error(self, state: Creep) -> float:
-        """Bound of the error of slip so far, m."""
-        return SAFETY * max(self.largest, state.error)
+    def error(self, state: Creep, swing: float) -> float:
+        """Bound of the error of slip so far (m), the amplitude of slip from one round trip to the next given."""
+        return SAFETY * max(self.largest, state.error) + max(self.swing, swing)
 
     def _allowed(self, state: Creep) -> float:
         return self.tolerance * (self.slipped + state.slip)
 
-    def _fits(self, state: Creep, most: float) -> bool:
+    def _fits(self, state: Creep, swing: float, most: float) -> bool:
         if state.room <= 0.0 or not state.trips <= most or state.slip >= self.averaged.strength.room:
             return False
-        return self.error(state) <= self._allowed(state)
+        return self.error(state, swing) <= self._allowed(state)
 
     def _stride(self, begin: Creep, stride: float, most: int) -> Creep | None:
         """The state one stride on, if it can be trusted and the way there interpolated."""
         middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
-        if not (self._fits(middle, most) and self._fits(end, most)):
+        swing = swing_of(begin, middle, end)
+        if not (self._fits(middle, swing, most) and self._fits(end, swing, most)):
             return None
         if stride <= self.averaged.gain:
-            return end if end.trips > begin.trips else None
+            return self._noted(end, swing) if end.trips > begin.trips else None
         expected = stride * (begin.room + 4.0 * middle.room + end.room) / 6.0 / self.averaged.gain
         if abs(end.trips - begin.trips - expected) > SMOOTH * expected:
             return None
         error = abs(between(begin, end, middle.trips) - middle.slip)
-        return end if error <= INTERPOLATION * self._allowed(end) else None
+        return self._noted(end, swing) if error <= INTERPOLATION * self._allowed(end) else None
+
+    def _noted(self, state: Creep, swing: float) -> Creep:
+        self.largest, self.swing = max(self.largest, state.error), max(self.swing, swing)
+        return state
+
+
+def swing_of(begin: Creep, middle: Creep, end: Creep) -> float:
+    """Amplitude of slip (m) that new slip leaves behind, which begins anywhere between 0 and twice the mean rate.
+
+    What begins to slip within one round trip does so together. If the length that slips grows smoothly that is its growth in a
+    round trip; growth that this does not explain may come all at once.
+    """
+    trips, growth = end.trips - begin.trips, max(end.length - begin.length, 0.0)
+    widening = begin.widening, middle.widening, end.widening
+    if not (trips > 1.0 and max(widening) < np.inf):
+        return SHARE * end.mean_rate * growth
+    smooth = trips * (widening[0] + 4.0 * widening[1] + widening[2]) / 6.0
+    return SHARE * end.mean_rate * min(growth, max(widening) + abs(growth - smooth))
 
 
 def hermite(length: float, rise: float, first: float, last: float) -> Floats:
