@@ -10,10 +10,10 @@ import numpy as np
 from stickslip.evolution.creep.averaged import AveragedCreep, Creep
 from stickslip.evolution.layout import Floats
 
-SAFETY = 2.0
+SAFETY = 4.0
 """Bound of the error in sizes of the terms of second order (which are counted in: where all is smooth the error is a hundredth of
 them)."""
-SHARE = 0.5
+SHARE = 1.0
 """Amplitude of slip that goes up and down from one round trip to the next, in what slips meanwhile where slip has just begun."""
 SETTLED = 3.0
 """Largest slip rate at the start, in mean rates. Up to 2 there is no rest; what has slipped faster rests until the mean has
