@@ -10,10 +10,10 @@ import numpy as np
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.evolution import layout as at
+from stickslip.evolution.drive import split_time
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
 from stickslip.evolution.setup import prepare, row_time
-from stickslip.evolution.simulate import split_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import STATUSES
 from stickslip.evolution.workspace import WORK_ROWS, lend
@@ -25,8 +25,9 @@ BUDGET = 1_000_000
 def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -> Runner:
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
+    count[at.TO_THE_END] = 1  # nothing goes on behind it
     first_state, first_count = state.copy(), count.copy()
-    store, scratch = at.new_store(CAPACITY), np.zeros((WORK_ROWS, at.TERMS))
+    store, scratch = at.new_store(CAPACITY, case.problem.friction.state is not None), np.zeros((WORK_ROWS, at.TERMS))
     table = lend(setup, state, count, scratch, store)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import statistics
 import subprocess
@@ -16,8 +17,14 @@ from rich.table import Table
 
 import stickslip as ss
 from benchmarks import ours
-from benchmarks.problems import CASES
+from benchmarks.problems import CASES, Case
+from benchmarks.runner import interleaved
 
+WRITTEN = {
+    "sinusoidal-slip": "mean + amplitude*sin(wavenumber*u)",
+    "hyperbolic-rate": "dynamic + (static - dynamic)/(1 + alpha*v)",
+}
+"""The benchmark's laws as a user would write them."""
 TABLE = {
     "start": [0.1, 1.2],
     "end": [0.3, 1.4],
@@ -68,6 +75,13 @@ def first_compile() -> list[tuple[float, float]]:
     return [(float(wall), float(cpu)) for wall, cpu in (line.split() for line in lines if line)]
 
 
+def as_expression(case: Case) -> Case:
+    """The same problem with its law from an expression."""
+    law = case.problem.friction
+    written = ss.friction.FromExpression(WRITTEN[law.kind], law.numbers())
+    return dataclasses.replace(case, problem=dataclasses.replace(case.problem, friction=written))
+
+
 def show(console: Console, unit: Callable[[float], str]) -> None:
     """Print the second table."""
     table = Table(title="Around the kernel", title_justify="left")
@@ -77,6 +91,12 @@ def show(console: Console, unit: Callable[[float], str]) -> None:
         whole = median(lambda case=case: ss.simulate(case.problem, case.duration))  # type: ignore[misc]
         kernel = median(ours.runner(case, 1e-10).run)
         table.add_row(f"ss.simulate beyond its kernel: {case.title}", unit(whole - kernel))
+    for case in CASES:
+        runners = {"own": ours.runner(case, 1e-10), "expression": ours.runner(as_expression(case), 1e-10)}
+        times = {name: statistics.median(found) for name, found in interleaved(runners).items()}
+        ratio = times["expression"] / times["own"]
+        table.add_row(f"law from an expression: {case.title}", f"{unit(times['expression'])}, x {ratio:.2f} of the built-in law")
+    table.add_section()
     table.add_row("building one small pandas.DataFrame", unit(median(lambda: pd.DataFrame(TABLE))))
     table.add_section()
     for module in ("numba", "stickslip", "stickslip.evolution.simulate", "pandas"):

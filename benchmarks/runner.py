@@ -41,3 +41,15 @@ class Runner:
 
 
 Method = Callable[[Case, float], Runner]
+
+
+def interleaved(runners: dict[str, Runner], rounds: int = 20, budget: float = 0.4) -> dict[str, list[float]]:
+    """Times of every runner, in turns, so that what else the machine does hits all alike; about `budget` s for each."""
+    once = {name: max(runner.seconds(), 1e-6) for name, runner in runners.items()}
+    times: dict[str, list[float]] = {name: [] for name in runners}
+    for _ in range(rounds):
+        for name, runner in runners.items():
+            if len(times[name]) * once[name] < 4.0 * budget:
+                repeats = min(max(int(budget / rounds / once[name]), 1), 200)
+                times[name] += [runner.seconds() for _ in range(repeats)]
+    return times

@@ -16,7 +16,7 @@ from rich.table import Table
 
 from benchmarks import c_peer, heyoka_peer, jitcdde_peer, ours, overhead, scipy_peer
 from benchmarks.problems import CASES, Case
-from benchmarks.runner import Method, Runner, UnavailableError
+from benchmarks.runner import Method, Runner, UnavailableError, interleaved
 
 TARGETS = (1e-7, 1e-9)
 LADDER = [10.0 ** (-half / 2) for half in range(6, 31)]
@@ -68,18 +68,6 @@ def measure(case: Case, target: float) -> tuple[list[Row], list[str]]:
         for name, (runner, error) in chosen.items()
     ]
     return rows, notes
-
-
-def interleaved(runners: dict[str, Runner], rounds: int = 20, budget: float = 0.4) -> dict[str, list[float]]:
-    """Times of every runner, in turns, so that what else the machine does hits all alike; about `budget` s for each."""
-    once = {name: max(runner.seconds(), 1e-6) for name, runner in runners.items()}
-    times: dict[str, list[float]] = {name: [] for name in runners}
-    for _ in range(rounds):
-        for name, runner in runners.items():
-            if len(times[name]) * once[name] < 4.0 * budget:
-                repeats = min(max(int(budget / rounds / once[name]), 1), 200)
-                times[name] += [runner.seconds() for _ in range(repeats)]
-    return times
 
 
 def show(seconds: float) -> str:

@@ -24,8 +24,10 @@ LAYERS = (
     ("contact", "reference"),
     ("evolution",),
     ("observables",),
+    ("studies",),
     ("scenarios",),
     ("storage",),
+    ("long_runs",),
     ("figures",),
     ("paper",),
     ("cli",),
@@ -36,7 +38,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "figures", "paper"},
+    "xarray": {"observables", "storage", "long_runs", "figures", "paper"},
 }
 
 

@@ -24,8 +24,12 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
+    from stickslip.long_runs.catalogue import catalogue, resume_catalogue
+    from stickslip.long_runs.resume import resume
+    from stickslip.observables.statistics import catalogue_statistics
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
+    from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
 
@@ -33,10 +37,17 @@ YEAR = 31_557_600.0
 """Julian year, s."""
 
 _LATER = {
+    "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
+    "catalogue": "stickslip.long_runs.catalogue",
+    "catalogue_statistics": "stickslip.observables.statistics",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
+    "predictability": "stickslip.observables.predictability",
+    "regularise": "stickslip.studies.regularise",
+    "resume": "stickslip.long_runs.resume",
+    "resume_catalogue": "stickslip.long_runs.catalogue",
     "save": "stickslip.storage",
     "simulate": "stickslip.evolution.simulate",
     "uniqueness": "stickslip.contact.uniqueness",
@@ -48,13 +59,20 @@ __all__ = [
     "ElasticSlab",
     "InputError",
     "Problem",
+    "Regularisation",
     "Solution",
     "SpringBlock",
+    "catalogue",
+    "catalogue_statistics",
     "critical_value",
     "friction",
     "load",
     "load_scenario",
     "parameters",
+    "predictability",
+    "regularise",
+    "resume",
+    "resume_catalogue",
     "save",
     "selection",
     "simulate",

@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 
 import stickslip
 from stickslip.errors import InputError
+from stickslip.evolution.checkpoint import ARRAYS, Checkpoint
 from stickslip.evolution.history import NO_LEAPS, History
 from stickslip.evolution.layout import Store
-from stickslip.evolution.solution import Curve, Solution
+from stickslip.evolution.readings import Curve, Readings
+from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import Status
+from stickslip.evolution.tables import EVENT_COLUMNS
+from stickslip.evolution.window import Window
 from stickslip.files import write_atomically
 from stickslip.observables.choices import choices
 from stickslip.scenarios import Scenario, read_scenario
@@ -23,11 +27,21 @@ from stickslip.selection import names as rule_names
 
 FORMAT = 1
 """Version of the layout below; a file with another one is refused."""
+CATALOGUE = "stickslip_catalogue"
+KINDS = {
+    "stickslip_format": "a solution: take it up with stickslip.resume",
+    CATALOGUE: "a catalogue's checkpoint: take it up with stickslip.resume_catalogue",
+}
+"""Attributes that hold the version, and what a file with one of them is."""
 
 DRAWN_POINTS = 2000
 
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("levels", "branches"), ("one",), ("times",))
+"""Names of the axes of a checkpoint's arrays."""
+
 LONG_NAMES = {
     "slip": "slip of the contact, u",
+    "event_slip": "slip of the contact since the start of the event",
     "slip_rate": "slip rate of the contact, v",
     "traction": "friction on the contact, tau",
     "load": "load on the contact, beta",
@@ -37,26 +51,32 @@ LONG_NAMES = {
 PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
 
 
-def units(solution: Solution) -> dict[str, str]:
+def units(solution: Readings) -> dict[str, str]:
     """Unit of each curve of a solution."""
     load, state = solution.problem.load_unit, solution.problem.friction.state
-    return {"slip": "m", "slip_rate": "m s-1", "traction": load, "load": load} | ({"state": state.unit} if state else {})
+    known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
+    return known | ({"state": state.unit} if state else {})
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
     """Who made this, from what, under which rule and tolerance: attributes of every file and dataset."""
-    scenario = Scenario(solution.problem, solution.duration, solution.rtol)
     chosen = choices(solution)
+    return origin(solution) | {
+        "selection_note": solution.selection_note,
+        "selection_regime": chosen.regime,
+        "selection_decided_shocks": int(chosen.shocks.sum()),
+    }
+
+
+def origin(solution: Solution) -> dict[str, Any]:
+    """The same without what has to be worked out."""
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
-        "scenario": scenario.to_toml(),
-        "selection_rule": chosen.rule,
-        "selection_note": solution.selection_note,
-        "selection_regime": chosen.regime,
-        "selection_decided_shocks": int(chosen.shocks.sum()),
+        "scenario": Scenario.of(solution).to_toml(),
+        "selection_rule": solution.problem.rule,
         "rtol": solution.rtol,
         "duration": solution.duration,
         "status": solution.status.name,
@@ -71,7 +91,15 @@ def solution_dataset(solution: Solution, t: NDArray[np.float64]) -> xr.Dataset:
     return _curves(solution, t, values).assign_attrs(provenance(solution))
 
 
-def _curves(solution: Solution, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
+def window_dataset(window: Window, t: NDArray[np.float64]) -> xr.Dataset:
+    """As `solution_dataset`, in local time; attributes say when the event begins: `epoch_row` whole rows and `epoch_offset` s."""
+    dataset = _curves(window, t, {name: getattr(window, name)(t) for name in window.curves})
+    dataset.time.attrs["long_name"] = "time since the start of the event"
+    about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
+    return dataset.assign_attrs(provenance(window.solution) | about)
+
+
+def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
     unit = units(solution)
     variables = {name: ("time", value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()}
     time = ("time", t, {"units": "s", "long_name": "time since the start of the run"})
@@ -85,15 +113,30 @@ def save(solution: Solution, path: str | Path) -> Path:
     attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError where the folder cannot
     be written.
     """
-    path = Path(path)
-    dataset = _history(solution).merge(_drawing(solution)).merge(_tables(solution))
-    dataset.attrs = provenance(solution) | {"stickslip_format": FORMAT}
+    dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
+    return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+
+
+def save_checkpoint(solution: Solution, path: Path) -> Path:
+    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables."""
+    return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+
+
+def write(dataset: xr.Dataset, path: Path) -> Path:
+    """Write a netCDF file, whole or not at all. Raises InputError where the folder cannot be written."""
     encoding = {name: {"_FillValue": None} for name, variable in dataset.variables.items() if variable.dtype.kind == "f"}
     try:
         write_atomically(path, lambda draft: dataset.to_netcdf(draft, engine="h5netcdf", encoding=encoding))
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
     return path
+
+
+def history_dataset(solution: Solution) -> xr.Dataset:
+    """The history, and where the engine stands behind it."""
+    if solution.checkpoint is None:
+        return _history(solution)
+    return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")
 
 
 def _history(solution: Solution) -> xr.Dataset:
@@ -110,7 +153,7 @@ def _history(solution: Solution) -> xr.Dataset:
         }
     )
     if len(history.creep):
-        about = {"columns": "start end round_trips error", "units": "s s 1 m", "long_name": "leaps over creep"}
+        about = {"columns": "start_row round_trips error", "units": "1 1 m", "long_name": "leaps over creep"}
         dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
@@ -122,6 +165,13 @@ def _history(solution: Solution) -> xr.Dataset:
     return dataset
 
 
+def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
+    """Where the engine stands, with the code that made it: what `resume` goes on from."""
+    axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
+    variables = {f"engine_{name}": (axes[name], getattr(checkpoint, name)) for name in ARRAYS}
+    return xr.Dataset(variables, attrs={"engine": checkpoint.engine})
+
+
 def _drawing(solution: Solution) -> xr.Dataset:
     end = float(solution.breaks[-1])
     time, _ = solution.curve("slip_rate", 0.0, end, DRAWN_POINTS)
@@ -130,38 +180,75 @@ def _drawing(solution: Solution) -> xr.Dataset:
 
 def _tables(solution: Solution) -> xr.Dataset:
     load = solution.problem.load_unit
-    unit = {"start": "s", "end": "s", "peak_time": "s", "time": "s", "slip": "m", "pulses": "1", "cause": ""}
+    shock = {"time": ("s", ""), "cause": ("", ""), "rule": ("", "selection rule, where several slip rates are possible")}
     variables = {}
-    for prefix, table in (("event", solution.events), ("shock", solution.shocks)):
+    for prefix, table, columns in (("event", solution.events, EVENT_COLUMNS), ("shock", solution.shocks, shock)):
         for name in table.columns:
-            values = table[name].to_numpy(dtype=object if name == "cause" else None)
-            known = unit.get(name, "m s-1" if "rate" in name else load)
-            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if name == "cause" else values, {"units": known})
+            words = name in ("cause", "rule")
+            values = table[name].to_numpy(dtype=object if words else None)
+            unit, meaning = columns.get(name, ("m s-1" if "rate" in name else "load", ""))
+            about = {"units": load if unit == "load" else unit} | ({"long_name": meaning} if meaning else {})
+            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if words else values, about)
     return xr.Dataset(variables)
+
+
+def column_unit(name: str, load_unit: str) -> str:
+    """Unit of a column of the table of events."""
+    unit, _ = EVENT_COLUMNS[name]
+    return load_unit if unit == "load" else unit
 
 
 def load(path: str | Path) -> Solution:
     """Read a solution that `save` wrote. Raises InputError for a file that is not one."""
     path = Path(path)
+    return to_solution(read(path), path)
+
+
+def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
+    """A file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
     try:
         with xr.open_dataset(path, engine="h5netcdf") as opened:
             dataset = opened.load()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())}") from None
-    if dataset.attrs.get("stickslip_format") != FORMAT:
-        found = dataset.attrs.get("stickslip_format", "none")
-        raise InputError(f"{path}: not a solution of this version of stickslip (format {FORMAT} expected, found {found})")
+    if dataset.attrs.get(kind) != FORMAT:
+        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in dataset.attrs), None)
+        found = f"it is {other}" if other else f"format {FORMAT} expected, found {dataset.attrs.get(kind, 'none')}"
+        raise InputError(f"{path}: not {KINDS[kind].partition(':')[0]} of this version of stickslip ({found})")
+    return dataset
+
+
+def is_catalogue(path: Path) -> bool:
+    """Whether a file is the checkpoint of a catalogue."""
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as opened:
+            return CATALOGUE in opened.attrs
+    except (OSError, ValueError):
+        return False
+
+
+def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
+    """The solution in a file. Raises InputError for a selection rule that is not known here."""
     attributes = dataset.attrs
     if attributes["selection_rule"] not in rule_names():
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
-    problem = read_scenario(attributes["scenario"], str(path)).problem
-    names = ("history_whole", "history_real", "history_load", "history_rate")
-    whole, real, load, rate = (np.ascontiguousarray(dataset[name].to_numpy()) for name in names)
-    state = dataset["history_state"].to_numpy() if "history_state" in dataset else np.empty((0, load.shape[1]))
-    store = Store(whole, real, load, rate, np.ascontiguousarray(state))
+    scenario = read_scenario(attributes["scenario"], str(path))
+    whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
+    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, load.shape[1]))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
-    creep = dataset["history_creep"].to_numpy() if "history_creep" in dataset else NO_LEAPS
-    history = History(store, problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached), creep)
+    store = Store(whole, real, load, rate, state)
+    creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
+    history = History(store, scenario.problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached), creep=creep)
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
-    return Solution(problem, duration, rtol, status, history)
+    checkpoint = None
+    if "engine" in attributes:
+        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
+        checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol)
+
+
+def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:
+    return np.ascontiguousarray(dataset[name].to_numpy())

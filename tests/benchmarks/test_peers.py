@@ -13,7 +13,7 @@ pytest.importorskip("scipy")
 from benchmarks.problems import CASES, DRIVEN, EVENT, SHOCKS, TRANSIT, Case
 from benchmarks.runner import UnavailableError
 
-from benchmarks import c_peer, heyoka_peer, ours, scipy_peer
+from benchmarks import c_peer, heyoka_peer, ours, scipy_peer, stiff
 
 
 def error(method: ModuleType, case: Case, tolerance: float) -> float:
@@ -27,6 +27,12 @@ def error(method: ModuleType, case: Case, tolerance: float) -> float:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_scipy(case: Case) -> None:
     assert error(scipy_peer, case, 1e-12) < 2e-9
+
+
+@pytest.mark.parametrize("case", stiff.CASES, ids=lambda case: case.name)
+def test_radau_on_stiff_contacts(case: Case) -> None:
+    assert float(stiff.radau(case, 1e-8).error()) < 2e-9
+    assert float(ours.runner(case, 1e-9).error()) < 1e-11
 
 
 @pytest.mark.parametrize("case", [TRANSIT, EVENT], ids=lambda case: case.name)

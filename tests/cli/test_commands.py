@@ -7,15 +7,16 @@ import sys
 import time
 from pathlib import Path
 
+import pandas
 import pytest
 
 from stickslip import __version__
-from stickslip.cli.names import STARTERS, complete_scenario
+from stickslip.cli.names import STARTERS, complete_regularisation, complete_scenario
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 
 
-@pytest.mark.parametrize("name", ["run", "check", "new", "paper"])
+@pytest.mark.parametrize("name", ["run", "check", "new", "regularise", "paper"])
 def test_help_says_what_it_does_with_an_example(command, name):
     shown = command(name, "--help")
     assert shown.code == 0
@@ -25,7 +26,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
 def test_without_arguments_it_teaches(command):
     shown = command()
     assert shown.code == 0
-    for name in ("run", "check", "new", "paper"):
+    for name in ("run", "check", "new", "regularise", "paper"):
         assert re.search(rf"│ {name} ", shown.out)
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
@@ -140,6 +141,50 @@ def test_run_writes_what_it_is_asked_for_and_nothing_else(command, tmp_path: Pat
     assert "written: a.nc" in shown.out
     assert "written: a.svg" in shown.out
     assert (tmp_path / "a.svg").read_text().lstrip().startswith("<?xml")
+
+
+def test_regularise_says_which_rule_and_how_fast(command, tmp_path: Path):
+    shown = command("regularise", "fig4-loop", "--by", "lag", "--count", "4", "--out", "a.csv", "--figure", "a.svg")
+    assert shown.code == 0
+    assert shown.err == ""
+    for text in (
+        "lagged friction, 4 sizes",
+        "2.2426553",
+        "5.2128406",
+        "1 (log)",
+        "2/3",
+        "The runs tend to perfect-delay: order 0.",
+    ):
+        assert text in shown.out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.svg"]
+    table = pandas.read_csv(tmp_path / "a.csv")
+    assert len(table) == 4
+    assert float(table["size"].iloc[0]) == pytest.approx(20000 / 3500 / 30, rel=1e-12, abs=0.0)
+    assert f"{table.mean_maxwell.iloc[-1]:.4g}" in shown.out
+
+
+def test_regularise_takes_sizes_with_units(command):
+    shown = command("regularise", "fig6-slab", "--largest", "10 ms", "--smallest", "1e-4", "--count", "3", "--duration", "3 s")
+    assert shown.code == 0
+    for size in ("0.01", "0.001", "0.0001"):
+        assert re.search(rf"^ *{size} ", shown.out, re.MULTILINE)
+    assert "All rules have the same answer here" in shown.out
+
+
+def test_the_shell_completes_regularisations():
+    assert complete_regularisation("") == ["contact-mass", "lag", "direct-effect"]
+    assert complete_regularisation("l") == ["lag"]
+
+
+def test_run_draws_the_catalogue(command, tmp_path: Path):
+    assert "written: events.png" in command("run", "cycles-block", "--catalog-figure", "events.png").out
+    assert [path.name for path in tmp_path.iterdir()] == ["events.png"]
+
+
+def test_run_says_what_is_trapped(command):
+    shown = command("run", "fig5-slab-reconstructed").out
+    assert re.search(r"trapped energy: 1\.86\d+e\+07 J/m2 in waves at the end, 0\.57 % of what", shown)
+    assert "trapped" not in command("run", "cycles-block").out
 
 
 def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

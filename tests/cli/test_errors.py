@@ -9,7 +9,7 @@ from stickslip.scenarios.scenario import Scenario
 
 CASES = [
     (["rn"], "No such command 'rn'. Did you mean 'run'?"),
-    (["run"], "Missing argument 'scenario'."),
+    (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
     (["run", "fig6-slab", "--figur", "a.png"], "No such option: --figur"),
     (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
     (["check", "fig6-slap"], "fig6-slap: no such file"),
@@ -20,9 +20,9 @@ CASES = [
     (["run", "fig6-slab", "--out", "no/a.nc"], "--out no/a.nc: there is no folder no"),
     (["run", "fig6-slab", "--figure", "a.xyz"], "--figure a.xyz: the name must end in .png or .pdf or .svg"),
     (["run", "fig6-slab", "--out", "a.nc", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
-    (["run", "fig6-slab", "--duration", "10 kg"], "run: --duration must be a number in s or a text with a unit"),
-    (["run", "fig6-slab", "--duration", "0"], "run: --duration must be greater than 0 s, got 0"),
-    (["run", "fig6-slab", "--duration", "nan"], "run: --duration must be finite, got nan"),
+    (["run", "fig6-slab", "--duration", "10 kg"], "run: --until must be a number in s or a text with a unit"),
+    (["run", "fig6-slab", "--duration", "0"], "run: --until must be greater than 0 s, got 0"),
+    (["run", "fig6-slab", "--duration", "nan"], "run: --until must be finite, got nan"),
     (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
     (["run", "fig6-slab", "--rtol", "much"], "Invalid value for '--rtol'"),
     (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
@@ -48,6 +48,17 @@ CASES = [
         "check: --map: body.thickness must be a number in m or a text with a unit",
     ),
     (["paper", "--out", "bad.toml/paper"], "--out bad.toml/paper:"),
+    (["regularise", "fig4-lop"], "fig4-lop: no such file, and no bundled scenario of that name; did you mean 'fig4-loop'?"),
+    (["regularise", "fig6-block-printed"], "regularise: a block has inertia, which makes its slip rate unique"),
+    (["regularise", "cycles-slab"], "regularise: a contact_mass of"),
+    (["regularise", "fig5-slab-printed", "--by", "lag"], "regularise: 'lag' needs a smooth law of slip rate only"),
+    (["regularise", "fig4-loop", "--by", "lagg"], "regularise: there is no regularisation 'lagg'; did you mean 'lag'?"),
+    (["regularise", "fig4-loop", "--count", "2"], "regularise: --count must lie between 3 and 100, got 2"),
+    (["regularise", "fig4-loop", "--largest", "1 us"], "regularise: --smallest must be less than --largest"),
+    (["regularise", "fig4-loop", "--smallest", "1 kg"], "regularise: --smallest must be a number in s or a text with a unit"),
+    (["regularise", "fig4-loop", "--rtol", "1"], "regularise: --rtol must be at most 0.01, got 1"),
+    (["regularise", "fig4-loop", "--out", "a.txt"], "--out a.txt: the name must end in .csv"),
+    (["regularise", "fig4-loop", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
 ]
 
 

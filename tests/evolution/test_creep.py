@@ -163,7 +163,7 @@ def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-d
     """Leaps are in the table, in the summary and in the file; the waves within are not known."""
     solution = ss.simulate(printed(100), 300 * ROUND, creep_rtol=1e-4)
     again = ss.load(solution.save(tmp_path / "creep.nc"))
-    assert list(solution.creep.columns) == ["start", "end", "round_trips", "error"]
+    assert list(solution.creep.columns) == ["start", "end", "start_row", "round_trips", "error"]
     assert again.creep.equals(solution.creep)
     time = np.linspace(0.0, 300 * ROUND, 500)
     np.testing.assert_array_equal(again.slip(time), solution.slip(time))

@@ -151,3 +151,17 @@ def test_what_cannot_lag_is_refused() -> None:
     for law in (ss.friction.Coulomb(0.6, 0.5), ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1)):
         with pytest.raises(ss.InputError, match=r"^LaggedFriction: rate must be a [^\n]*$"):
             ss.friction.LaggedFriction(law, 0.1)
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-12])
+@pytest.mark.parametrize("direct", [0.0, 1e-9])
+def test_no_step_walks_along_an_unstable_solution(direct: float, rtol: float) -> None:
+    """Slip begins 1e8 times faster than the load changes, and the rounding of loads is all that a tight tolerance sees of the
+    slow end: neither a backward solution nor a storm. The massless run is the limit: slip to 1e-6 (rtol), at least 1e-5."""
+    loop = ss.load_scenario("fig4-loop")
+    lagged = replace(loop.problem, friction=ss.friction.LaggedFriction(FALLING, 1e-8, direct=direct))
+    run, exact = ss.simulate(lagged, loop.duration, rtol=rtol), loop.run()
+    assert run.status.ok
+    assert float(run.slip(5.5)) == pytest.approx(float(exact.slip(5.5)), rel=max(1e-5, rtol))
+    assert (run.slip_rate(np.linspace(0.0, loop.duration, 2001)) >= -1e-9).all()
+    assert len(run.history) < 500

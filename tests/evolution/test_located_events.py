@@ -113,3 +113,19 @@ def test_maximal_rule_takes_up_slip_at_the_fold_under_a_smooth_load() -> None:
     by_law = IMPEDANCE * rate + NORMAL * RATE_LAW.coefficient(0.0, rate)
     assert by_law[rate > 0] == pytest.approx(run.load(times)[rate > 0], rel=1e-11, abs=0.0)
     assert float(np.abs(run.energy([6.0, 12.0]).balance).max() / run.energy(12.0).heat[0]) < 1e-12
+
+
+def test_maximal_rule_arrests_at_the_fold_that_it_has_come_back_to() -> None:
+    """At the fold the load may lie a rounding above the end of rest: no step is taken there, and slip stays a number.
+
+    The slip is the integral of the fastest root of Z v + S mu(v) = beta between the two passages of the fold.
+    """
+    scenario = ss.load_scenario("fig4-loop")
+    run = ss.simulate(replace(scenario.problem, selection="maximal"), scenario.duration)
+    start, end = run.shocks.time
+    load = run.load(start + (end - start) * 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 4001)))) - 30e6
+    half = 0.5 * (load - IMPEDANCE)  # (Z v - load) (1 + v) + drop = 0, with alpha = 1 s/m
+    rate = (half + np.sqrt(np.maximum(half**2 + IMPEDANCE * (load - 50e6), 0.0))) / IMPEDANCE
+    weight = (end - start) * 0.5 * np.pi * np.sin(np.pi * np.linspace(0.0, 1.0, 4001))
+    slip = float(np.trapezoid(rate * weight, np.linspace(0.0, 1.0, 4001)))
+    assert float(run.slip(scenario.duration)) == pytest.approx(slip, rel=1e-5, abs=0.0)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.evolution.report import Report
 from tests.evolution.test_verified_numbers import (
     IMPEDANCE,
     MODULUS,
@@ -204,17 +205,18 @@ def test_readable_repr() -> None:
 
 
 def test_progress_is_reported() -> None:
-    seen: list[tuple[float, int, str]] = []
-    ss.simulate(rate_law_slab(), 12.0, progress=lambda *report: seen.append(report))
+    seen: list[Report] = []
+    ss.simulate(rate_law_slab(), 12.0, progress=seen.append)
     assert seen
-    assert seen[-1][0] <= 12.0
+    assert seen[-1].time <= 12.0
+    assert (seen[-1].events, seen[-1].doing) == (1, "stuck")
 
 
 def test_interrupt_leaves_a_valid_solution(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = rate_law_slab(alpha=IMPEDANCE / (NORMAL * 0.5) + 1e-6)
 
-    def stop(time: float, pieces: int, state: str) -> None:
-        if pieces > 1000:
+    def stop(report: Report) -> None:
+        if report.pieces > 1000:
             raise KeyboardInterrupt
 
     run = ss.simulate(problem, 1e5, progress=stop)

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
-from stickslip.figures import admissible, comparison, hysteresis, laws, regimes, resistance, systems
+from stickslip.figures import admissible, comparison, hysteresis, laws, regimes, regularise, resistance, systems
 from stickslip.figures.run import plot_run
 from stickslip.figures.style import STYLE
 from stickslip.paper.files import image
@@ -179,6 +179,21 @@ def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: 
     side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
     again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
     assert image(comparison.draw(side_by_side), "svg") == image(comparison.draw(again), "svg")
+
+
+@pytest.mark.parametrize("rules", [("perfect-delay", "maxwell"), ("maxwell",)])
+def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
+    """Around a jump where the runs tend to a rule, all the way where they do not."""
+    study = ss.regularise(LOOP, 5.7, sizes=[1e-2, 1e-3, 1e-4], rules=rules)
+    dataset = regularise.data(study)
+    assert list(dataset.error[0].values) == list(study.errors(rules[0]))
+    assert ("jump_time" in dataset.attrs) == (len(rules) == 2)
+    figure = regularise.draw(dataset)
+    assert len(labels(figure)) == 6
+    assert all(has_unit(text) for text in labels(figure))
+    if "jump_time" in dataset.attrs:
+        assert dataset.attrs["jump_time"] == pytest.approx(5.212841, rel=1e-6, abs=0.0)
+        assert f"{study.verdict.order.power:.2f}" in {text.get_text() for text in figure.axes[0].texts}
 
 
 def test_a_run_plots_itself_and_keeps_the_users_style() -> None:

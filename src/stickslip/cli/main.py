@@ -12,6 +12,7 @@ from typer.exceptions import TyperException
 from stickslip.cli.check import check
 from stickslip.cli.new import new
 from stickslip.cli.paper import paper
+from stickslip.cli.regularise import regularise
 from stickslip.cli.run import run
 from stickslip.errors import InputError
 
@@ -25,6 +26,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip new slab > mine.toml   a commented scenario to start from
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
+  stickslip regularise mine.toml   which selection rule does physics choose
   stickslip paper --out paper      the source paper, claim by claim
 """
 
@@ -36,7 +38,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, check, new, paper):
+for command in (run, check, new, regularise, paper):
     app.command()(command)
 
 

@@ -43,3 +43,10 @@ def complete_rule(incomplete: str) -> list[str]:
     from stickslip.selection import SELECTION_RULES
 
     return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]
+
+
+def complete_regularisation(incomplete: str) -> list[str]:
+    """What `stickslip regularise --by` knows."""
+    from stickslip.studies.kinds import KINDS
+
+    return [kind for kind in KINDS if kind.startswith(incomplete)]

@@ -1,10 +1,9 @@
-"""`stickslip run`: simulate a scenario and say what happened."""
+"""`stickslip run`: simulate a scenario, or go on with a run, and say what happened."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -13,14 +12,17 @@ from stickslip.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.evolution.solution import Solution
+    from stickslip.evolution.status import Status
     from stickslip.problem import Problem
-    from stickslip.scenarios.scenario import Scenario
 
 
 def run(
-    scenario: Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)],
+    scenario: Annotated[
+        str | None, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario, show_default=False)
+    ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Save the whole solution (netCDF, .nc).", show_default=False)
+        Path | None,
+        typer.Option("--out", "-o", help="Save the whole solution (netCDF, .nc), now and then on the way too.", show_default=False),
     ] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
@@ -29,10 +31,32 @@ def run(
         Path | None,
         typer.Option("--path", help="Save a figure of the run's path in the set K (.png, .pdf or .svg).", show_default=False),
     ] = None,
-    duration: Annotated[
-        str | None, typer.Option(help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
+    catalog_figure: Annotated[
+        Path | None,
+        typer.Option("--catalog-figure", help="Save a figure of the slip events (.png, .pdf or .svg).", show_default=False),
+    ] = None,
+    catalog: Annotated[
+        Path | None,
+        typer.Option("--catalog", help="Keep slip events only, in bounded memory (.csv, .parquet or .nc).", show_default=False),
+    ] = None,
+    until: Annotated[
+        str | None,
+        typer.Option("--until", "--duration", help='Run this long instead: s, or with a unit ("480 year").', show_default=False),
+    ] = None,
+    events: Annotated[int | None, typer.Option(help="Stop when so many slip events are over.", show_default=False)] = None,
+    resume: Annotated[
+        Path | None,
+        typer.Option(help="Go on with the run in a file of --out, or a checkpoint of --catalog.", show_default=False),
     ] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    creep_rtol: Annotated[
+        float | None,
+        typer.Option(
+            help="Leap over slow creep between pulses (a slab under a law of slip), with an error of slip of at most this "
+            "times the slip so far: 1e-6, say. 0 runs every round trip.",
+            show_default=False,
+        ),
+    ] = None,
     selection: Annotated[
         str | None,
         typer.Option(
@@ -42,65 +66,46 @@ def run(
         ),
     ] = None,
 ) -> None:
-    """Simulate a scenario and say what happened: slip events, shocks, and what ended the run.
+    """Simulate a scenario, or go on with a run, and say what happened: slip events, shocks, and what ended the run.
 
     Times are in s, slips in m, slip rates in m/s, tractions in Pa (slab) or
-    N (block). Existing files are replaced, once the new ones are complete.
+    N (block). Existing files are replaced, each when its content is complete.
 
     \b
       stickslip run fig6-slab
       stickslip run mine.toml --out mine.nc --figure mine.png
-      stickslip run fig6-slab --duration "480 year" --selection maxwell
+      stickslip run fig6-slab --until "480 years" --selection maxwell
+      stickslip run fig5-slab-printed --until "3 days" --creep-rtol 1e-6
+      stickslip run cycles-block --until "10000 years" --catalog events.csv
+      stickslip run --resume mine.nc --until "1000 years"
+
+    Ctrl-C ends a run with a valid file that --resume takes up; so does the
+    last state of a run that was killed. Nobody can tell from the result.
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.files import check_target
-    from stickslip.cli.summary import show_solution
+    from stickslip.cli.long_run import Request, list_events, solve
+    from stickslip.cli.summary import show_catalogue, show_solution
 
-    pictures = (".png", ".pdf", ".svg")
-    for target, option, suffixes in ((out, "--out", (".nc",)), (figure, "--figure", pictures), (path, "--path", pictures)):
-        if target is not None:
-            check_target(target, option, suffixes)
-    chosen = _adjusted(scenario, duration, rtol, selection)
-    if path is not None:
-        _check_path(chosen.problem)
-    solution = _simulate(chosen)
+    request = Request(scenario, until, events, rtol, creep_rtol, selection, resume, out, catalog, figure, path, catalog_figure)
+    request.check()
+    if request.keeps_events_only:
+        chosen, found = list_events(request)
+        show_catalogue(chosen, found)
+        _leave(found.status)
+    if path is not None and resume is None:
+        _check_path(request.scenario().problem)
+    chosen, solution = solve(request)
     show_solution(chosen, solution)
-    for line in _save(solution, out, figure, path):
+    for line in _draw(solution, out or resume, figure, path, catalog_figure):
         typer.echo(line)
-    if solution.status.name == "interrupted":
+    _leave(solution.status)
+
+
+def _leave(status: Status) -> NoReturn:
+    if status.name == "interrupted":
         raise KeyboardInterrupt
-    raise typer.Exit(0 if solution.status.ok else 1)
-
-
-def _adjusted(name: str, duration: str | None, rtol: float | None, selection: str | None) -> Scenario:
-    """The scenario with what the options change. Raises InputError."""
-    from stickslip.scenarios.scenario import load_scenario
-    from stickslip.scenarios.schema import check_rtol, read_duration
-    from stickslip.selection import names, unknown
-
-    loaded = load_scenario(name)
-    changes: dict[str, Any] = {}
-    if duration is not None:
-        changes["duration"] = read_duration(duration, "run", "--duration")
-    if rtol is not None:
-        changes["rtol"] = check_rtol(rtol, "run", "--rtol")
-    if selection is not None:
-        if selection not in names():
-            raise InputError(f"run: --selection '{selection}' {unknown(selection)}")
-        changes["problem"] = replace(loaded.problem, selection=selection)
-    return replace(loaded, **changes)
-
-
-def _simulate(scenario: Scenario) -> Solution:
-    from stickslip.cli.show import number, progress_to
-
-    with progress_to(f"{scenario.name}:") as report:
-
-        def progress(time: float, pieces: int, doing: str) -> None:
-            report(f"{number(time, 6)} of {number(scenario.duration, 6)} s, {pieces} pieces, {doing}")
-
-        return scenario.run(progress)
+    raise typer.Exit(0 if status.ok else 1)
 
 
 def _check_path(problem: Problem) -> None:
@@ -111,13 +116,10 @@ def _check_path(problem: Problem) -> None:
         raise InputError("run: --path needs a slab without contact mass: with inertia the slip rate is a state, there is no set K")
 
 
-def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path | None) -> list[str]:
+def _draw(solution: Solution, out: Path | None, figure: Path | None, path: Path | None, catalog_figure: Path | None) -> list[str]:
     from stickslip.files import write_atomically
 
-    written = []
-    if out is not None:
-        solution.save(out)
-        written.append(f"written: {out}")
+    written = [] if out is None else [f"written: {out}"]
     if figure is not None:
         write_atomically(figure, solution.plot().savefig)
         written.append(f"written: {figure}")
@@ -126,4 +128,9 @@ def _save(solution: Solution, out: Path | None, figure: Path | None, path: Path 
 
         write_atomically(path, admissible.draw(admissible.data(solution.problem, solution)).savefig)
         written.append(f"written: {path}")
+    if catalog_figure is not None:
+        from stickslip.figures import catalogue
+
+        write_atomically(catalog_figure, catalogue.draw(catalogue.data(solution)).savefig)
+        written.append(f"written: {catalog_figure}")
     return written

@@ -6,7 +6,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -14,6 +14,9 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from stickslip import YEAR
+
+if TYPE_CHECKING:
+    from stickslip.evolution.report import Report
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 _SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
@@ -57,6 +60,37 @@ def with_unit(value: float, unit: str) -> str:
     if unit.endswith("/s") and 0 < abs(value) < 1e-4:
         return f"{plain} ({number(value * YEAR, 6)} {unit.removesuffix('/s')}/year)"
     return plain
+
+
+_UNITS = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
+
+
+def in_unit(seconds: float) -> tuple[float, str]:
+    """The largest unit of time that fits into a time: its length in s, and its name."""
+    return next(((length, name) for length, name in _UNITS if seconds >= length), _UNITS[-1])
+
+
+def about_time(seconds: float) -> str:
+    """A time as one says it: 3.2 min."""
+    length, name = in_unit(seconds)
+    value = seconds / length
+    return f"{value:.0f} {name}" if value >= 100.0 else f"{number(value, 2)} {name}"
+
+
+def so_far(report: Report) -> str:
+    """How far a run is, in one line."""
+    length, unit = in_unit(report.duration)
+    wanted = f" of {report.events_wanted}" if report.events_wanted else ""
+    parts = [
+        f"{number(report.time / length, 6)} of {number(report.duration / length, 6)} {unit}",
+        f"{report.events}{wanted} slip event{'' if report.events == 1 and not wanted else 's'}",
+        report.doing,
+    ]
+    if report.pace > 0.0:
+        parts.append(f"{about_time(report.pace)} a second")
+    if math.isfinite(report.left):
+        parts.append(f"{about_time(report.left)} left")
+    return ", ".join(parts)
 
 
 @contextmanager

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from stickslip.evolution.solution import Solution
+    from stickslip.long_runs.catalogue import Catalogue
     from stickslip.scenarios.scenario import Scenario
 
 FIRST = 12
@@ -26,25 +27,32 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     screen, force = console(), scenario.problem.load_unit
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{solution.status.name}: {solution.status.message}")
-    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    _say_how(screen, scenario, solution.creep_note)
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
-    _print(screen, "slip event", _with_lengths(solution.events), units)
-    _print(screen, "shock", solution.shocks, ("s", "", "m/s", "m/s", force, force))
+    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
+    _print(screen, "slip event", solution.events[shown], units)
+    _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
+    if solution.trapped_note:
+        screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
 
 
-def _with_lengths(events: DataFrame) -> DataFrame:
-    """Events with their length and the time to their peak: late times have no digits left for either."""
-    shown = events.assign(lasts=events.end - events.start, peak_after=events.peak_time - events.start)
-    for name in ("lasts", "peak_after"):
-        shown[name] = [_resolved(length, late) for length, late in zip(shown[name], events.peak_time, strict=True)]
-    return shown[["start", "lasts", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]]
+def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
+    """Print on standard output what came of a run of which only its slip events were kept."""
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
+    _say_how(screen, scenario, found.creep)
+    screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
+    for file in found.files:
+        screen.print(f"written: {file}", soft_wrap=True)
 
 
-def _resolved(length: float, late: float) -> float:
-    """A difference of two times (s), to the digits that times as late as `late` leave it."""
-    decimals = -math.ceil(math.log10(4.0 * math.ulp(late))) if late > 0 else 15
-    return round(length, decimals) if math.isfinite(length) else length
+def _say_how(screen: Console, scenario: Scenario, creep: str) -> None:
+    """Duration, tolerances, and leaps over creep, if they were allowed."""
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    if scenario.creep_rtol > 0.0:
+        screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
 
 
 def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:

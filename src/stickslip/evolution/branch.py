@@ -95,6 +95,20 @@ def load_ahead(run: Run, guess: float) -> None:
 
 
 @inlined
+def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]:
+    """Where on [0, 1] the load leaves what the strength (minus the reference) holds, and in which direction; NONE if it stays."""
+    part, onset, direction = run.part, NONE, 0
+    for way in (1, -1):
+        for k in range(at.TERMS):
+            part[k] = strength[k] - way * load[k]
+        part[0] = 0.0 if run.counts[at.EDGE] == way else strength[0] - towards(run, load[0], way)
+        first = first_descent(part, run.spare)
+        if first < onset:
+            onset, direction = first, way
+    return onset, direction
+
+
+@inlined
 def rate_on_branch(run: Run, load: float, guess: float) -> float:
     """The slip rate on the current branch that solves g(s) = load: Newton's method kept inside the branch."""
     branch = run.counts[at.BRANCH]

@@ -38,15 +38,19 @@ def _sources_hash() -> str:
     return digest.hexdigest()[:16]
 
 
+SOURCES = _sources_hash()
+"""Stands for the code that is compiled, and for what compiles it."""
+
+
 def cache_folder() -> Path:
     """Where compiled code is kept: STICKSLIP_CACHE_DIR, else the user's cache folder, else a temporary one."""
     chosen = os.environ.get("STICKSLIP_CACHE_DIR")
     root = Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
     try:
-        folder = root / f"compiled-{_sources_hash()}"
+        folder = root / f"compiled-{SOURCES}"
         (folder / "formulas").mkdir(parents=True, exist_ok=True)
     except OSError:
-        folder = Path(tempfile.gettempdir()) / f"stickslip-compiled-{_sources_hash()}"
+        folder = Path(tempfile.gettempdir()) / f"stickslip-compiled-{SOURCES}"
         (folder / "formulas").mkdir(parents=True, exist_ok=True)
     return folder
 

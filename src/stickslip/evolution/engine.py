@@ -10,7 +10,7 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import needs_branches, rest_limit
-from stickslip.evolution.compiled import ahead, kernel
+from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
@@ -112,25 +112,35 @@ def is_ramp(run: Run) -> bool:
     reflection = run.par[at.REFLECTION]
     if reflection == -1.0:
         return True
-    if reflection == 1.0:
-        return run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
-    return abs(reflection) ** run.counts[at.STUCK_ROWS] < FORGOTTEN
+    # what the last round trip differs from the next one by fades from there on: the first at rest still differs in full
+    return abs(reflection) ** (run.counts[at.STUCK_ROWS] - 1) < FORGOTTEN
 
 
 @kernel
-def end_row(run: Run, limit: float, end_row: int) -> int:
-    """Close a round trip; leap over the following ones while nothing can happen in them. Returns at.FULL to go on, or at.LOCKED."""
-    outcome = at.FULL
-    leap = 0
+def swings_for_ever(run: Run) -> bool:
+    """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
+    return run.par[at.REFLECTION] == 1.0 and run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
+
+
+@kernel
+def end_row(run: Run, limit: float, last_row: int) -> bool:
+    """Close a round trip; leap over the following ones while nothing can happen in them.
+
+    False, and nothing done, where the end of the run would cut the leap and TO_THE_END is not set.
+    """
+    leap, locked = 0, False
     if run.counts[at.MOVED] == 0:
         run.counts[at.STUCK_ROWS] += 1
         leap = rows_at_rest(run, limit)
-        if leap == FOREVER:
-            outcome = at.LOCKED
-        leap = min(leap, end_row - run.counts[at.ROW] - 1)
-        leap = max(leap, 0)
+        locked = leap == FOREVER or swings_for_ever(run)
+        room = last_row - run.counts[at.ROW] - 1
+        if leap > room and run.counts[at.TO_THE_END] == 0:
+            run.counts[at.STUCK_ROWS] -= 1
+            return False
+        leap = max(min(leap, room), 0)
     else:
         run.counts[at.STUCK_ROWS] = 0
+    run.counts[at.IS_LOCKED] = 1 if locked else 0
     if run.counts[at.IS_BLOCK] == 1:
         run.state[at.LOAD_NOW] = total(ahead(run.stored_load, TERMS * (run.counts[at.LENGTH] - 1)))
     run.counts[at.LEAP] = leap
@@ -138,7 +148,13 @@ def end_row(run: Run, limit: float, end_row: int) -> int:
     run.counts[at.PREVIOUS_FROM], run.counts[at.PREVIOUS_TO] = run.counts[at.ROW_FROM], run.counts[at.LENGTH]
     run.counts[at.ROW_FROM] = run.counts[at.LENGTH]
     run.counts[at.SOURCE] = run.counts[at.MOVED] = 0
-    return outcome
+    return True
+
+
+@inlined
+def ended(run: Run) -> int:
+    """What to say at the end of the run."""
+    return at.LOCKED if run.counts[at.IS_LOCKED] == 1 else at.FINISHED
 
 
 @kernel
@@ -155,15 +171,15 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
 
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
-    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. PAUSED: row PAUSE_AT
-    comes next.
+    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. END_AHEAD: what
+    comes next depends on where the run ends; the caller sets TO_THE_END and goes on. Up to there a longer run is the same.
+    PAUSED: row PAUSE_AT, or one behind it, comes next.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """
     run = borrow(table)
     run.k[at.K_IMPEDANCE], run.k[at.K_NORMAL] = run.par[at.IMPEDANCE], run.par[at.NORMAL]
     run.k[at.K_INERTIA], run.k[at.K_STIFFNESS] = run.par[at.INERTIA], run.par[at.STIFFNESS]
-    locked = False
     while True:
         if run.counts[at.LENGTH] + ROOM > run.capacity:
             return at.FULL
@@ -179,10 +195,10 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 leave_moving_branch(run)
         if run.counts[at.READY] == 0:
             if run.counts[at.ROW] > last_row:
-                return at.LOCKED if locked else at.FINISHED
+                return ended(run)
             if not next_piece(run):
-                limit = rest_limit(run)
-                locked = end_row(run, limit, last_row) == at.LOCKED
+                if not end_row(run, rest_limit(run), last_row):
+                    return at.END_AHEAD
                 if run.counts[at.ROW] >= run.counts[at.PAUSE_AT]:
                     return at.PAUSED
                 continue
@@ -194,7 +210,10 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             if run.counts[at.FOLDS_MOVE] == 1:
                 continue  # a step that the caller may take back stands alone
         is_last = run.counts[at.ROW] == last_row and run.counts[at.AT_FOLD] == 0 and run.state[at.THETA_TO] >= last_theta
-        xi_to = min(xi_at(run, last_theta), 1.0) if is_last and run.state[at.THETA_TO] > last_theta else 1.0
+        is_cut = is_last and run.state[at.THETA_TO] > last_theta
+        if is_cut and run.counts[at.TO_THE_END] == 0:
+            return at.END_AHEAD
+        xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
         if run.state[at.XI] < xi_to:
             if run.counts[at.MODE] == 0:
                 stick(run, xi_to)
@@ -207,6 +226,6 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
         elif run.counts[at.AT_FOLD] != 0:
             leave_fold_piece(run)
         elif is_last:
-            return at.LOCKED if locked else at.FINISHED
+            return ended(run)
         else:
             run.counts[at.READY] = 0

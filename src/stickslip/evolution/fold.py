@@ -164,8 +164,9 @@ def straight_from_fold(run: Run) -> None:
 def leave_fold_piece(run: Run) -> None:
     """The piece next to a fold is done: take up the piece of load where it was left, and jump if the fold is reached."""
     state = run.state
-    if run.counts[at.AT_FOLD] == DEPARTING:  # the next series reaches about as far as the fold is away
-        state[at.LAST_STEP] = theta_at(run, 1.0) - theta_at(run, 0.0)
+    way = theta_at(run, 1.0) - theta_at(run, 0.0)
+    if run.counts[at.AT_FOLD] == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
+        state[at.LAST_STEP] = way
     rate, slipped, law_slip, last = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP]
     copy(run.kept, run.state, at.STATES)
     state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP] = rate, slipped, law_slip, last

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
-from stickslip.evolution.layout import Store
+from stickslip.evolution.layout import Integers, Store
 from stickslip.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,17 @@ def horner(coefficients: Floats, x: Floats) -> Floats:
     return value
 
 
-NO_LEAPS = np.empty((0, 4))
+class Epoch(NamedTuple):
+    """A moment without rounding: whole rows (round trips of a slab) since t = 0, and an offset in s."""
+
+    row: int
+    offset: float
+
+
+START = Epoch(0, 0.0)
+"""t = 0, the start of the run."""
+
+NO_LEAPS = np.empty((0, 3))
 
 
 @dataclass(frozen=True)
@@ -39,49 +49,74 @@ class Moments:
     leaped: Floats
     before: NDArray[np.bool_]
 
+    @classmethod
+    def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Moments:
+        """Places in the history by piece and xi."""
+        pieces, places = np.broadcast_arrays(np.atleast_1d(np.asarray(piece, np.intp)), np.atleast_1d(np.asarray(xi, float)))
+        return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool))
+
 
 @dataclass(frozen=True)
 class History:
-    """Pieces in order of time. Loads are minus the reference strength, slips minus the initial slip (see `layout.Store`)."""
+    """Pieces in order of time. Loads are minus the reference strength, slips minus the initial slip (see `layout.Store`).
+
+    Times go in and out as seconds since `epoch`, and are as sharp as their own rounding: take an epoch near what you look at.
+    """
 
     store: Store
     problem: Problem
     row_time: float
     ramp: float
     duration: float
+    epoch: Epoch = START
     creep: Floats = field(default_factory=NO_LEAPS.copy)
-    """Leaps over creep, one a row: start and end (s), round trips, bound of the error of slip (m)."""
+    """Leaps over creep, one a row: round trips before it, round trips in it, bound of the error of slip (m)."""
+
+    def seen_from(self, epoch: Epoch) -> History:
+        """The same history with its times counted from another epoch."""
+        return replace(self, epoch=epoch)
+
+    def seconds(self, row: Integers | Floats, offset: Floats) -> Floats:
+        """Times (s since the epoch) of offsets in whole rows."""
+        return np.asarray((row - self.epoch.row) * self.row_time + (offset - self.epoch.offset))
 
     @cached_property
     def start(self) -> Floats:
         """Time at which each piece starts, s."""
-        return np.asarray(self.store.row * self.row_time + self.store.theta_from)
+        return self.seconds(self.store.row, self.store.theta_from)
 
     @cached_property
     def end(self) -> Floats:
         """Time at which each piece ends, s."""
-        return np.asarray(self.store.row * self.row_time + self.store.theta_to)
+        return self.seconds(self.store.row, self.store.theta_to)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times (s) of the start and the end of the run."""
+        start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
+        return start, start + self.duration
 
     def __len__(self) -> int:
         return len(self.store.whole)
 
     def rested(self, piece: int) -> int:
-        """Whole round trips at rest that were leaped over just before a piece."""
-        if piece == 0 or self.start[piece] <= self.end[piece - 1]:
-            return 0  # at once behind it, be that a leap over creep
-        return max(int(self.store.row[piece] - self.store.row[piece - 1]) - 1, 0)
+        """Whole rows at rest that were leaped over just before a piece; what a leap over creep has passed was no rest."""
+        if piece == 0:
+            return 0
+        passed = max(round(float(self.store.theta_to[piece - 1]) / self.row_time), 1)
+        return max(int(self.store.row[piece] - self.store.row[piece - 1]) - passed, 0)
 
-    def in_creep_leap(self, row: int) -> bool:
-        """Whether a stored row is a leap over creep, and its pieces so are averages over round trips."""
-        return bool((np.round(self.creep[:, 0] / self.row_time) == row).any())
+    def is_averaged(self, row: int) -> bool:
+        """Whether a stored row is a leap over creep: its pieces are averages over round trips."""
+        return bool((self.creep[:, 0] == row).any())
 
     def find(self, time: Floats, side: Side) -> Moments:
         """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
         if side not in ("left", "right"):
             raise InputError(f"side must be 'left' or 'right', got {side!r}")
-        slack = 1e-12 * self.duration
-        if not np.all((time >= 0.0) & (time <= self.duration + slack)):
-            raise InputError(f"times must lie between 0 and the end of the run, {self.duration:g} s")
+        first, last = self.span
+        if not np.all((time >= first) & (time <= last + 1e-12 * self.duration)):
+            raise InputError(f"times must lie between {first:g} and the end of the run, {last:g} s")
         piece = np.searchsorted(self.start, time, side="left" if side == "left" else "right") - 1
         before = piece < 0
         piece = np.maximum(piece, 0)
@@ -94,16 +129,23 @@ class History:
     def _in_leap(self, last: int, time: float, side: Side) -> tuple[int, float, float]:
         """A time behind a row at rest that was leaped over: the same place in that row, whole rows later."""
         row = int(self.store.row[last])
-        if last + 1 == len(self) or self.store.row[last + 1] == row:
+        if last + 1 == len(self) or self.rested(last + 1) == 0:
             return last, time - float(self.start[last]), 0.0
-        rows = max(np.floor((time - row * self.row_time) / self.row_time), 0.0)
-        theta = time - (row + rows) * self.row_time
+        since = time + self.epoch.offset - (row - self.epoch.row) * self.row_time  # since that row began
+        rows = max(np.floor(since / self.row_time), 0.0)
+        theta = time + self.epoch.offset - (row - self.epoch.row + rows) * self.row_time
         if theta <= 0.0 and side == "left":
             rows, theta = rows - 1.0, self.row_time
         first = int(np.searchsorted(self.store.row, row, side="left"))
         inside = np.searchsorted(self.store.theta_from[first : last + 1], theta, side="left" if side == "left" else "right") - 1
         piece = first + max(int(inside), 0)
         return piece, theta - float(self.store.theta_from[piece]), float(rows)
+
+    def placed(self, at: Moments) -> tuple[Integers, Floats]:
+        """Rows and offsets (s) of moments."""
+        store, piece, xi = self.store, at.piece, at.xi
+        inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
+        return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
 
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
         """Place in [0, 1] of a time `local` s after the start of a piece."""
@@ -127,13 +169,26 @@ class History:
         """Slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
         rate = self.store.rate[at.piece]
         powers = np.arange(1, rate.shape[1] + 1)
-        integral = self.store.speed[at.piece, None] * rate / powers
-        bent = 2.0 * self.store.bend[at.piece, None] * rate / (powers + 1)
-        return at.xi * (horner(integral, at.xi) + at.xi * horner(bent, at.xi))
+        straight = at.xi * horner(self.store.speed[at.piece, None] * rate / powers, at.xi)
+        bend = self.store.bend[at.piece]
+        if not bend.any():
+            return straight
+        return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
 
     def slipped(self, at: Moments) -> Floats:
         """Slip since the start of the run, m."""
         return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
+
+    def slipped_since(self, origin: Moments, at: Moments) -> Floats:
+        """Slip since one moment, m: summed from there, so that it has all its digits however much has slipped before."""
+        begin = int(origin.piece[0])
+        first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
+        crossed = np.arange(first, last)
+        pieces, places = (np.concatenate(parts) for parts in ((crossed, origin.piece, at.piece), (crossed >= 0, origin.xi, at.xi)))
+        grown = self.grown(Moments.inside(pieces, places))
+        earlier, later, behind = np.split(grown, [begin - first, last - first])
+        sums = np.concatenate([-np.cumsum(earlier[::-1])[::-1], [0.0], np.cumsum(later)])
+        return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
 
     def state(self, at: Moments) -> Floats:
         """State of the friction law as its formulas see it; 0 for a law without one."""

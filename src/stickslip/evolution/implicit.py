@@ -8,13 +8,22 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import load_ahead, towards
+from stickslip.evolution.branch import load_ahead, onset_of_slip
 from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, copy, fill, first_descent, scale, total
+from stickslip.evolution.polynomial import NONE, copy, fill, scale, total
 from stickslip.evolution.record import record
-from stickslip.evolution.stages import BY_STATE, MU, contact_at, rate_at_load, solve_stages
+from stickslip.evolution.stages import (
+    BY_RATE,
+    BY_STATE,
+    CHANGE_BY_RATE,
+    CHANGE_BY_STATE,
+    MU,
+    contact_at,
+    rate_at_load,
+    solve_stages,
+)
 from stickslip.evolution.workspace import Run
 
 ATTEMPTS = 80
@@ -23,6 +32,11 @@ STIFF, NOT_STIFF = 4.0, 1.5
 implicit step, below which it no longer is."""
 CHECKED = 16
 """Explicit steps between two looks at the stiffness."""
+LONGEST_GROWTH = 4.0
+"""Growth (as an exponent) of a disturbance over a step, at most."""
+ROUNDING = 1e-15
+BACKWARDS = 1e3
+"""Error, in units of the tolerance, beyond which a step is never kept."""
 FORGOTTEN = 1e-18
 """Share of friction below which what is left of the state at rest is dropped."""
 
@@ -49,6 +63,28 @@ def judge_stiffness(run: Run) -> None:
 
 
 @kernel
+def growth_rate(run: Run) -> float:
+    """How fast (1/s) a disturbance of slip rate and state grows at the start of the step; 0 where none does.
+
+    An implicit step far longer than that would walk along an unstable solution as if it were stable. What slip does to a
+    disturbance is left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with it.
+    """
+    par, value = run.par, run.value
+    contact_at(run, run.state[at.LAW_SLIP], run.stage_rate[0], run.stage_state[0])
+    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE]
+    if run.counts[at.HAS_INERTIA] == 0:
+        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par[at.NORMAL] * value[BY_STATE] / resistance, 0.0)
+    mass = par[at.INERTIA]
+    trace = value[CHANGE_BY_STATE] - resistance / mass
+    product = (par[at.NORMAL] * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
+    root = trace * trace - 4.0 * product
+    growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
+    if growth > 0.0 and trace < 0.0 and root > 0.0:
+        growth = -2.0 * product / (math.sqrt(root) - trace)  # the same without cancellation
+    return max(growth, 0.0)
+
+
+@kernel
 def start_of_step(run: Run) -> float:
     """Slip rate and state at the start into the stages; the force that is none by definition, where slip leaves rest."""
     state, force = run.state, 0.0
@@ -68,14 +104,25 @@ def start_of_step(run: Run) -> float:
 
 @kernel
 def error_of(run: Run) -> float:
-    """Error of the step's polynomials, in units of the tolerance."""
-    fastest, farthest = run.par[at.RATE_FLOOR], run.par[at.STATE_SCALE] + 1e-300
+    """Error of the step's polynomials, in units of the tolerance and of what rounding of the load makes of slip rate and state."""
+    par, value = run.par, run.value
+    fastest, farthest = par[at.RATE_FLOOR], par[at.STATE_SCALE] + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
-    error = last_terms(run.jet) / fastest
+    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / run.k[at.K_SPEED]  # as at the last stage
+    noise = ROUNDING * (par[at.REFERENCE] + abs(run.seen[0])) / resistance if resistance > 0.0 else 0.0
+    error = last_terms(run.jet) / (par[at.TOLERANCE] * fastest + noise)
     if run.counts[at.HAS_STATE] == 1:
-        error = max(error, last_terms(run.state_jet) / farthest)
-    return error / run.par[at.TOLERANCE]
+        if value[CHANGE_BY_STATE] != 0.0:
+            noise *= abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE])
+        error = max(error, last_terms(run.state_jet) / (par[at.TOLERANCE] * farthest + noise))
+    return error
+
+
+@inlined
+def starts_backwards(run: Run) -> bool:
+    """Whether the polynomial of a slip rate that rises from rest falls at first: it is not good enough there."""
+    return run.counts[at.MODE] != 0 and run.stage_rate[0] == 0.0 and run.stage_rate[1] > 0.0 and run.jet[1] < 0.0
 
 
 @kernel
@@ -88,6 +135,11 @@ def collocate(run: Run, left: float) -> float:
     guess = min(left, run.state[at.LAST_STEP] / speed)
     if 0.5 * left < guess < left:
         guess = 0.5 * left
+    load_ahead(run, guess)
+    start_of_step(run)
+    growth = growth_rate(run) if run.counts[at.MODE] != 0 else 0.0
+    if growth * guess * speed > LONGEST_GROWTH:
+        guess = LONGEST_GROWTH / (growth * speed)
     before = math.inf
     for _ in range(ATTEMPTS):
         load_ahead(run, guess)
@@ -99,7 +151,9 @@ def collocate(run: Run, left: float) -> float:
             interpolate(run.stage_state, run.state_jet, run.spare)
             error = error_of(run)
             factor = 0.9 * max(error, 1e-12) ** (-1.0 / (STAGES + 1.0))
-            if error <= 1.0 or (error < 1e3 and error > 0.5 * before):
+            if starts_backwards(run):
+                error = max(error, BACKWARDS)
+            if error <= 1.0 or (error < BACKWARDS and error > 0.5 * before):
                 run.state[at.LAST_STEP] = guess * speed * min(factor, 5.0)
                 return guess
             before = error
@@ -148,19 +202,11 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
     width = collocate(run, xi_to - run.state[at.XI])
     reached = width >= xi_to - run.state[at.XI]
-    strength, part = run.jet, run.part
-    strength_ahead(run, strength)
+    strength_ahead(run, run.jet)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
     fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
     copy(run.local, load, at.TERMS)
-    onset, direction = NONE, 0
-    for way in (1, -1):
-        for k in range(at.TERMS):
-            part[k] = strength[k] - way * run.local[k]
-        part[0] = 0.0 if run.counts[at.EDGE] == way else strength[0] - towards(run, run.local[0], way)
-        first = first_descent(part, run.spare)
-        if first < onset:
-            onset, direction = first, way
+    onset, direction = onset_of_slip(run, load, run.jet)
     end = min(onset, 1.0)
     if end < 1.0:
         scale(load, end)

@@ -21,8 +21,8 @@ TERMS = ORDER + 1
 # ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-STATE_SCALE, RATE_FLOOR, HEALED_PIECE = 17, 18, 19
-# HEALED_PIECE: of the law, where rest heals the contact; -1 where the law remembers all slip
+STATE_SCALE, RATE_FLOOR = 17, 18
+HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
 PARAMETERS = 20
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
@@ -36,8 +36,9 @@ STATES = 13
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
 MOVED, READY, JUMP, CAUSE, LEAP, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
 HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
-PAUSE_AT = 29  # row before which `advance` returns, for its caller to look at the rows so far
-COUNTS = 30
+IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
+PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 31, 32, 33  # row before which `advance` returns; rows to the pause after it; leaps so far
+COUNTS = 34
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -47,7 +48,7 @@ MET, BROUGHT = 1, 2
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, PAUSED, FAILED, NEED_BRANCHES = range(7)
+FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED = range(8)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
@@ -144,6 +145,17 @@ def resized(store: Store, length: int, capacity: int) -> Store:
     return larger
 
 
-def trimmed(store: Store, length: int) -> Store:
-    """The history without its spare room (views, not copies)."""
-    return Store(store.whole[:length], store.real[:length], store.load[:length], store.rate[:length], store.state[:length])
+def trimmed(store: Store, length: int, first: int = 0) -> Store:
+    """The history from piece `first` on, without its spare room (views, not copies)."""
+    kept = slice(first, length)
+    return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
+
+
+def without_first(store: Store, count: Integers, pieces: int) -> None:
+    """Forget the first so many pieces, which neither the present round trip nor the one before may hold."""
+    assert pieces <= count[PREVIOUS_FROM]
+    length = count[LENGTH]
+    for table in store:
+        table[: length - pieces] = table[pieces:length]
+    for place in (LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO):
+        count[place] -= pieces

@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-
-import numpy as np
+from pathlib import Path
 
 from stickslip.errors import InputError
-from stickslip.evolution import layout as at
-from stickslip.evolution.creep.leap import CreepLeaps
-from stickslip.evolution.history import NO_LEAPS, History
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
-from stickslip.evolution.setup import prepare, row_time
+from stickslip.evolution.creep.conditions import check_creep_rtol
+from stickslip.evolution.drive import drive
+from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
+from stickslip.evolution.report import Progress
 from stickslip.evolution.solution import Solution
-from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED, STATUSES
-from stickslip.evolution.workspace import WORK_ROWS, lend
+from stickslip.evolution.status import INTERRUPTED, STATUSES
 from stickslip.problem import Problem
-
-STEPS_PER_CALL = 200_000
-FIRST_CAPACITY = 512
-
-Progress = Callable[[float, int, str], None]
-"""Called now and then with the simulated time (s), the number of pieces so far, and what the contact does."""
 
 
 def simulate(
@@ -31,67 +22,58 @@ def simulate(
     rtol: float = 1e-10,
     *,
     creep_rtol: float = 0.0,
+    events: int | None = None,
     progress: Progress | None = None,
-    max_pieces: int = 4_000_000,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    max_pieces: int = MAX_PIECES,
 ) -> Solution:
-    """Run a problem from t = 0 to `duration` (s) with relative tolerance `rtol` (1e-15 to 1e-2).
+    """Run a problem from t = 0 to `duration` (s), or until so many slip `events` are over, with relative tolerance `rtol`.
 
-    A slab under a law of slip creeps for days between pulses, slipping a little in each round trip. With creep_rtol > 0 the run
-    leaps over creep, with an error of slip of at most creep_rtol times the slip since the start (`solution.creep` lists the
-    leaps), and is exact before and after; with 0 every round trip is run.
+    Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time. A run of
+    which a `checkpoint` file (.nc) is kept, renewed every `checkpoint_every` seconds of wall clock, can be taken up again by
+    `stickslip.resume`, also after it has been killed; at the end the file holds the solution. rtol lies between 1e-15 and 1e-2.
 
-    Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time.
-    Raises InputError for a duration that is not positive and finite, an rtol out of range, a contact that cannot even start, or
-    a creep_rtol for a problem in which there are no such leaps.
+    Under a law of slip a slab may creep for days between pulses, slipping a little in each round trip. With creep_rtol (up to
+    1e-2) the run leaps over creep, with an error of slip of at most creep_rtol times the slip since the start, and is exact
+    before and after; `solution.creep` lists the leaps. With 0 every round trip is run.
+
+    Raises InputError for an argument out of range, a contact that cannot even start, or creep_rtol in a problem that has no
+    such leaps.
     """
+    check_run("simulate", duration, rtol, events, checkpoint_every)
+    check_creep_rtol(problem, creep_rtol, "simulate")
+    run = RunInProgress.begin(problem, rtol, creep_rtol)
+    kept = None if checkpoint is None else Path(checkpoint)
+    return go_on(run, Orders(duration, events, progress, kept, checkpoint_every, max_pieces))
+
+
+def check_run(who: str, duration: float, rtol: float, events: int | None, checkpoint_every: float) -> None:
+    """Refuse what cannot be run. Raises InputError."""
     if not (math.isfinite(duration) and duration > 0):
-        raise InputError(f"simulate: duration must be a positive time in s, got {duration!r}")
+        raise InputError(f"{who}: duration must be a positive time in s, got {duration!r}")
     if not 1e-15 <= rtol <= 1e-2:
-        raise InputError(f"simulate: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
-    setup, state, count = prepare(problem, rtol)
-    scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
-    last = split_time(duration, row_time(problem))
-    table = lend(setup, state, count, scratch, store)
-    leaps = CreepLeaps(problem, row_time(problem), creep_rtol) if creep_rtol != 0.0 else None
-    if leaps is not None:
-        count[at.PAUSE_AT] = 1
-    follower = RuleFollower(problem, row_time(problem), state, count)
-    try:
-        while True:
-            code = follower.advance(table, store, last, STEPS_PER_CALL)
-            length = int(count[at.LENGTH])
-            if progress is not None:
-                time = count[at.ROW] * row_time(problem) + state[at.THETA_FROM]
-                progress(float(time), length, "slips" if count[at.MODE] else "stuck")
-            if code == at.FULL:
-                if length >= max_pieces:
-                    code = FULL_HISTORY
-                    break
-                store = at.resized(store, length, min(4 * len(store.whole), max_pieces + 16))
-                table = lend(setup, state, count, scratch, store)
-            elif code == at.NEED_BRANCHES:
-                setup = renewed(problem, setup, state, count)
-                table = lend(setup, state, count, scratch, store)
-            elif code == at.PAUSED and leaps is not None:
-                store = leaps.at_row_end(store, state, count, last[0])
-                table = lend(setup, state, count, scratch, store)
-            elif code != OUT_OF_BUDGET:
-                break
-    except KeyboardInterrupt:
-        code = INTERRUPTED
-    length = int(count[at.LENGTH])
-    status, kept = STATUSES[code], at.trimmed(store, length)
-    if length == 0:
-        raise InputError(f"simulate: the run ends where it starts: {status.message}")
-    reached = duration if status.ok else float(kept.row[-1] * row_time(problem) + kept.theta_to[-1])
-    history = History(kept, problem, row_time(problem), float(setup.par[at.RAMP]), reached, leaps.table if leaps else NO_LEAPS)
-    return Solution(problem, duration, rtol, status, history)
+        raise InputError(f"{who}: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
+    if events is not None and not (isinstance(events, int) and events > 0):
+        raise InputError(f"{who}: events must be a whole number above 0, got {events!r}")
+    if not checkpoint_every >= 0:
+        raise InputError(f"{who}: checkpoint_every must be a time in s, got {checkpoint_every!r}")
 
 
-def split_time(time: float, row: float) -> tuple[int, float]:
-    """A time as (whole rows, offset in the row), the offset in (0, row]."""
-    rows = math.floor(time / row)
-    offset = time - rows * row
-    if offset <= 0.0 and rows > 0:
-        return rows - 1, row
-    return rows, min(offset, row)
+def check_started(run: RunInProgress, code: int, who: str) -> None:
+    """Refuse a run of no length: KeyboardInterrupt where Ctrl-C came before its first piece, else InputError."""
+    if run.length > 0:
+        return
+    if code == INTERRUPTED:
+        raise KeyboardInterrupt
+    raise InputError(f"{who}: the run ends where it starts: {STATUSES[code].message}")
+
+
+def go_on(run: RunInProgress, orders: Orders) -> Solution:
+    """Take up a run and follow it to its end. Raises InputError where it ends where it starts."""
+    code = drive(run, orders.duration, Keeper.of(run, orders))
+    check_started(run, code, "simulate")
+    solution = as_solution(run, orders, code)
+    if orders.checkpoint is not None:
+        solution.save(orders.checkpoint)
+    return solution

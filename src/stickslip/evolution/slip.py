@@ -216,12 +216,11 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
         settle_piece(run, abs(run.state[at.RATE_NOW]))
     guess = collocate(run, xi_to - run.state[at.XI])
     note_shock(run)
-    length = 1.0
-    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
+    stretch(run, 1.0, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
     reached = guess >= xi_to - run.state[at.XI]
     if run.counts[at.HAS_STATE] == 0 and run.k[at.K_SPEED] * settling_rate(run) < NOT_STIFF:
         run.counts[at.STIFF] = 0
-    finish_step(run, xi_to, guess, length, reached, False, True)
+    finish_step(run, xi_to, guess, 1.0, reached, False, True)
 
 
 @inlined

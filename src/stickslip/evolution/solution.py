@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from stickslip.errors import InputError, nearest
-from stickslip.evolution.history import History, Moments, Side
+from stickslip.errors import InputError
+from stickslip.evolution.checkpoint import Checkpoint
+from stickslip.evolution.history import History
+from stickslip.evolution.readings import Readings
 from stickslip.evolution.status import Status
-from stickslip.evolution.tables import creep_table, default_event_rate, events_table, shocks_table
+from stickslip.evolution.tables import creep_note, creep_table, default_event_rate, events_table
+from stickslip.evolution.window import Window, window_around
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
@@ -22,13 +24,9 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-Floats = NDArray[np.float64]
-Curve = Literal["slip", "slip_rate", "traction", "load", "state"]
-CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Solution:
+class Solution(Readings):
     """A finished run. Times in s from the start of the run; arrays in, arrays of the same shape out.
 
     `side` ("left" or "right") picks the limit at a shock; the left limit at t = 0 is the initial state at rest.
@@ -40,111 +38,67 @@ class Solution:
     rtol: float
     status: Status
     history: History
-
-    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
-        time = np.asarray(t, float)
-        return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
-
-    def slip(self, t: ArrayLike) -> Floats:
-        """Slip u (m) at times t (s). Absolute: it starts at the initial slip."""
-        at, shape = self._at(t, "right")
-        return (self.problem.initial_slip + self.history.slipped(at)).reshape(shape)
-
-    def slip_rate(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Slip rate v (m/s) at times t (s)."""
-        at, shape = self._at(t, side)
-        return self.history.rate(at).reshape(shape)
-
-    def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Friction on the contact tau (slab: Pa, block: N) at times t (s), positive where it opposes forward slip."""
-        at, shape = self._at(t, side)
-        return (self.problem.strength + self.history.friction(at)).reshape(shape)
-
-    def load(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Load at times t (s): beta of eqs (12)-(13) for the slab (Pa), the spring's force for the block (N)."""
-        at, shape = self._at(t, side)
-        return (self.problem.strength + self.history.excess(at)).reshape(shape)
-
-    def state(self, t: ArrayLike) -> Floats:
-        """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).
-
-        Raises InputError for a law without one.
-        """
-        if self.problem.friction.state is None:
-            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
-        at, shape = self._at(t, "right")
-        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+    checkpoint: Checkpoint | None = None
+    """From where the run, or a longer one, can go on (`stickslip.resume`)."""
+    events_wanted: int | None = None
+    """Slip events after which the run was to stop."""
+    creep_rtol: float = 0.0
+    """Tolerance of leaps over creep; 0 where every round trip was run."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
         """Slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
         return self.catalogue()
 
-    def catalogue(self, event_rate: float | None = None) -> pd.DataFrame:
-        """Slip events: start, end (s; NaN if unfinished), slip (m), peak_rate (m/s), peak_time (s), traction_drop and static_drop
-        (Pa or N: friction before minus after, at rest if the rate falls on to zero, and the stiffness times the slip: G slip / h
-        is the slab's mean over a round trip), pulses (maxima of |v| separated by minima below half the lower one).
+    def catalogue(self, event_rate: float | None = None, *, energies: bool = False) -> pd.DataFrame:
+        """Slip events, one row each; columns and units in `stickslip.evolution.tables`: EVENT_COLUMNS, and ENERGY_COLUMNS (J/m^2;
+        block: J) with `energies`, which take their time.
 
         An event is a maximal interval with |v| above event_rate (m/s; default 1e-6 S (range of mu) / Z, for the block
         / sqrt(K m); 0 takes every slip).
         """
-        return events_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+        from stickslip.observables.energy import event_energies
 
-    @cached_property
-    def shocks(self) -> pd.DataFrame:
-        """Jumps of the slip rate: time (s), cause (start, fold, echo, loading), rate_before and rate_after (m/s),
-        traction_before and traction_after (Pa)."""
-        return shocks_table(self.history)
+        rate = default_event_rate(self.problem) if event_rate is None else event_rate
+        return events_table(self.history, rate, event_energies if energies else None)
 
     @cached_property
     def creep(self) -> pd.DataFrame:
-        """Leaps over creep (`simulate(..., creep_rtol=...)`): start, end (s), round_trips, error (of slip where it lands, m).
+        """Leaps over creep (`simulate(..., creep_rtol=...)`), one row each: start and end (s), start_row (whole round trips before
+        it: it starts at this one's very beginning), round_trips in it, error (bound, of the slip where it lands, m).
 
-        There the slip is an average over round trips, right to the error where one begins and to half a round trip's slip within
-        it; slip rate, traction and load are averages too.
+        Within a leap slip is an average over round trips: right to the error, true slip weaves around it by half of what it grows
+        in a round trip. Slip rate, traction and load are averages too.
         """
         return creep_table(self.history)
 
-    @cached_property
-    def breaks(self) -> Floats:
-        """Times (s) at which pieces of the history meet, 0 and the end included."""
-        return np.append(self.history.start, self.history.end[-1:])
+    @property
+    def creep_note(self) -> str:
+        """One line on the leaps over creep; empty where there are none."""
+        return creep_note(self.history.creep)
+
+    def window(self, event: int | pd.Series = 0, before: float | None = None, after: float | None = None) -> Window:
+        """The run around one slip event, in local time: seconds since the event began, sharp however late that is.
+
+        event: a row number of `events` (negative ones count from the last), or a row of any `catalogue`.
+        It shows the time from `before` the event to `after` its start (s; default: a tenth of its duration on either side).
+        Raises InputError where there is no such event.
+        """
+        return window_around(self, self._row(event), before, after)
+
+    def _row(self, event: int | pd.Series) -> pd.Series:
+        if not isinstance(event, int | np.integer):
+            return event
+        count = len(self.events)
+        if not -count <= event < count:
+            raise InputError(f"window: no event {event}: the run has {count}" + (f", 0 to {count - 1}" if count else ""))
+        return self.events.iloc[event]
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
         """Energies at times t (s), as differences from the start: see `stickslip.observables.energy`."""
         from stickslip.observables.energy import energy
 
         return energy(self, t)
-
-    @property
-    def curves(self) -> tuple[Curve, ...]:
-        """What there is to draw: slip, slip rate, traction, load, and the state of a law that has one."""
-        return CURVES if self.problem.friction.state is None else (*CURVES, "state")
-
-    def curve(self, name: Curve, start: float = 0.0, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
-        """Times (s) and values for drawing: dense where the solution varies, with both limits at every shock."""
-        if name not in self.curves:
-            raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
-        end = float(self.breaks[-1]) if end is None else end
-        breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
-        if len(breaks) > points:  # too many pieces to draw each: keep the shocks, and in every stretch where it is fastest
-            shocks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
-            breaks = np.union1d(shocks, self._fastest(breaks, points)) if len(shocks) <= points else self._fastest(breaks, points)
-        inside = [np.linspace(a, b, 8) for a, b in pairwise(breaks)]
-        right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
-        time = np.concatenate([breaks, right])
-        order = np.argsort(time, kind="stable")  # left limits first
-        if name in ("slip", "state"):  # continuous
-            return time[order], getattr(self, name)(time)[order]
-        evaluate = getattr(self, name)
-        values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
-        return time[order], values[order]
-
-    def _fastest(self, times: Floats, groups: int) -> Floats:
-        """Of so many groups of times the one of each at which the slip rate is largest."""
-        speed = np.abs(self.slip_rate(times))
-        starts = np.unique(np.linspace(0, len(times) - 1, groups).astype(int))
-        return np.array([times[a + int(np.argmax(speed[a:b]))] for a, b in pairwise([*starts.tolist(), len(times)])])
 
     def dataset(self, t: ArrayLike) -> xr.Dataset:
         """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance."""
@@ -158,7 +112,7 @@ class Solution:
 
         return save(self, path)
 
-    def plot(self, start: float = 0.0, end: float | None = None) -> Figure:
+    def plot(self, start: float | None = None, end: float | None = None) -> Figure:
         """Slip, slip rate, traction and load against time."""
         from stickslip.figures.run import plot_run
 
@@ -176,13 +130,16 @@ class Solution:
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
-            *([("creep", self._creep_note)] if len(self.creep) else []),
+            *([("creep", self.creep_note)] if self.creep_note else []),
+            *([("trapped", self.trapped_note)] if self.trapped_note else []),
         ]
 
-    @property
-    def _creep_note(self) -> str:
-        leaps, trips = len(self.creep), self.creep.round_trips.sum()
-        return f"{leaps} leap{'s' * (leaps > 1)} over {trips} round trips, error of slip up to {self.creep.error.max():.1e} m"
+    @cached_property
+    def trapped_note(self) -> str:
+        """How much energy bounces in the slab in waves at the end of the run; empty for a block."""
+        from stickslip.observables.energy import trapped_note
+
+        return trapped_note(self)
 
     @cached_property
     def selection_note(self) -> str:

@@ -21,9 +21,12 @@ class Status:
 
 FULL_HISTORY = -2
 INTERRUPTED = -3
+ENOUGH_EVENTS = -4
+UNDER_WAY = -5
 
 STATUSES = {
     FINISHED: Status("finished", "the run reached its duration", True),
+    ENOUGH_EVENTS: Status("enough events", "the run has had its number of slip events", True),
     LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
     STORM: Status(
         "event storm",
@@ -35,4 +38,5 @@ STATUSES = {
         "too many pieces", "the history reached its limit of pieces: shorten the duration, loosen rtol or raise max_pieces", False
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),
+    UNDER_WAY: Status("under way", "a checkpoint of a run that went on: what is there is valid up to this time", False),
 }

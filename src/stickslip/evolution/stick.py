@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, choose_branch, friction_at, leave_branch, rest_limit, towards
+from stickslip.evolution.branch import TIE, choose_branch, friction_at, leave_branch, onset_of_slip, rest_limit, towards
 from stickslip.evolution.compiled import ahead, inlined
 from stickslip.evolution.implicit import forgotten, stick_with_state
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, evaluate, fill, first_descent, restrict, scale
+from stickslip.evolution.polynomial import evaluate, fill, restrict, scale
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.workspace import Run
 
@@ -48,18 +48,12 @@ def arrive(run: Run) -> None:
 
 
 @inlined
-def onset_of_slip(run: Run, load: Floats) -> tuple[float, int]:
+def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
     """Where on [0, 1] of a stretch of load rest ends, and in which direction; NONE if it lasts."""
-    part, limit = run.part, rest_limit(run)
-    onset, direction = NONE, 0
-    for way in (1, -1):
-        for k in range(at.TERMS):
-            part[k] = -way * load[k]
-        part[0] = 0.0 if run.counts[at.EDGE] == way else limit - towards(run, load[0], way)
-        first = first_descent(part, run.spare)
-        if first < onset:
-            onset, direction = first, way
-    return onset, direction
+    strength = run.jet
+    fill(strength, 0.0)
+    strength[0] = rest_limit(run)
+    return onset_of_slip(run, load, strength)
 
 
 @inlined
@@ -99,13 +93,13 @@ def stick(run: Run, xi_to: float) -> None:
         return
     width, load = xi_to - run.state[at.XI], ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
     restrict(run.load, run.state[at.XI], width, load)
-    onset, direction = onset_of_slip(run, load)
+    onset, direction = end_of_rest(run, load)
     if run.par[at.HEALED_PIECE] >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state[at.SPEED]):
         heal(run, load[0])
         stale = run.counts[at.FOLDS_MOVE] == 1 and run.state[at.TABLE_SLIP] != run.state[at.LAW_SLIP]
         if run.counts[at.MODE] != 0 or stale:
             return
-        onset, direction = onset_of_slip(run, load)
+        onset, direction = end_of_rest(run, load)
     slips = onset <= 1.0 - TIE
     if slips:
         scale(load, onset)
@@ -116,6 +110,7 @@ def stick(run: Run, xi_to: float) -> None:
     run.counts[at.EDGE] = 0
     if slips:
         run.counts[at.MODE], run.counts[at.EDGE] = direction, direction
+        run.counts[at.STIFF] = run.counts[at.STEPS] = 0
         choose_branch(run, rest_limit(run))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib import pyplot
@@ -10,28 +10,26 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from stickslip import YEAR
-from stickslip.figures.curves import Name, nearly_flat
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, zero_line
-
-if TYPE_CHECKING:
-    from stickslip.evolution.solution import Solution
+from stickslip.evolution.readings import Curve, Readings
+from stickslip.figures.curves import nearly_flat
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, time_unit, zero_line
 
 MANY = 60
 """Shocks beyond this number are drawn by the curves alone: marks would hide them."""
 
 
 @styled
-def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *, title: str = "") -> Figure:
-    """Draw the run from `start` to `end` (s) in a new pyplot figure, so that a notebook or `pyplot.show()` shows it.
+def plot_run(solution: Readings, start: float | None = None, end: float | None = None, *, title: str = "") -> Figure:
+    """Draw a run or a window on it, from `start` to `end` (s), in a new pyplot figure: a notebook or `pyplot.show()` shows it.
 
     Shocks (jumps of the slip rate) are dotted lines; time is in years where seconds would be unreadable.
     """
-    end = float(solution.breaks[-1]) if end is None else end
-    unit, size = ("year", YEAR) if end - start > 0.5 * YEAR else ("s", 1.0)
+    start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
+    unit, size = time_unit(end - start)
+    of_event = "event_slip" in solution.curves
     figure = pyplot.figure(figsize=(6.4, 5.6), layout="constrained")
     axes: Any = figure.subplots(3, 1, sharex=True)
-    drawn: tuple[tuple[Axes, Name, str], ...] = ((axes[0], "slip", BLUE), (axes[1], "slip_rate", GREEN))
+    drawn: tuple[tuple[Axes, Curve, str], ...] = ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN))
     for panel, name, colour in drawn:
         time, values = solution.curve(name, start, end)
         panel.plot(time / size, values, color=colour)
@@ -43,9 +41,9 @@ def plot_run(solution: Solution, start: float = 0.0, end: float | None = None, *
             zero_line(panel)
         for at in _shock_times(solution, start, end):
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
-    axes[0].set_ylabel("slip $u$ (m)")
+    axes[0].set_ylabel("slip in the event (m)" if of_event else "slip $u$ (m)")
     axes[1].set_ylabel("slip rate $v$ (m/s)")
-    axes[2].set_xlabel(f"time $t$ ({unit})")
+    axes[2].set_xlabel(f"time since the event began ({unit})" if of_event else f"time $t$ ({unit})")
     letter(axes[0], title or _title(solution))
     figure.align_ylabels()
     return figure
@@ -58,7 +56,7 @@ def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.fl
     panel.semilogy(time / size, np.where(speed > 0.0, speed, np.nan), color=GREEN)
 
 
-def _draw_stress(panel: Axes, solution: Solution, start: float, end: float, size: float) -> None:
+def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size: float) -> None:
     """Traction and load; as changes from the initial load where they hardly change."""
     units = solution.problem.load_unit
     (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
@@ -72,13 +70,13 @@ def _draw_stress(panel: Axes, solution: Solution, start: float, end: float, size
     panel.legend(loc="best")
 
 
-def _shock_times(solution: Solution, start: float, end: float) -> NDArray[np.float64]:
+def _shock_times(solution: Readings, start: float, end: float) -> NDArray[np.float64]:
     times = np.asarray(solution.shocks["time"], dtype=float)
     times = times[(times >= start) & (times <= end)]
     return times if times.size <= MANY else times[:0]
 
 
-def _title(solution: Solution) -> str:
+def _title(solution: Readings) -> str:
     problem = solution.problem
     body = type(problem.body).kind.replace("-", " ").capitalize()
     return f"{body}, {type(problem.friction).kind} friction"

@@ -17,6 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from stickslip import YEAR
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -101,6 +103,12 @@ def readable(largest: float, units: str) -> tuple[str, float]:
     prefixes = {1e12: "T", 1e9: "G", 1e6: "M", 1e3: "k"}
     size = next((size for size in prefixes if largest >= size), 1.0)
     return prefixes.get(size, "") + units, size
+
+
+def time_unit(span: float) -> tuple[str, float]:
+    """Unit and its size (s) in which times over a span (s) are readable."""
+    units = {"year": YEAR, "day": 86_400.0, "s": 1.0, "ms": 1e-3}
+    return next(((name, size) for name, size in units.items() if span > 0.5 * size), ("µs", 1e-6))
 
 
 def letter(axes: Axes, text: str) -> None:

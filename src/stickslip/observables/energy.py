@@ -14,11 +14,12 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab, SpringBlock
-from stickslip.evolution.history import History, Moments
-from stickslip.observables.quadrature import up_to
+from stickslip.evolution.history import Epoch, History, Moments
+from stickslip.observables.quadrature import Integrand, between, up_to
 from stickslip.observables.waves import Waves
 
 if TYPE_CHECKING:
+    from stickslip.evolution.readings import Readings
     from stickslip.evolution.solution import Solution
 
 Floats = NDArray[np.float64]
@@ -29,69 +30,146 @@ LONG_NAMES = {
     "heat": "friction heat, from the law",
     "damped": "dissipated by the block's damping",
     "balance": "work - stored - heat - damped: zero for an exact solution",
+    "trapped": "of the waves inside the slab, beyond a state of uniform stress",
 }
 
 
-def energy(solution: Solution, t: ArrayLike) -> xr.Dataset:
-    """Energies at times t (s) minus their values at the start: work, stored, heat, damped, balance (slab: J/m^2, block: J).
+def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
+    """Energies at times t (s) minus their values at `origin` (s; default: the start of the run): work, stored, heat, damped,
+    balance; and trapped, which is no difference (slab: J/m^2, block: J).
 
     Work is what the driver puts in (net of what radiates through a driver of finite impedance); balance is
-    work - stored - heat - damped, zero for an exact solution. Raises InputError for times outside the run, and in
-    a leap over creep or within a round trip behind it, where the waves in the slab are not known.
+    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that bounces to and fro in
+    waves. Raises InputError for times outside the run, and in a leap over creep or within a round trip behind it: the waves that
+    left the contact there are not known.
     """
     time = np.atleast_1d(np.asarray(t, float))
-    solution.history.find(time, "right")
-    slab = isinstance(solution.problem.body, ElasticSlab)
-    parts = _slab(solution, time) if slab else _block(solution, time)
-    parts["balance"] = parts["work"] - parts["stored"] - parts["heat"] - parts["damped"]
-    unit = "J m-2" if slab else "J"
-    variables = {name: ("time", values, {"units": unit, "long_name": LONG_NAMES[name]}) for name, values in parts.items()}
+    history = readings.history
+    begin = history.span[0] if origin is None else origin
+    parts = energies(history, history.find(np.append(begin, time), "right"))
+    since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
+    since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
+    unit = "J m-2" if isinstance(history.problem.body, ElasticSlab) else "J"
+    variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
     return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
 
 
-def _slab(solution: Solution, time: Floats) -> dict[str, Floats]:
-    body = solution.problem.body
+def event_energies(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    """Energies of slip events from their first to their last moments: the columns of `evolution.tables.ENERGY_COLUMNS`.
+
+    What an event does is integrated over the event alone: its digits do not depend on what the run did before.
+    """
+    parts = (_slab_events if isinstance(history.problem.body, ElasticSlab) else _block_events)(history, first, last)
+    parts["heat"] = between(history, first, last, _heating(history))
+    parts["balance"] = parts["released"] + parts["work"] - parts["heat"] - parts["damped"]
+    return parts
+
+
+def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    body = history.problem.body
     assert isinstance(body, ElasticSlab)
-    waves = Waves(solution.history, body)
-    start, _moving = waves.stored(0.0), 0.5 * body.contact_mass * solution.slip_rate(time) ** 2
+    waves = Waves(history, body)
+    spans = list(zip(_epochs(history, first), _epochs(history, last), strict=True))
+    moving = 0.5 * body.contact_mass * (history.rate(first) ** 2 - history.rate(last) ** 2)
     return {
-        "work": np.array([waves.work(float(t)) for t in time]),
-        "stored": np.array([waves.stored(float(t)) - start for t in time])
-        + 0.5 * body.contact_mass * solution.slip_rate(time) ** 2,
-        "heat": heat(solution.history, time),
-        "damped": np.zeros_like(time),
+        "released": np.array([waves.stored(begin) - waves.stored(end) for begin, end in spans]) + moving,
+        "work": np.array([waves.work_between(begin, end) for begin, end in spans]),
+        "damped": np.zeros(len(spans)),
+        "trapped": np.array([waves.trapped(end) for _, end in spans]),
     }
 
 
-def _block(solution: Solution, time: Floats) -> dict[str, Floats]:
-    problem, history = solution.problem, solution.history
+def _block_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    problem = history.problem
     body = problem.body
     assert isinstance(body, SpringBlock)
-    at = history.find(time, "right")
+    force, left = history.excess(first), history.excess(last)
+    spring = (force - left) * (force + left + 2.0 * problem.strength) / (2.0 * body.stiffness)
+    pulling = between(history, first, last, lambda at: problem.pull_rate * (problem.strength + history.excess(at)))
+    return {
+        "released": spring + 0.5 * body.mass * (history.rate(first) ** 2 - history.rate(last) ** 2),
+        "work": pulling,
+        "damped": between(history, first, last, _damping(history)),
+        "trapped": np.zeros(len(force)),
+    }
+
+
+def trapped_note(solution: Solution) -> str:
+    """One line on the waves that bounce in the slab at the end of a run; empty for a block, which has none."""
+    history, body = solution.history, solution.problem.body
+    if not isinstance(body, ElasticSlab):
+        return ""
+    end = _epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
+    energy = Waves(history, body).trapped(end)
+    holds = solution.problem.strength**2 / (2.0 * body.stiffness)
+    share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
+    return f"{energy:.6g} J/m2 in waves at the end{share}"
+
+
+def _epochs(history: History, at: Moments) -> list[Epoch]:
+    return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
+
+
+def energies(history: History, at: Moments) -> dict[str, Floats]:
+    """Work, heat and damped since the start of the run, stored less a constant, and trapped, at moments of a history.
+
+    All of them at exactly these moments: late in a run, too, their differences balance.
+    """
+    return _slab(history, at) if isinstance(history.problem.body, ElasticSlab) else _block(history, at)
+
+
+def _slab(history: History, at: Moments) -> dict[str, Floats]:
+    body = history.problem.body
+    assert isinstance(body, ElasticSlab)
+    waves = Waves(history, body)
+    epochs = _epochs(history, at)
+    return {
+        "work": np.array([waves.work(now) for now in epochs]),
+        "stored": np.array([waves.stored(now) for now in epochs]) + 0.5 * body.contact_mass * history.rate(at) ** 2,
+        "heat": heat(history, at),
+        "damped": np.zeros(len(epochs)),
+        "trapped": np.array([waves.trapped(now) for now in epochs]),
+    }
+
+
+def _block(history: History, at: Moments) -> dict[str, Floats]:
+    problem = history.problem
+    body = problem.body
+    assert isinstance(body, SpringBlock)
     force, rate = history.excess(at), history.rate(at)
     spring = (force - problem.excess) * (force + problem.excess + 2.0 * problem.strength) / (2.0 * body.stiffness)
     slipping = np.flatnonzero(history.store.mode)
+    row, offset = history.placed(at)
     return {
-        "work": problem.pull_rate * (problem.strength * time + _pulling_force(history, time)),
+        "work": problem.pull_rate * (problem.strength * (row * history.row_time + offset) + _pulling_force(history, at)),
         "stored": spring + 0.5 * body.mass * rate**2,
-        "heat": heat(history, time),
-        "damped": up_to(history, time, lambda at: body.damping * history.rate(at) ** 2, slipping),
+        "heat": heat(history, at),
+        "damped": up_to(history, at, _damping(history), slipping),
+        "trapped": np.zeros(len(row)),
     }
 
 
-def _pulling_force(history: History, time: Floats) -> Floats:
-    """Integral of the spring's force minus the reference up to each time; rests that were leaped over are trapezoids."""
-    total = up_to(history, time, history.excess)
-    for n in np.flatnonzero(np.diff(history.store.row) > 1):
-        begin, end = float(history.end[n]), float(history.start[n + 1])
-        at_rest = Moments(np.array([n]), np.ones(1), np.zeros(1), np.zeros(1, bool))
-        inside = np.clip(time, begin, end) - begin
-        total += inside * (float(history.excess(at_rest)[0]) + 0.5 * history.ramp / history.row_time * inside)
-    return total
+def _pulling_force(history: History, at: Moments) -> Floats:
+    """Integral of the spring's force minus the reference up to each moment; rests that were leaped over are trapezoids."""
+    row = history.store.row
+    before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
+    lasting = (row[before + 1] - row[before] - 1) * history.row_time
+    force, rise = history.excess(Moments.inside(before, 1.0)), history.ramp / history.row_time
+    whole = np.append(0.0, np.cumsum(lasting * (force + 0.5 * rise * lasting)))
+    leap = np.searchsorted(before, at.piece)
+    inside = np.where(at.leaped > 0.0, (at.leaped - 1.0) * history.row_time + history.placed(at)[1], 0.0)
+    part = inside * (np.append(force, 0.0)[leap] + 0.5 * rise * inside)
+    pulling: Floats = up_to(history, at, history.excess) + whole[leap] + part
+    return pulling
 
 
-def heat(history: History, time: Floats) -> Floats:
-    """Friction heat up to each time (s): the integral of S mu(u, |v|) |v|, from the law. Slab: J/m^2, block: J."""
+def heat(history: History, at: Moments) -> Floats:
+    """Friction heat up to each moment, from the law. Slab: J/m^2, block: J."""
+    return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
+
+
+def _heating(history: History) -> Integrand:
+    """Friction heat in a second, S mu(u, |v|) |v|."""
     problem, law = history.problem, history.problem.friction
 
     def power(at: Moments) -> Floats:
@@ -100,4 +178,12 @@ def heat(history: History, time: Floats) -> Floats:
         slip = problem.law_slip + history.store.law_slip[at.piece] + walked
         return problem.normal * law.coefficient(slip, speed, history.state(at)) * speed
 
-    return up_to(history, time, power, np.flatnonzero(history.store.mode))
+    return power
+
+
+def _damping(history: History) -> Integrand:
+    """What the block's damping dissipates in a second."""
+    body = history.problem.body
+    assert isinstance(body, SpringBlock)
+    damping = body.damping
+    return lambda at: damping * history.rate(at) ** 2

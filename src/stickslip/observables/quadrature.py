@@ -18,8 +18,15 @@ NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 integrated to rounding."""
 
 
+BLOCK = 1 << 14
+"""Pieces that are integrated together: keeps the memory bounded."""
+
+
 def over(history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: float = 0.0) -> Floats:
     """Integral over the part [low, high] (in xi) of each piece; `leaped` whole rows later, for a row at rest."""
+    if len(piece) > BLOCK:
+        cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
+        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped) for cut in cuts])
     xi = low[:, None] + (high - low)[:, None] * NODES
     at = Moments(np.repeat(piece, len(NODES)), xi.ravel(), np.full(xi.size, leaped), np.zeros(xi.size, bool))
     values = integrand(at).reshape(xi.shape)
@@ -27,16 +34,28 @@ def over(history: History, piece: NDArray[np.intp], low: Floats, high: Floats, i
     return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ WEIGHTS * (high - low))
 
 
-def up_to(history: History, time: Floats, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
-    """Integral over the (given) pieces up to each time; rows at rest that were leaped over are left out."""
+def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
+    """Integral over the (given) pieces up to each moment; rows at rest that were leaped over are left out."""
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
     whole = np.concatenate([[0.0], np.cumsum(over(history, pieces, np.zeros(count), np.ones(count), integrand))])
-    done = np.searchsorted(history.end[pieces], time, side="right")
+    row, leaps = history.store.row, at.leaped > 0.0
+    passed = np.where(leaps, np.searchsorted(row, row[at.piece], side="right"), at.piece)
+    done = np.searchsorted(pieces, passed)
     total: Floats = whole[done]
-    cut = np.append(history.start[pieces], np.inf)[done] < time
+    cut = ~leaps & (np.append(pieces, -1)[done] == at.piece)
     if cut.any():
-        piece = pieces[done[cut]]
-        xi = history.xi(piece, time[cut] - history.start[piece])
-        total[cut] += over(history, piece, np.zeros(len(piece)), xi, integrand)
+        total[cut] += over(history, at.piece[cut], np.zeros(int(cut.sum())), at.xi[cut], integrand)
     return total
+
+
+def between(history: History, first: Moments, last: Moments, integrand: Integrand) -> Floats:
+    """Integrals from each first moment to the last one of the same slip event: nothing outside of it enters."""
+
+    def one(begin: int, end: int, low: float, high: float) -> float:
+        pieces = np.arange(begin, end + 1)
+        lows, highs = np.zeros(len(pieces)), np.ones(len(pieces))
+        lows[0], highs[-1] = low, high
+        return float(over(history, pieces, lows, highs, integrand).sum())
+
+    return np.array([one(*ends) for ends in zip(first.piece, last.piece, first.xi, last.xi, strict=True)])

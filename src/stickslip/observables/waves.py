@@ -7,20 +7,22 @@ Before t = 0, w(-y) = G V y / h - tau0 for 0 < y < h/c; the load is tau0 + G V t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
-from stickslip.evolution.history import History, Moments
+from stickslip.evolution.history import START, Epoch, History, Moments
 from stickslip.evolution.setup import inflow
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
 
 Floats = NDArray[np.float64]
 OfWave = Callable[[Floats, Floats], Floats]
-"""A density as a function of the wave that leaves (plus the reference) and of the time at which it left."""
+"""A density as a function of a wave (plus or minus the reference) and of a time in s."""
 
 
 class Waves:
@@ -38,26 +40,38 @@ class Waves:
         return 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
 
     def arriving(self, leaving: Floats, left: Floats) -> Floats:
-        """Load minus the reference one round trip after a wave left the contact."""
+        """Load minus the reference one round trip after a wave left the contact, at a time (s) since the start of the run."""
         return self.body.reflection * leaving + self.inflow + self.inflow_rate * (left + self.round)
+
+    def begun(self, now: Epoch) -> float:
+        """Time since the start of the run, s: only where its rounding does not matter."""
+        return now.row * self.round + now.offset
 
     # ---- energies -----------------------------------------------------------------------------------------------------------
 
-    def stored(self, t: float) -> float:
-        """Elastic and kinetic energy inside the slab at time t, less a constant."""
+    def stored(self, now: Epoch) -> float:
+        """Elastic and kinetic energy inside the slab, less a constant."""
 
-        def down(load: Floats) -> Floats:
+        def down(load: Floats, _: Floats) -> Floats:
             return load * (2.0 * self.reference + load)
 
-        def up(leaving: Floats, left: Floats) -> Floats:
+        def up(leaving: Floats, _: Floats) -> Floats:
             return leaving * (leaving - 2.0 * self.reference)
 
-        total = self._between(t - self.half, t, up)
-        if t < self.half:  # the load that the start sends down, before anything has come back
-            length = self.half - t
-            total += length * float(down(self.excess + self.slope * (t + length * NODES)) @ WEIGHTS)
-        back = self._between(max(t, self.half) - self.round, t - self.half, lambda w, left: down(self.arriving(w, left)))
-        return (total + back) / (4.0 * self.body.impedance)
+        return self._inside(now, down, up) / (4.0 * self.body.impedance)
+
+    def trapped(self, now: Epoch) -> float:
+        """Energy of the waves inside the slab: what it stores beyond the same mean stress at rest (rigid driver: sheared at V)."""
+        mean = self._inside(now, lambda load, _: load, lambda leaving, _: -leaving) / (2.0 * self.half)
+        drift = self.body.impedance * self.history.problem.pull_rate / self.half if self.body.reflection == -1.0 else 0.0
+
+        def down(load: Floats, away: Floats) -> Floats:
+            return (load - mean - drift * away) ** 2
+
+        def up(leaving: Floats, away: Floats) -> Floats:
+            return (leaving + mean - drift * away) ** 2
+
+        return self._inside(now, down, up) / (4.0 * self.body.impedance)
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """sigma v at the driver, h/c after a wave left: (A^2 - B^2) / (4 Z) of arriving A and leaving B, without cancellation."""
@@ -65,88 +79,103 @@ class Waves:
         drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + incoming
         return (gain * leaving + incoming) * drop / (4.0 * self.body.impedance)
 
-    def work(self, t: float) -> float:
-        """Work of the driver up to time t."""
-        end = t - self.half
-        total = self._before(-self.half, min(end, 0.0), self.power)
-        if end <= 0.0:
-            return total
-        store, row = self.history.store, int(end // self.round)
-        for first, last, begin, rows in self._rows():
-            if begin > row:
-                break
-            if self.history.in_creep_leap(begin):  # averages, which have the work of what they stand for
-                total += self._in_row(first, last, 0, 0.0, end - begin * self.round, self.power)
-                continue
-            whole = min(rows, row - begin)  # round trips like this one that lie wholly before the end
-            total += self._row_work(first, last, whole)
-            if row < begin + rows:
-                theta = end - row * self.round
-                total += self._in_row(first, last, row - begin, store.theta_from[first], theta, self.power)
-        return total
+    def work(self, now: Epoch) -> float:
+        """Work of the driver since the start of the run."""
+        end = Epoch(now.row, now.offset - self.half) if now.offset >= self.half else Epoch(now.row - 1, now.offset + self.half)
+        if end.row < 0:
+            return self._before(-self.half, end.offset - self.round, self.power)
+        total = self._before(-self.half, 0.0, self.power)
+        rows, first, past, once, growth, sums = self._rows
+        k = int(np.searchsorted(rows, end.row, side="right")) - 1
+        self._check_known(int(rows[k]), now)
+        leaped = end.row - int(rows[k])
+        total += float(sums[k] + leaped * once[k] + growth[k] * leaped * (leaped - 1) / 2.0)
+        return total + self._in_row(int(first[k]), int(past[k]), leaped, 0.0, end.offset, self._of(self.power))
 
-    def _row_work(self, first: int, last: int, rows: int) -> float:
-        """Work over `rows` round trips at rest, each like the last but for the ramp (one round trip if the contact moves)."""
-        if rows == 0:
-            return 0.0
-        piece = np.arange(first, last)
-        ends = np.zeros(len(piece)), np.ones(len(piece))
-        once = float(over(self.history, piece, *ends, self._of(self.power)).sum())
-        if rows == 1:
-            return once
+    def work_between(self, first: Epoch, last: Epoch) -> float:
+        """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
+        lasting = (last.row - first.row) * self.round + (last.offset - first.offset)
+        begun = self.begun(last)
+        return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
+
+    @cached_property
+    def _rows(self) -> tuple[NDArray[Any], ...]:
+        """Of each stored row: round trip, first piece, last piece + 1, work in it, its growth per row leaped, work before it."""
+        store, count = self.history.store, len(self.history)
+        first = np.flatnonzero(np.diff(store.row, prepend=-1))
+        past = np.append(first[1:], count)
         gain = 1.0 + self.body.reflection
         pull = self._of(lambda w, left: gain * w + self.inflow + self.inflow_rate * (left + self.round))
-        growth = 2.0 * self.history.ramp * float(over(self.history, piece, *ends, pull).sum()) / (4.0 * self.body.impedance)
-        return rows * once + growth * rows * (rows - 1) / 2.0
+        ends = np.arange(count), np.zeros(count), np.ones(count)
+        once, rise = (np.add.reduceat(over(self.history, *ends, density), first) for density in (self._of(self.power), pull))
+        growth = 2.0 * self.history.ramp * rise / (4.0 * self.body.impedance)
+        rows = store.row[first]
+        lasting = np.diff(rows).astype(float)  # round trips for which a stored one stands
+        lasting[np.isin(rows[:-1], self.history.creep[:, 0])] = 1.0  # averages already have the work of what they stand for
+        passed = lasting * once[:-1] + growth[:-1] * lasting * (lasting - 1.0) / 2.0
+        return rows, first, past, once, growth, np.concatenate([[0.0], np.cumsum(passed)])
 
     # ---- integrals ----------------------------------------------------------------------------------------------------------
 
-    def _rows(self) -> Iterator[tuple[int, int, int, int]]:
-        """Stored rows: first piece, last piece + 1, round trip, and for how many round trips it stands."""
-        row = self.history.store.row
-        first = np.flatnonzero(np.diff(row, prepend=-1))
-        ends = np.append(first[1:], len(row))
-        lasting = np.append(np.diff(row[first]), np.iinfo(np.int64).max // 2)
-        for values in zip(first, ends, row[first], lasting, strict=True):
-            yield tuple(int(value) for value in values)  # type: ignore[misc]
+    def _inside(self, now: Epoch, down: OfWave, up: OfWave) -> float:
+        """Integral over the waves inside the slab: `down` of those that come to the contact (as a load minus the reference),
+        `up` of those that left it, each with the time (s) that it has yet to go, or has come, between its place and the contact.
+        """
+        begun = self.begun(now)
 
-    def _of(self, density: OfWave) -> Callable[[Moments], Floats]:
+        def back(leaving: Floats, since: Floats) -> Floats:
+            return down(self.arriving(leaving, begun + since), since + self.round)
+
+        total = self._between(now, -self.half, 0.0, lambda leaving, since: up(leaving, -since))
+        if begun < self.half:  # the load that the start sends down, before anything has come back
+            away = (self.half - begun) * NODES
+            total += (self.half - begun) * float(down(self.excess + self.slope * (begun + away), away) @ WEIGHTS)
+        return total + self._between(now, max(-self.round, -self.half - begun), -self.half, back)
+
+    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Moments], Floats]:
+        """The density at moments, with the time since an epoch."""
+
         def integrand(at: Moments) -> Floats:
             store = self.history.store
             theta = store.theta_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
-            left = (store.row[at.piece] + at.leaped) * self.round + theta
-            return density(self.leaving(at), left)
+            time = (store.row[at.piece] + at.leaped - since.row) * self.round + (theta - since.offset)
+            return density(self.leaving(at), time)
 
         return integrand
 
-    def _before(self, start: float, end: float, density: OfWave) -> float:
-        """Integral over waves that left before the run began."""
+    def _before(self, start: float, end: float, density: OfWave, begun: float = 0.0) -> float:
+        """Integral over waves that left at times (s) before the run began; the density's time counts from `begun` after that."""
         if end <= start:
             return 0.0
         left = start + (end - start) * NODES
-        return (end - start) * float(density(-self.slope * left - self.excess, left) @ WEIGHTS)
+        return (end - start) * float(density(-self.slope * left - self.excess, left - begun) @ WEIGHTS)
 
-    def _between(self, start: float, end: float, density: OfWave) -> float:
-        """Integral of a density over the waves that left between two times, at most one round trip apart."""
-        total = self._before(start, min(end, 0.0), density)
-        start = max(start, 0.0)
-        if end <= start:
-            return total
-        for row in range(int(start // self.round), int(end // self.round) + 1):
-            stored = np.searchsorted(self.history.store.row, row, side="right")
-            begin = int(self.history.store.row[stored - 1])
-            first, last = (int(np.searchsorted(self.history.store.row, begin, side=side)) for side in ("left", "right"))
-            low, high = max(start - row * self.round, 0.0), min(end - row * self.round, self.round)
-            if high > low:
-                if self.history.in_creep_leap(begin):
-                    raise InputError(f"the waves at {end:g} s are not known: they left the contact in a leap over creep")
-                total += self._in_row(first, last, row - begin, low, high, density)
+    def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
+        """Integral of a density over the waves that left between two times since now (s, not positive)."""
+        begun, stored = self.begun(now), self.history.store.row
+        total = self._before(begun + low, min(begun + high, 0.0), density, begun)
+        low = max(low, -begun)
+        first_row, last_row = (now.row + int((now.offset + time) // self.round) for time in (low, high))
+        for row in range(max(first_row, 0), last_row + 1):
+            start = (row - now.row) * self.round - now.offset
+            begin, end = max(low - start, 0.0), min(high - start, self.round)
+            if end <= begin:
+                continue
+            past = int(np.searchsorted(stored, row, side="right"))
+            self._check_known(int(stored[past - 1]), now)
+            first = int(np.searchsorted(stored, stored[past - 1], side="left"))
+            total += self._in_row(first, past, row - int(stored[past - 1]), begin, end, self._of(density, now))
         return total
 
-    def _in_row(self, first: int, last: int, leaped: int, low: float, high: float, density: OfWave) -> float:
+    def _check_known(self, row: int, now: Epoch) -> None:
+        """Refuse averages. Raises InputError for a stored row that is a leap over creep."""
+        if self.history.is_averaged(row):
+            raise InputError(f"the waves at {self.begun(now):g} s are not known: they left the contact in a leap over creep")
+
+    def _in_row(self, first: int, past: int, leaped: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
         """Integral over the offsets low to high of a row, `leaped` round trips later."""
-        store, piece = self.history.store, np.arange(first, last)
+        store, piece = self.history.store, np.arange(first, past)
         piece = piece[(store.theta_to[piece] > low) & (store.theta_from[piece] < high)]
         begin = self.history.xi(piece, np.maximum(low - store.theta_from[piece], 0.0))
         end = np.where(store.theta_to[piece] <= high, 1.0, self.history.xi(piece, high - store.theta_from[piece]))
-        return float(over(self.history, piece, begin, end, self._of(density), float(leaped)).sum())
+        return float(over(self.history, piece, begin, end, integrand, float(leaped)).sum())

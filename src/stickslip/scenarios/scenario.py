@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
 from stickslip.errors import InputError, nearest
+from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
@@ -18,6 +19,7 @@ from stickslip.scenarios.schema import KINDS, build, check_rtol, read_document, 
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
+    from stickslip.evolution.report import Progress
     from stickslip.evolution.solution import Solution
 
 LARGEST = 1_000_000
@@ -26,21 +28,41 @@ LARGEST = 1_000_000
 
 @dataclass(frozen=True)
 class Scenario:
-    """A problem, how long to run it (s) and how accurately; where it came from does not count when two are compared."""
+    """A problem, how long to run it (s) and how accurately, or until how many slip events are over; with leaps over creep of a
+    tolerance above 0.
+
+    Where it came from does not count when two are compared.
+    """
 
     problem: Problem
     duration: float
     rtol: float = 1e-10
     title: str = ""
     description: str = ""
+    events: int | None = None
+    creep_rtol: float = 0.0
     name: str = field(default="scenario", compare=False)
     source: str = field(default="", compare=False, repr=False)
 
-    def run(self, progress: Callable[..., Any] | None = None) -> Solution:
-        """Simulate. `progress` is handed to `stickslip.simulate`."""
+    @classmethod
+    def of(cls, solution: Solution, name: str = "scenario") -> Self:
+        """What a solution is a run of."""
+        return cls(
+            problem=solution.problem,
+            duration=solution.duration,
+            rtol=solution.rtol,
+            events=solution.events_wanted,
+            creep_rtol=solution.creep_rtol,
+            name=name,
+        )
+
+    def run(self, progress: Progress | None = None, **keep: Any) -> Solution:
+        """Simulate. `progress` and what else is given is handed to `stickslip.simulate`."""
         from stickslip.evolution.simulate import simulate  # the compiler behind it takes a second to import
 
-        return simulate(self.problem, self.duration, rtol=self.rtol, progress=progress)
+        return simulate(
+            self.problem, self.duration, self.rtol, creep_rtol=self.creep_rtol, events=self.events, progress=progress, **keep
+        )
 
     def to_toml(self) -> str:
         """The scenario as TOML: every value written out, in SI, and read back to the last digit."""
@@ -52,7 +74,8 @@ class Scenario:
         given.pop("selection")
         tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
-        tables["run"] = {"duration": self.duration, "rtol": self.rtol, "selection": problem.rule}
+        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol or None}
+        tables["run"] = _without_none(run | {"selection": problem.rule})
         return tomli_w.dumps(tables, multiline_strings=True)
 
 
@@ -88,7 +111,8 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
     run = content["run"]
     check_rtol(run["rtol"], file, "[run] rtol")
     about = {"title": content["title"], "description": content["description"], "name": name or file, "source": text}
-    return Scenario(problem, run["duration"], run["rtol"], **about)
+    check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
+    return Scenario(problem, run["duration"], run["rtol"], events=run["events"], creep_rtol=run["creep_rtol"], **about)
 
 
 def _problem(content: dict[str, Any], file: str) -> Problem:

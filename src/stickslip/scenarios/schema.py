@@ -29,6 +29,7 @@ KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
+CREEP_RTOL = Quantity("1", "leap over creep, with this error of slip; 0: run every round trip", at_least=0)
 LARGEST_RTOL = 1e-2
 STATE = Quantity("1", "state variable of the friction law, if it has one")
 
@@ -56,7 +57,7 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     if table in KINDS:
         return _declared(kind)
     if table == "run":
-        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10)}
+        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), "creep_rtol": (CREEP_RTOL, 0.0)}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
     remembered = Quantity(state.unit, state.meaning) if state else STATE
@@ -90,6 +91,7 @@ def table_model(table: str, kind: type, state: StateVariable | None = None) -> t
         read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
         entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
+        entries["events"] = (Annotated[int | None, BeforeValidator(_events)], None)
         entries["selection"] = (Annotated[str, BeforeValidator(_selection)], SELECTION_RULES[0])
     model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
     return model
@@ -141,6 +143,17 @@ def check_rtol(value: float, where: str, name: str = "rtol") -> float:
     if RTOL.check(where, name, value) > LARGEST_RTOL:
         raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {value:g}")
     return value
+
+
+def check_events(value: Any, where: str, name: str = "events") -> int:
+    """A number of slip events after which a run stops. Raises InputError."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 < value < 10**12:
+        raise InputError(f"{where}: {name} must be a whole number above 0, got {show(value)}")
+    return value
+
+
+def _events(value: Any, info: ValidationInfo) -> int:
+    return check_events(value, info.context["source"].file, "[run] events")  # type: ignore[index] # always given, in _validate
 
 
 def _selection(value: Any, info: ValidationInfo) -> str:

@@ -143,6 +143,13 @@ class AveragedCreep:
             high += self.gain
         return self.reaching(0.0, low, high, 1e-6 * self.gain)
 
+    def beyond(self, creep: Creep, trips: float) -> tuple[float, float]:
+        """Lifts between which a creep has gone on for so many round trips, if it does."""
+        high = creep.lift + self.gain
+        while (state := self.at(high)).room > 0.0 and state.trips < trips:
+            high += self.gain
+        return creep.lift, high
+
     def reaching(self, trips: float, low: float, high: float, within: float = 0.0) -> Creep:
         """The state after so many round trips, between two lifts, by bisection: to rounding, or `within` (Pa)."""
         while high - low > within and low < (middle := 0.5 * (low + high)) < high:

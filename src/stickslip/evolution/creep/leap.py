@@ -3,167 +3,157 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
-from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.creep.averaged import AveragedCreep, Strength
-from stickslip.evolution.creep.landing import landing
+from stickslip.evolution.creep.landing import Piece, landing
 from stickslip.evolution.creep.pattern import Pattern, monotone_parts
 from stickslip.evolution.creep.plan import Plan, Planner
 from stickslip.evolution.creep.scribe import Scribe, seen
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.setup import row_time
 from stickslip.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.evolution.in_progress import RunInProgress
 
 SHORTEST_LEAP = 16
 LONGEST_WAIT = 16
 FAST = 1000.0
 """Slip rates beyond so many pull rates are no creep that the tolerance would let pass: not worth a closer look."""
-CHECKED = 2
-"""Exact round trips after the landing, whose slip has to be that of the leap's continuation."""
-FOREVER = 2**62
-
-
-def refusal(problem: Problem) -> str | None:
-    """Why there are no leaps over creep in a problem; None if there may be."""
-    body, law = problem.body, problem.friction
-    if not isinstance(body, ElasticSlab) or body.reflection != -1.0 or body.contact_mass > 0.0:
-        return "a slab with a rigid driver and without contact mass"
-    if law.state is not None or law.depends_on_rate or law.memory != "all":
-        return "a law of slip alone that remembers all of it"
-    return None if problem.pull_rate != 0.0 else "a pull rate that is not 0"
-
-
-@dataclass(frozen=True)
-class Landed:
-    """A leap that waits for its check: what to go back to, and what is expected."""
-
-    state: Floats
-    count: Integers
-    slip: float  # where the leap began, minus the initial slip, m
-    expected: float  # mean slip of the last checked round trip, m
-    tolerance: float
-    summary: tuple[float, float, float, float]
-    most: int
+CHECKED = 1
+"""Exact round trips behind the landing, the last of which has to slip as the leap's continuation does."""
+STEPS = 10_000
+"""In a call of the engine."""
 
 
 @dataclass
 class CreepLeaps:
-    """Leaps of one run, with an error of slip of at most `tolerance` times the slip since the start."""
+    """Leaps of one run, with an error of slip of at most `tolerance` times the slip since the start.
+
+    What changes in a run stands in its counts, and is restored with them: when to look next, and how many leaps there were.
+    """
 
     problem: Problem
-    row_time: float
     tolerance: float
-    taken: list[tuple[float, float, float, float]] = field(default_factory=list)
-    """Start and end (s), round trips, bound of the error of slip (m)."""
-    landed: Landed | None = None
-    wait: int = 1
+    taken: list[tuple[int, int, float]] = field(default_factory=list)
+    """Round trips before each leap and in it, and a bound of the error of slip (m)."""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.tolerance <= 1e-2:
-            raise InputError(f"simulate: creep_rtol must be 0 (no leaps over creep) or between 0 and 1e-2, got {self.tolerance!r}")
-        if (needed := refusal(self.problem)) is not None:
-            raise InputError(f"simulate: creep_rtol: leaps over creep need {needed}")
         body = self.problem.body
         assert isinstance(body, ElasticSlab)
-        self.impedance, self.direction = body.impedance, 1 if self.problem.pull_rate > 0.0 else -1
+        self.impedance, self.speed = body.impedance, abs(self.problem.pull_rate)
+        self.direction = 1 if self.problem.pull_rate > 0.0 else -1
 
-    @property
-    def table(self) -> Floats:
-        """The leaps, (n, 4): start and end (s), round trips, bound of the error of slip (m)."""
-        unchecked = [self.landed.summary] if self.landed is not None else []
-        return np.array(self.taken + unchecked).reshape(-1, 4)
+    def begin(self, count: Integers) -> None:
+        """Have the engine pause after the first round trip."""
+        count[[at.PAUSE_AT, at.PAUSE_FOR]] = 1
 
-    def at_row_end(self, store: Store, state: Floats, count: Integers, last_row: int) -> Store:
-        """A round trip has ended: check the last leap, or leap if one is due. Returns the history, which may have grown."""
-        most = last_row - CHECKED - 1 - int(count[at.ROW])
-        if self.landed is not None:
-            most = min(most, self._check(store, state, count))
-        count[at.PAUSE_AT] = count[at.ROW] + 1
-        if most < SHORTEST_LEAP or not self._creeps(store, count):
-            self.wait = 1
-            return store
-        count[at.PAUSE_AT] = count[at.ROW] + self.wait
-        self.wait = min(2 * self.wait, LONGEST_WAIT)
-        averaged = self._averaged(store, state, count)
-        rate = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
-        planner = Planner(averaged, abs(float(state[at.SLIP_NOW])), self.tolerance, rate)
-        plan = planner.plan(most)
-        if plan is None or plan.trips < SHORTEST_LEAP:
-            return store
-        return self._leap(store, state, count, averaged, plan)
+    def table(self, count: Integers) -> Floats:
+        """The leaps so far, as in `History.creep`."""
+        return np.array(self.taken[: count[at.CREEP_LEAPS]], float).reshape(-1, 3)
+
+    def take_up(self, table: Floats) -> None:
+        """The leaps of a run that goes on."""
+        self.taken = [(int(begun), int(trips), float(error)) for begun, trips, error in table]
+
+    def are_due(self, count: Integers, last_row: int) -> bool:
+        """Whether the engine has paused for them."""
+        return bool(count[at.READY] == 0 and count[at.SOURCE] == 0 and count[at.PAUSE_AT] <= count[at.ROW] <= last_row)
+
+    def at_row_end(self, run: RunInProgress, last: tuple[int, float]) -> None:
+        """Round trip PAUSE_AT comes next in a run up to `last`: leap if there is creep, and say when to look again."""
+        count = run.count
+        if not self._creeps(run):
+            count[at.PAUSE_AT], count[at.PAUSE_FOR] = count[at.ROW] + 1, 1
+            return
+        planner = self._planner(run, last[0] - CHECKED - 2 - int(count[at.ROW]))
+        plan = planner.plan()
+        if planner.at_end and count[at.TO_THE_END] == 0:
+            run.cut_at_end()
+        before = run.stands()
+        while plan is not None and plan.trips >= SHORTEST_LEAP:
+            if self._leap(run, planner.averaged, plan, last):
+                count[at.PAUSE_FOR] = 1
+                return  # and at once into the next one, if it can be
+            run.restore(before)
+            plan = self._planner(run, plan.trips // 2).plan()
+        count[at.PAUSE_AT] = count[at.ROW] + count[at.PAUSE_FOR]
+        count[at.PAUSE_FOR] = min(2 * count[at.PAUSE_FOR], LONGEST_WAIT)
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 
     def _previous(self, count: Integers) -> slice:
         return slice(int(count[at.PREVIOUS_FROM]), int(count[at.PREVIOUS_TO]))
 
-    def _creeps(self, store: Store, count: Integers) -> bool:
+    def _creeps(self, run: RunInProgress) -> bool:
         """Whether the last round trip slipped, in the direction of the driver and slowly, just before this one."""
-        rows = self._previous(count)
-        modes, ends = store.mode[rows], np.stack([store.rate[rows, 0], store.rate[rows].sum(axis=1)])
-        slow = np.abs(ends).max() <= FAST * abs(self.problem.pull_rate)
-        return bool(slow and count[at.LEAP] == 0 and (modes == self.direction).any() and not (modes == -self.direction).any())
+        rows = self._previous(run.count)
+        modes, rate = run.store.mode[rows], run.store.rate[rows]
+        slow = np.abs([rate[:, 0], rate.sum(axis=1)]).max() <= FAST * self.speed
+        return bool(slow and run.count[at.LEAP] == 0 and (modes == self.direction).any() and not (modes == -self.direction).any())
 
-    def _averaged(self, store: Store, state: Floats, count: Integers) -> AveragedCreep:
+    def _planner(self, run: RunInProgress, most: int) -> Planner:
+        """For a leap of at most so many round trips from the coming one on."""
+        averaged = self._averaged(run)
+        fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
+        return Planner(averaged, abs(float(run.state[at.SLIP_NOW])), self.tolerance, fastest, most)
+
+    def _averaged(self, run: RunInProgress) -> AveragedCreep:
         """Creep from the coming round trip on."""
-        rows = self._previous(count)
+        rows, store = self._previous(run.count), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
-        speed = abs(self.problem.pull_rate)
-        load[:, 0] += 2.0 * self.impedance * speed
+        load[:, 0] += 2.0 * self.impedance * self.speed
         pattern = Pattern(monotone_parts(load, store.theta_from[rows], store.speed[rows], store.bend[rows]))
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
-        strength = Strength(self.problem, float(state[at.LAW_SLIP]), sign, speed * self.row_time)
-        return AveragedCreep(pattern, strength, self.impedance, speed)
+        strength = Strength(self.problem, float(run.state[at.LAW_SLIP]), sign, self.speed * row_time(self.problem))
+        return AveragedCreep(pattern, strength, self.impedance, self.speed)
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
-    def _leap(self, store: Store, state: Floats, count: Integers, averaged: AveragedCreep, plan: Plan) -> Store:
-        begin, before = int(count[at.ROW]), (state.copy(), count.copy())
+    def _leap(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
+        """Leap, and run exact round trips behind it; whether they go on as the leap did."""
+        begun, slip = int(run.count[at.ROW]), float(run.state[at.SLIP_NOW])
+        self._write(run, averaged, plan)
+        self.taken[run.count[at.CREEP_LEAPS] :] = [(begun, plan.trips, plan.error)]
+        run.count[at.CREEP_LEAPS] += 1
+        if not self._goes_on(run, begun + plan.trips + 1 + CHECKED, last):
+            return False
+        first, now = float(run.store.slip[run.count[at.PREVIOUS_FROM]]), float(run.state[at.SLIP_NOW])
+        expected = averaged.reaching(plan.trips + CHECKED, *averaged.beyond(plan.states[-1], plan.trips + CHECKED)).slip
+        tolerance = max(self.tolerance * (abs(slip) + expected), plan.error)
+        return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
+
+    def _write(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan) -> None:
+        """The leap as pieces of the history, and the engine behind it."""
         pieces = landing(averaged, plan.states[-1])
-        length, added = int(count[at.LENGTH]), len(plan.states) + len(pieces)
-        if length + added > len(store.whole):
-            store = at.resized(store, length, 2 * (length + added))
-        row, end, sign = begin + plan.trips, pieces[-1], averaged.strength.sign
-        scribe = Scribe(store, self.problem, self.row_time, self.direction, sign, *before)
-        landed_from = scribe.write_way(length, begin, averaged, plan, pieces[0].slip)
-        scribe.write_landing(landed_from, row, pieces)
-        beyond = averaged.reaching(plan.trips + CHECKED - 1.0, *self._lifts(averaged, plan))
-        slip = float(state[at.SLIP_NOW])
-        summary = begin * self.row_time, row * self.row_time, float(plan.trips), plan.error
-        tolerance = max(self.tolerance * (abs(slip) + beyond.slip), plan.error)
-        self.landed = Landed(*before, slip, beyond.slip, tolerance, summary, plan.trips // 2)
-        grown = end.slip + end.grown
+        run.reserve(run.length + len(plan.states) + len(pieces))
+        count, landed_on, sign = run.count, int(run.count[at.ROW]) + plan.trips, averaged.strength.sign
+        scribe = Scribe(run.store, self.problem, row_time(self.problem), self.direction, sign, run.state, count)
+        landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
+        scribe.write_landing(landed_from, landed_on, pieces)
+        self._move(run, pieces[-1], sign)
+        count[at.LENGTH] = landed_from + len(pieces)
+        count[at.PREVIOUS_FROM], count[[at.PREVIOUS_TO, at.ROW_FROM]] = landed_from, count[at.LENGTH]
+        count[at.ROW], count[at.PAUSE_AT] = landed_on + 1, landed_on + 1 + CHECKED
+
+    def _move(self, run: RunInProgress, end: Piece, sign: float) -> None:
+        """The contact at the end of the last piece of a landing."""
+        state, grown = run.state, end.slip + end.grown
         state[at.SLIP_NOW] += self.direction * grown
         state[at.LAW_SLIP] += sign * grown
         state[at.RATE_NOW] = self.direction * end.rate.sum()
-        count[at.MODE], count[at.LENGTH] = self.direction if end.slips else 0, landed_from + len(pieces)
-        count[at.PREVIOUS_FROM], count[[at.PREVIOUS_TO, at.ROW_FROM]] = landed_from, count[at.LENGTH]
-        count[at.ROW], count[at.PAUSE_AT] = row + 1, row + CHECKED
-        count[[at.SOURCE, at.MOVED, at.LEAP, at.STUCK_ROWS, at.EDGE, at.JUMP, at.CAUSE, at.STALLED]] = 0
-        return store
+        run.count[at.MODE] = self.direction if end.slips else 0
+        run.count[[at.SOURCE, at.MOVED, at.LEAP, at.STUCK_ROWS, at.EDGE, at.JUMP, at.CAUSE, at.STALLED]] = 0
 
-    def _lifts(self, averaged: AveragedCreep, plan: Plan) -> tuple[float, float]:
-        """Lifts between which the checked round trips lie."""
-        low = plan.states[-1].lift
-        high = low + CHECKED * averaged.gain
-        while averaged.at(high).room > 0.0 and averaged.at(high).trips < plan.trips + CHECKED - 1.0:
-            high += averaged.gain
-        return low, high
-
-    # ---- behind -------------------------------------------------------------------------------------------------------------
-
-    def _check(self, store: Store, state: Floats, count: Integers) -> int:
-        """Whether exact round trips go on as the leap did; if not, take it back. Returns the longest leap allowed next."""
-        landed, self.landed = self.landed, None
-        assert landed is not None
-        first, last = float(store.slip[count[at.PREVIOUS_FROM]]), float(state[at.SLIP_NOW])
-        mean = self.direction * (0.5 * (first + last) - landed.slip)
-        if abs(mean - landed.expected) <= landed.tolerance:
-            self.taken.append(landed.summary)
-            self.wait = 1
-            return FOREVER
-        state[:], count[:] = landed.state, landed.count
-        return landed.most
+    def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
+        """Run exact round trips up to this one; False where something else comes: rest that is leapt over, a failure."""
+        while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, at.FULL):
+            if code == at.FULL:
+                run.reserve(2 * len(run.store.whole))
+        return code == at.PAUSED and run.count[at.ROW] == row

@@ -41,17 +41,22 @@ class Plan:
 
 @dataclass
 class Planner:
-    """Strides along a creep, state by state, as long as the error stays below `tolerance` times the slip since the start."""
+    """Strides along a creep, state by state, as long as the error stays below `tolerance` times the slip since the start.
+
+    One planner makes one plan. `at_end` says afterwards that a longer leap was only refused because of `most`.
+    """
 
     averaged: AveragedCreep
     slipped: float  # before, since the start of the run, m
     tolerance: float
     fastest: float  # slip rate at the start, m/s
+    most: int  # round trips that there may be
+    at_end: bool = False
     largest: float = 0.0  # of the terms of second order so far, m
     swing: float = 0.0  # amplitude of slip from one round trip to the next so far, m
 
-    def plan(self, most: int) -> Plan | None:
-        """A leap of at most so many round trips; None if there is none."""
+    def plan(self) -> Plan | None:
+        """A leap, None if there is none."""
         start = self.averaged.start()  # its own error says little: rates next to 0 look like borders of slip for a round trip
         if start.room <= 0.0 or self.fastest > SETTLED * start.mean_rate:
             return None
@@ -60,7 +65,7 @@ class Planner:
             return None
         states, stride, growth = [start], FIRST_STRIDE * self.averaged.gain, LONGER
         while stride >= SHORTEST_STRIDE * self.averaged.gain:
-            state = self._stride(states[-1], stride, most)
+            state = self._stride(states[-1], stride)
             if state is None:
                 stride, growth = 0.5 * stride, 1.0
                 continue
@@ -82,16 +87,17 @@ class Planner:
     def _allowed(self, state: Creep) -> float:
         return self.tolerance * (self.slipped + state.slip)
 
-    def _fits(self, state: Creep, swing: float, most: float) -> bool:
-        if state.room <= 0.0 or not state.trips <= most or state.slip >= self.averaged.strength.room:
+    def _fits(self, state: Creep, swing: float) -> bool:
+        if state.room <= 0.0 or state.slip >= self.averaged.strength.room or self.error(state, swing) > self._allowed(state):
             return False
-        return self.error(state, swing) <= self._allowed(state)
+        self.at_end |= state.trips > self.most
+        return state.trips <= self.most
 
-    def _stride(self, begin: Creep, stride: float, most: int) -> Creep | None:
+    def _stride(self, begin: Creep, stride: float) -> Creep | None:
         """The state one stride on, if it can be trusted and the way there interpolated."""
         middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
         swing = swing_of(begin, middle, end)
-        if not (self._fits(middle, swing, most) and self._fits(end, swing, most)):
+        if not (self._fits(middle, swing) and self._fits(end, swing)):
             return None
         if stride <= self.averaged.gain:
             return self._noted(end, swing) if end.trips > begin.trips else None

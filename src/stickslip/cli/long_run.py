@@ -1,0 +1,160 @@
+"""What `stickslip run` is asked for, and how it is done: from the start or from where a run stopped, with a history or without."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stickslip.cli.files import check_target
+from stickslip.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.evolution.report import Progress
+    from stickslip.evolution.solution import Solution
+    from stickslip.long_runs.catalogue import Catalogue
+    from stickslip.problem import Problem
+    from stickslip.scenarios.scenario import Scenario
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+@dataclass(frozen=True)
+class Request:
+    """The options of `stickslip run` as they were typed."""
+
+    name: str | None
+    until: str | None
+    events: int | None
+    rtol: float | None
+    creep_rtol: float | None
+    selection: str | None
+    resume: Path | None
+    out: Path | None
+    catalog: Path | None
+    figure: Path | None
+    path: Path | None
+    catalog_figure: Path | None
+
+    def check(self) -> None:
+        """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
+        drawn = ((self.figure, "--figure"), (self.path, "--path"), (self.catalog_figure, "--catalog-figure"))
+        for target, option, suffixes in ((self.out, "--out", (".nc",)), *((*one, PICTURES) for one in drawn)):
+            if target is not None:
+                check_target(target, option, suffixes)
+        if self.name is None and self.resume is None:
+            raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
+        as_begun = (self.rtol, self.creep_rtol, self.selection, self.catalog)
+        if self.resume is not None and any(option is not None for option in as_begun):
+            raise InputError("run: --resume goes on as the run began: leave --rtol, --creep-rtol, --selection and --catalog away")
+        if self.keeps_events_only and (self.out or self.figure or self.path or self.catalog_figure):
+            raise InputError("run: a catalogue keeps slip events only, no history: leave --out, --figure and --path away")
+        if self.catalog is not None:
+            from stickslip.long_runs.rows import SUFFIXES, check_catalogue
+
+            check_target(self.catalog, "--catalog", SUFFIXES)
+            check_catalogue(self.catalog, "--catalog")
+
+    @property
+    def keeps_events_only(self) -> bool:
+        """Whether slip events are all that is kept."""
+        if self.resume is None:
+            return self.catalog is not None
+        from stickslip.storage import is_catalogue
+
+        return is_catalogue(self.resume)
+
+    @property
+    def duration(self) -> float | None:
+        """The duration asked for, s. Raises InputError."""
+        from stickslip.scenarios.schema import read_duration
+
+        return None if self.until is None else read_duration(self.until, "run", "--until")
+
+    @property
+    def wanted_events(self) -> int | None:
+        """The number of slip events asked for. Raises InputError."""
+        from stickslip.scenarios.schema import check_events
+
+        return None if self.events is None else check_events(self.events, "run", "--events")
+
+    def scenario(self) -> Scenario:
+        """The scenario with what the options change. Raises InputError."""
+        from stickslip.evolution.creep.conditions import check_creep_rtol
+        from stickslip.scenarios.scenario import load_scenario
+        from stickslip.scenarios.schema import check_rtol
+        from stickslip.selection import names, unknown
+
+        assert self.name is not None
+        loaded = load_scenario(self.name)
+        changes: dict[str, Any] = {"duration": self.duration, "events": self.wanted_events}
+        if self.rtol is not None:
+            changes["rtol"] = check_rtol(self.rtol, "run", "--rtol")
+        if self.creep_rtol is not None:
+            changes["creep_rtol"] = check_creep_rtol(loaded.problem, self.creep_rtol, "run", "--creep-rtol")
+        if self.selection is not None:
+            if self.selection not in names():
+                raise InputError(f"run: --selection '{self.selection}' {unknown(self.selection)}")
+            changes["problem"] = replace(loaded.problem, selection=self.selection)
+        return replace(loaded, **{name: value for name, value in changes.items() if value is not None})
+
+
+def solve(request: Request) -> tuple[Scenario, Solution]:
+    """Run with a history, from the start or from where it stopped. Raises InputError."""
+    if request.resume is None:
+        chosen = request.scenario()
+        keep = {} if request.out is None else {"checkpoint": request.out}
+        with progress(chosen.name) as report:
+            return chosen, chosen.run(report, **keep)
+    from stickslip.long_runs.resume import resume
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.storage import load
+
+    check_same(request, load(request.resume).problem)
+    with progress(request.resume.stem) as report:
+        solution = resume(request.resume, request.duration, events=request.wanted_events, progress=report, checkpoint=request.out)
+    return Scenario.of(solution, request.resume.stem), solution
+
+
+def list_events(request: Request) -> tuple[Scenario, Catalogue]:
+    """Run without a history, from the start or from where it stopped. Raises InputError."""
+    from stickslip.evolution.in_progress import RunInProgress
+    from stickslip.evolution.keeper import Orders
+    from stickslip.long_runs.catalogue import Paused, begin
+    from stickslip.scenarios.scenario import Scenario
+
+    if request.resume is None:
+        chosen = request.scenario()
+        assert request.catalog is not None
+        with progress(chosen.name) as report:
+            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol)
+            return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog)
+    paused = Paused.read(request.resume)
+    check_same(request, paused.stopped.problem)
+    with progress(request.resume.stem) as report:
+        found = paused.go_on(request.duration, request.wanted_events, report)
+    goal = paused.stopped.duration if request.duration is None else request.duration
+    return replace(Scenario.of(paused.stopped, request.resume.stem), duration=goal), found
+
+
+def check_same(request: Request, problem: Problem) -> None:
+    """Refuse to go on with a run of another problem than the scenario that is named too. Raises InputError."""
+    if request.name is None:
+        return
+    asked = request.scenario().problem
+    if asked != problem:
+        differs = next(f.name for f in fields(problem) if getattr(asked, f.name) != getattr(problem, f.name))
+        raise InputError(
+            f"{request.resume}: is a run of another problem than {request.name}: its {differs} is {getattr(problem, differs)!r}"
+        )
+
+
+@contextmanager
+def progress(name: str) -> Iterator[Progress]:
+    """Says on a terminal how far the run is."""
+    from stickslip.cli.show import progress_to, so_far
+
+    with progress_to(f"{name}:") as report:
+        yield lambda about: report(so_far(about))

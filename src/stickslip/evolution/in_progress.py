@@ -1,0 +1,142 @@
+"""A run in progress: the arrays that the engine works on, and what must be done for it between its calls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.checkpoint import Checkpoint, engine
+from stickslip.evolution.creep.leap import CreepLeaps
+from stickslip.evolution.history import NO_LEAPS, History
+from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
+from stickslip.evolution.setup import prepare, row_time
+from stickslip.evolution.workspace import WORK_ROWS, lend
+from stickslip.problem import Problem
+
+FIRST_CAPACITY = 512
+SPARE = 16
+
+
+@dataclass(eq=False)
+class RunInProgress:
+    """Setup, state and history of a run, and where it stood before its end cut anything; pieces of history that it forgot."""
+
+    problem: Problem
+    rtol: float
+    setup: Setup
+    state: Floats
+    count: Integers
+    scratch: Floats
+    store: Store
+    follower: RuleFollower
+    leaps: CreepLeaps | None = None
+    before_end: Checkpoint | None = None
+    forgotten: int = 0
+
+    def __post_init__(self) -> None:
+        self._lend()
+
+    @classmethod
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float = 0.0) -> Self:
+        """At t = 0."""
+        setup, state, count = prepare(problem, rtol)
+        store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
+        follower = RuleFollower(problem, row_time(problem), state, count)
+        leaps = CreepLeaps(problem, creep_rtol) if creep_rtol > 0.0 else None
+        if leaps is not None:
+            leaps.begin(count)
+        return cls(problem, rtol, setup, state, count, np.zeros((WORK_ROWS, at.TERMS)), store, follower, leaps)
+
+    @classmethod
+    def at_checkpoint(cls, history: History, rtol: float, creep_rtol: float, checkpoint: Checkpoint) -> Self:
+        """Where another run stood; in its history nothing is changed."""
+        run = cls.begin(history.problem, rtol, creep_rtol)
+        if run.leaps is not None:
+            run.leaps.take_up(history.creep)
+        run.store = at.resized(history.store, checkpoint.length, max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2))
+        run.restore(checkpoint)
+        return run
+
+    def _lend(self) -> None:
+        self._table = lend(self.setup, self.state, self.count, self.scratch, self.store)
+
+    @property
+    def length(self) -> int:
+        """Pieces of the history so far."""
+        return int(self.count[at.LENGTH])
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        xi, speed, bend = self.state[[at.XI, at.SPEED, at.BEND]]
+        return float(self.count[at.ROW] * row_time(self.problem) + self.state[at.THETA_FROM] + xi * (speed + xi * bend))
+
+    @property
+    def creep(self) -> Floats:
+        """Leaps over creep so far, as in `History.creep`."""
+        return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
+
+    def advance(self, last: tuple[int, float], budget: int) -> int:
+        """Go on by one call of the engine, or by one leap over creep. Returns the code of `engine.advance`."""
+        if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
+            self.leaps.at_row_end(self, last)
+            return OUT_OF_BUDGET
+        code = self.step(last, budget)
+        return OUT_OF_BUDGET if code == at.PAUSED else code
+
+    def step(self, last: tuple[int, float], budget: int) -> int:
+        """As `engine.advance`; the branches of a law of slip and slip rate are renewed where they are due."""
+        code = self.follower.advance(self._table, self.store, last, budget)
+        if code != at.NEED_BRANCHES:
+            return code
+        self.setup = renewed(self.problem, self.setup, self.state, self.count)
+        self._lend()
+        return OUT_OF_BUDGET
+
+    def grow(self, max_pieces: int) -> bool:
+        """Make room for more pieces; False where there are as many as there may be."""
+        if self.length >= max_pieces:
+            return False
+        self.reserve(min(4 * len(self.store.whole), max_pieces + SPARE))
+        return True
+
+    def reserve(self, pieces: int) -> None:
+        """Have room for at least so many pieces."""
+        if pieces > len(self.store.whole):
+            self.store = at.resized(self.store, self.length, pieces)
+            self._lend()
+
+    def forget(self, pieces: int) -> None:
+        """Drop the first so many pieces, none of which belongs to the present round trip or the one before."""
+        at.without_first(self.store, self.count, pieces)
+        self.forgotten += pieces
+
+    def cut_at_end(self) -> None:
+        """From here on the end of the run decides what comes: keep where a longer run would go on."""
+        self.before_end = self.stands()
+        self.count[at.TO_THE_END] = 1
+
+    def stands(self) -> Checkpoint:
+        """Where the engine stands."""
+        stick_to, crossings = self.setup.par[[at.STICK_TO]], np.array(self.follower.times, float)
+        state, count, scratch = self.state.copy(), self.count.copy(), self.scratch.copy()
+        return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
+
+    def checkpoint(self) -> Checkpoint:
+        """From where this run, or a longer one, goes on."""
+        return self.before_end or self.stands()
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Go back to where the engine stood, on the same history or a copy of it."""
+        self.state[:], self.count[:], self.scratch[:] = checkpoint.state, checkpoint.count, checkpoint.scratch
+        self.setup = self.setup._replace(branch=checkpoint.branch.copy())
+        self.setup.par[at.STICK_TO] = checkpoint.stick_to[0]
+        self.follower.times.clear()
+        self.follower.times.extend(checkpoint.crossings.tolist())
+        if self.count[at.TO_THE_END] == 0:
+            self.before_end = None
+        self._lend()

@@ -1,0 +1,112 @@
+"""What can be read of a run at any time: values, shocks, curves. A whole run and a window on it are read alike."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.errors import InputError, nearest
+from stickslip.evolution.history import History, Moments, Side
+from stickslip.evolution.tables import shocks_table
+from stickslip.problem import Problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Floats = NDArray[np.float64]
+Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
+CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
+
+
+class Readings:
+    """Values of a run at times in s since `history.epoch`; arrays in, arrays of the same shape out.
+
+    `side` ("left" or "right") picks the limit at a shock. Times outside the run raise InputError.
+    """
+
+    problem: Problem
+    history: History
+
+    @property
+    def shown(self) -> tuple[float, float]:
+        """Times (s) from which and up to which it is drawn."""
+        return self.history.span[0], float(self.history.end[-1])
+
+    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
+        time = np.asarray(t, float)
+        return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
+
+    def slip(self, t: ArrayLike) -> Floats:
+        """Slip u (m) at times t (s). Absolute: it starts at the initial slip."""
+        at, shape = self._at(t, "right")
+        return (self.problem.initial_slip + self.history.slipped(at)).reshape(shape)
+
+    def slip_rate(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Slip rate v (m/s) at times t (s)."""
+        at, shape = self._at(t, side)
+        return self.history.rate(at).reshape(shape)
+
+    def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Friction on the contact tau (slab: Pa, block: N) at times t (s), positive where it opposes forward slip."""
+        at, shape = self._at(t, side)
+        return (self.problem.strength + self.history.friction(at)).reshape(shape)
+
+    def load(self, t: ArrayLike, side: Side = "right") -> Floats:
+        """Load at times t (s): beta of eqs (12)-(13) for the slab (Pa), the spring's force for the block (N)."""
+        at, shape = self._at(t, side)
+        return (self.problem.strength + self.history.excess(at)).reshape(shape)
+
+    def state(self, t: ArrayLike) -> Floats:
+        """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).
+
+        Raises InputError for a law without one.
+        """
+        if self.problem.friction.state is None:
+            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
+        at, shape = self._at(t, "right")
+        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+
+    @cached_property
+    def shocks(self) -> pd.DataFrame:
+        """Jumps of the slip rate: time (s), cause (start, fold, echo, loading, healing), rate_before and rate_after (m/s),
+        traction_before and traction_after (Pa), rule (the selection rule; empty where the slip rate is unique anyway)."""
+        return shocks_table(self.history)
+
+    @cached_property
+    def breaks(self) -> Floats:
+        """Times (s) at which pieces of the history meet, 0 and the end included."""
+        return np.append(self.history.start, self.history.end[-1:])
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """What there is to draw: slip, slip rate, traction, load, and the state of a law that has one."""
+        return CURVES if self.problem.friction.state is None else (*CURVES, "state")
+
+    def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
+        """Times (s) and values for drawing, by default all: dense where the solution varies, with both limits at every shock."""
+        if name not in self.curves:
+            raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
+        start, end = self.shown[0] if start is None else start, self.shown[1] if end is None else end
+        breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
+        if len(breaks) > points:  # too many pieces to draw each: keep the shocks, and in every stretch where it is fastest
+            shocks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
+            breaks = np.union1d(shocks, self._fastest(breaks, points)) if len(shocks) <= points else self._fastest(breaks, points)
+        inside = [np.linspace(a, b, 8) for a, b in pairwise(breaks)]
+        right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
+        time = np.concatenate([breaks, right])
+        order = np.argsort(time, kind="stable")  # left limits first
+        if name in ("slip", "event_slip", "state"):  # continuous
+            return time[order], getattr(self, name)(time)[order]
+        evaluate = getattr(self, name)
+        values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
+        return time[order], values[order]
+
+    def _fastest(self, times: Floats, groups: int) -> Floats:
+        """Of so many groups of times the one of each at which the slip rate is largest."""
+        speed = np.abs(self.slip_rate(times))
+        starts = np.unique(np.linspace(0, len(times) - 1, groups).astype(int))
+        return np.array([times[a + int(np.argmax(speed[a:b]))] for a, b in pairwise([*starts.tolist(), len(times)])])

@@ -1,0 +1,254 @@
+"""The catalogue of a run whose history is too long to be kept: one row an event, told as they become known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from stickslip.errors import InputError
+from stickslip.evolution import layout as at
+from stickslip.evolution.creep.conditions import check_creep_rtol
+from stickslip.evolution.drive import drive
+from stickslip.evolution.event_stream import EventStream, Look, Place
+from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
+from stickslip.evolution.report import Progress
+from stickslip.evolution.simulate import check_run, check_started
+from stickslip.evolution.solution import Solution
+from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Status
+from stickslip.evolution.tables import creep_note, default_event_rate
+from stickslip.long_runs.resume import check_events, events_wanted, taken_up
+from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
+from stickslip.problem import Problem
+from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution, write
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CAPACITY = 16_384
+"""Pieces of history that are kept at a time, if no single event needs more."""
+
+
+def catalogue(
+    problem: Problem,
+    duration: float,
+    path: str | Path | None = None,
+    *,
+    rtol: float = 1e-10,
+    creep_rtol: float = 0.0,
+    events: int | None = None,
+    event_rate: float | None = None,
+    progress: Progress | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    max_pieces: int = MAX_PIECES,
+) -> pd.DataFrame:
+    """The slip events of a run up to `duration` (s), or until so many `events` are over, in bounded memory.
+
+    The table is that of `Solution.catalogue(event_rate)`, with a last row for an event that the run's end leaves open; its
+    `attrs` say what ended the run. With a `path` (.csv, .parquet, .nc) the rows go to this file, and beside it NAME.checkpoint.nc
+    is renewed every `checkpoint_every` seconds of wall clock: `stickslip.resume_catalogue` takes it up. The history is forgotten
+    up to the last event but one; an event, with what precedes it, of more than `max_pieces` pieces ends the run with a status.
+    For the other arguments, and errors, see `stickslip.simulate`; InputError also for a path that says no format.
+    """
+    check_run("catalogue", duration, rtol, events, checkpoint_every)
+    check_creep_rtol(problem, creep_rtol, "catalogue")
+    rate = default_event_rate(problem) if event_rate is None else event_rate
+    if not rate >= 0.0:
+        raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {event_rate!r}")
+    if path is not None:
+        check_catalogue(Path(path))
+    run = RunInProgress.begin(problem, rtol, creep_rtol)
+    orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
+    if path is not None:
+        return begin(run, orders, Path(path), rate).read()
+    return follow(run, orders, EventStream(problem, rate, float(run.setup.par[at.RAMP])), RowsInMemory()).read()
+
+
+def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None) -> Catalogue:
+    """Follow a run from its start, into a file; what was there under these names is gone."""
+    rows = Rows(path)
+    checkpoint_of(rows).unlink(missing_ok=True)
+    rows.clear()
+    rate = default_event_rate(run.problem) if event_rate is None else event_rate
+    return follow(run, orders, EventStream(run.problem, rate, float(run.setup.par[at.RAMP])), rows)
+
+
+def resume_catalogue(
+    checkpoint: str | Path,
+    duration: float | None = None,
+    *,
+    events: int | None = None,
+    progress: Progress | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    max_pieces: int = MAX_PIECES,
+) -> pd.DataFrame:
+    """Go on with a `catalogue` from its checkpoint, up to `duration` (s from the start; default: as before).
+
+    Rows that were written after the checkpoint are cut off and made again: the table is the same, bit for bit, as if the run had
+    never stopped. Raises InputError as `stickslip.resume` does, and where rows are missing.
+    """
+    paused = Paused.read(Path(checkpoint))
+    return paused.go_on(duration, events, progress, checkpoint_every, max_pieces).read()
+
+
+@dataclass(frozen=True)
+class Paused:
+    """A catalogue in the making, read from its checkpoint."""
+
+    path: Path
+    stopped: Solution
+    about: Mapping[str, Any]
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Raises InputError for a file that is no such checkpoint."""
+        dataset = read(path, CATALOGUE)
+        return cls(path, to_solution(dataset, path), dataset.attrs)
+
+    @property
+    def rows(self) -> Rows:
+        """Where the rows are."""
+        return Rows(self.path.parent / str(self.about["catalogue"]))
+
+    def go_on(
+        self,
+        duration: float | None = None,
+        events: int | None = None,
+        progress: Progress | None = None,
+        checkpoint_every: float = CHECKPOINT_EVERY,
+        max_pieces: int = MAX_PIECES,
+    ) -> Catalogue:
+        """Follow the run to its end."""
+        stopped, about = self.stopped, self.about
+        wanted, rows = events_wanted(stopped, events), self.rows
+        run = taken_up(stopped, self.path, duration)
+        orders = Orders(stopped.duration if duration is None else duration, wanted, progress, None, checkpoint_every, max_pieces)
+        check_run("resume_catalogue", orders.duration, stopped.rtol, wanted, checkpoint_every)
+        if wanted is not None:
+            check_events(self.path, wanted, int(about["told"]))
+        check_catalogue(rows.path)
+        rows.take_up(int(about["told"]), int(about["bytes"]))
+        start = Place(int(about["last_piece"]), float(about["last_xi"]))
+        rate, ramp = float(about["event_rate"]), float(run.setup.par[at.RAMP])
+        run.forgotten = int(about["forgotten"])
+        return follow(run, orders, EventStream(run.problem, rate, ramp, int(about["first"]), start, int(about["told"])), rows)
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """What came of a run: its rows, how many events are over, what ended it, and one line on its leaps over creep."""
+
+    rows: Rows | RowsInMemory
+    events: int
+    status: Status
+    creep: str
+
+    @property
+    def files(self) -> list[Path]:
+        """Table and checkpoint."""
+        return [self.rows.path, checkpoint_of(self.rows)] if isinstance(self.rows, Rows) else []
+
+    def read(self) -> pd.DataFrame:
+        """The table."""
+        table = self.rows.read()
+        table.attrs = {"status": self.status.name, "status_message": self.status.message}
+        if self.creep:
+            table.attrs["creep"] = self.creep
+        return table
+
+
+def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows | RowsInMemory) -> Catalogue:
+    """Follow a run to its end, and give its table its form. Raises InputError where it ends where it starts."""
+    run.reserve(CAPACITY)
+    keeper = CatalogueKeeper.of(run, orders, stream)
+    keeper.rows = rows
+    code = drive(run, orders.duration, keeper)
+    check_started(run, code, "catalogue")
+    keeper.finish(run, code)
+    return Catalogue(rows, stream.told, STATUSES[code], creep_note(run.creep))
+
+
+@dataclass(frozen=True)
+class Told:
+    """What has been told at a moment: rows on the disk, and the stream."""
+
+    size: int
+    stream: EventStream
+
+
+@dataclass(kw_only=True)
+class CatalogueKeeper(Keeper):
+    """Writes rows as events become known, and forgets the history behind them.
+
+    `told` is what had been told where the run, or a longer one, would go on.
+    """
+
+    rows: Rows | RowsInMemory = field(default_factory=lambda: RowsInMemory())
+    told: Told | None = None
+
+    @property
+    def counts(self) -> bool:
+        """Always."""
+        return True
+
+    def note(self, run: RunInProgress, look: Look) -> None:
+        """Their rows are written."""
+        if look.known_by:
+            self.rows.append(look.table())
+        super().note(run, look)
+        self._remember(run)
+
+    def make_room(self, run: RunInProgress) -> bool:
+        """Forget what neither events nor the engine need; more room only if that is most of what there is."""
+        needed = min(self.stream.first, int(run.count[at.PREVIOUS_FROM]))
+        if run.before_end is None and needed > 0:
+            run.forget(needed)
+            self.stream.forget(needed)
+            self._remember(run)
+            self.looked = self.stands(run)
+        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.max_pieces)
+
+    def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
+        """Renew the checkpoint, whose rows are on the disk before."""
+        if isinstance(self.rows, RowsInMemory) or self.told is None:
+            return
+        self.rows.sync()
+        solution = as_solution(run, self.orders, code)
+        about = self._about(run, self.told, self.rows)
+        write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
+
+    def finish(self, run: RunInProgress, code: int) -> None:
+        """Tell the rest, the event that the end leaves open too; the rows get their form."""
+        if code != ENOUGH_EVENTS:
+            self.count(run)
+        self.rows.append(self.stream.look(run.store, run.length).table(unknown=True))
+        solution = as_solution(run, self.orders, code)
+        self.rows.publish(origin(solution), run.problem.load_unit)
+        self.save(run, code)
+        self.rows.tidy()
+
+    def _remember(self, run: RunInProgress) -> None:
+        if run.before_end is None:
+            self.told = Told(self.rows.size, replace(self.stream))
+
+    def _about(self, run: RunInProgress, told: Told, rows: Rows) -> dict[str, Any]:
+        """Attributes of the checkpoint."""
+        stream = told.stream
+        return {
+            CATALOGUE: FORMAT,
+            "catalogue": rows.path.name,
+            "bytes": told.size,
+            "told": stream.told,
+            "first": stream.first,
+            "last_piece": stream.last_start.piece,
+            "last_xi": stream.last_start.xi,
+            "event_rate": stream.threshold,
+            "forgotten": run.forgotten,
+        }
+
+
+def checkpoint_of(rows: Rows) -> Path:
+    """The checkpoint beside a catalogue."""
+    return rows.path.with_name(f"{rows.path.stem}.checkpoint.nc")

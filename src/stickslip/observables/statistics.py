@@ -1,0 +1,59 @@
+"""Statistics of a catalogue of slip events."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+QUANTITIES = ("recurrence", "duration", "slip", "peak_rate", "traction_drop", "static_drop", "released", "trapped")
+"""Columns of a catalogue whose distribution is described, where the table has them."""
+
+SAME = 1e-9
+"""Values that vary by less than this share of their mean are one value: what follows what among them says nothing."""
+
+
+def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
+    """How the events of a catalogue (`Solution.events`, `Solution.catalogue`) are distributed: one row a quantity, in its unit.
+
+    Columns: `count`; `mean`; `deviation`, the sample's standard deviation; `variation`, deviation / mean (of the recurrence
+    times: 0 periodic, 1 as random as a Poisson process, above 1 clustered); `smallest`, `median`, `largest`; and `next`, the
+    correlation of a value with that of the next event. NaN where there are too few events. An event that the run's end cuts off
+    counts in the recurrence only.
+    """
+    import pandas as pd
+
+    finished = table[table.end.notna()]
+    rows = {name: _describe((table if name == "recurrence" else finished)[name]) for name in QUANTITIES if name in table}
+    frame = pd.DataFrame.from_dict(rows, orient="index", columns=list(_describe(table.slip[:0])))
+    return frame.astype({"count": int})
+
+
+def _describe(column: pd.Series) -> dict[str, float]:
+    values = column.to_numpy(float)
+    values = values[np.isfinite(values)]
+    some, several = len(values) > 0, len(values) > 1
+    mean = float(values.mean()) if some else np.nan
+    deviation = float(values.std(ddof=1)) if several else np.nan
+    return {
+        "count": len(values),
+        "mean": mean,
+        "deviation": deviation,
+        "variation": deviation / mean if mean != 0.0 else np.nan,
+        "smallest": float(values.min()) if some else np.nan,
+        "median": float(np.median(values)) if some else np.nan,
+        "largest": float(values.max()) if some else np.nan,
+        "next": _next(values),
+    }
+
+
+def _next(values: NDArray[np.float64]) -> float:
+    """Correlation of each value with the one after it."""
+    now, later = values[:-1], values[1:]
+    if len(now) < 3 or min(np.ptp(now), np.ptp(later)) <= SAME * np.abs(values).max():
+        return np.nan
+    return float(np.corrcoef(now, later)[0, 1])

@@ -1,0 +1,1 @@
+"""Studies: many runs of one problem, and what they say together."""

@@ -1,0 +1,120 @@
+"""`stickslip run` stopped, taken up, and kept as a catalogue."""
+
+from __future__ import annotations
+
+import re
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.cli.show import so_far
+from stickslip.evolution.report import Progress, Report
+from stickslip.long_runs.rows import read_table
+from tests.long_runs.problems import differences
+
+
+def test_a_run_goes_on(command, tmp_path: Path):
+    assert command("run", "cycles-block", "--until", "20 years", "--out", "run.nc").code == 0
+    shown = command("run", "--resume", "run.nc", "--until", "50 years")
+    assert shown.code == 0
+    assert "11 slip events" in shown.out
+    assert "written: run.nc" in shown.out
+    problem = ss.load_scenario("cycles-block").problem
+    assert differences(ss.load(tmp_path / "run.nc"), ss.simulate(problem, 50 * ss.YEAR)) == []
+    assert command("run", "cycles-block", "--resume", "run.nc", "--until", "60 years", "--out", "longer.nc").code == 0
+    assert ss.load(tmp_path / "run.nc").duration == 50 * ss.YEAR
+    assert ss.load(tmp_path / "longer.nc").duration == 60 * ss.YEAR
+
+
+def test_a_catalogue_goes_on(command, tmp_path: Path):
+    shown = command("run", "cycles-block", "--until", "100 years", "--catalog", "events.csv")
+    assert shown.code == 0
+    for text in ("finished: the run reached its duration", "22 slip events", "written: events.csv", "events.checkpoint.nc"):
+        assert text in shown.out
+    assert command("run", "--resume", "events.checkpoint.nc", "--until", "200 years").code == 0
+    whole = ss.simulate(ss.load_scenario("cycles-block").problem, 200 * ss.YEAR).events
+    pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole, check_exact=True)
+
+
+def test_events_stop_a_run(command, tmp_path: Path):
+    shown = command("run", "cycles-block", "--until", "10000 years", "--events", "3", "--out", "run.nc")
+    assert "enough events: the run has had its number of slip events" in shown.out
+    assert "3 slip events" in shown.out
+    (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", "[run]\nevents = 4\n"))
+    assert "4 slip events" in command("run", "mine.toml", "--until", "10000 years").out
+    scenario = ss.load_scenario(tmp_path / "mine.toml")
+    assert scenario.events == 4
+    (tmp_path / "again.toml").write_text(scenario.to_toml())
+    assert ss.load_scenario(tmp_path / "again.toml") == scenario
+
+
+REFUSED = [
+    (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
+    (["run", "cycles-block", "--events", "0"], "run: --events must be a whole number above 0, got 0"),
+    (["run", "cycles-block", "--catalog", "events.txt"], "--catalog events.txt: the name must end in .csv or .parquet or .nc"),
+    (["run", "cycles-block", "--catalog", "no/events.csv"], "--catalog no/events.csv: there is no folder no"),
+    (["run", "cycles-block", "--catalog", "a.csv", "--out", "a.nc"], "run: a catalogue keeps slip events only, no history: leave"),
+    (["run", "--resume", "run.nc", "--rtol", "1e-8"], "run: --resume goes on as the run began: leave --rtol, --selection and"),
+    (["run", "--resume", "none.nc"], "none.nc: no such file"),
+    (["run", "--resume", "bad.nc"], "bad.nc: not a netCDF file that can be read"),
+    (["run", "--resume", "run.nc", "--until", "1 s"], "run.nc: the run has come to"),
+    (["run", "fig6-slab", "--resume", "run.nc"], "run.nc: is a run of another problem than fig6-slab: its body is SpringBlock("),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), REFUSED)
+def test_one_line_and_nothing_changed(command, tmp_path: Path, arguments: list[str], message: str):
+    (tmp_path / "bad.nc").write_text("no")
+    ss.simulate(ss.load_scenario("cycles-block").problem, 20 * ss.YEAR, checkpoint=tmp_path / "run.nc")
+    before = (tmp_path / "run.nc").read_bytes()
+    shown = command(*arguments)
+    assert (shown.code, shown.out) == (2, "")
+    assert shown.err.startswith(f"stickslip: {message}")
+    assert shown.err.count("\n") == 1
+    assert (tmp_path / "run.nc").read_bytes() == before
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.nc", "run.nc"]
+
+
+@pytest.mark.parametrize("events", ['"5"', "0", "2.5", "true"])
+def test_a_bad_number_of_events_in_a_scenario(command, tmp_path: Path, events: str):
+    (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", f"[run]\nevents = {events}\n"))
+    shown = command("run", "mine.toml")
+    assert shown.code == 2
+    assert re.match(r"stickslip: mine\.toml: \[run\] events must be a whole number above 0, got ", shown.err)
+
+
+@pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalog", "run.csv"]])
+def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
+    @contextmanager
+    def interrupting(_: str) -> Iterator[Progress]:
+        yield lambda report: signal.raise_signal(signal.SIGINT) if report.events >= 2 else None
+
+    monkeypatch.setattr("stickslip.evolution.drive.LARGEST_BUDGET", 1000)  # so that it does not end before anybody can interrupt
+    monkeypatch.setattr("stickslip.evolution.drive.FIRST_BUDGET", 1000)
+    with monkeypatch.context() as patch:
+        patch.setattr("stickslip.cli.long_run.progress", interrupting)
+        shown = command("run", "rate-and-state-block", *option)
+    assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
+    assert "interrupted: stopped by the user" in shown.out
+    scenario = ss.load_scenario("rate-and-state-block")
+    whole = scenario.run()
+    if option[0] == "--out":
+        assert 2 <= len(ss.load("run.nc").events) < len(whole.events)
+        assert command("run", "--resume", "run.nc").code == 0
+        assert differences(ss.load("run.nc"), whole) == []
+    else:
+        assert 2 <= len(read_table(Path("run.csv"))) < len(whole.events)
+        assert command("run", "--resume", "run.checkpoint.nc").code == 0
+        pd.testing.assert_frame_equal(read_table(Path("run.csv")), whole.events, check_exact=True)
+
+
+def test_progress_is_told_in_sensible_units():
+    report = Report(150 * ss.YEAR, 10_000 * ss.YEAR, 31, None, 5000, "stuck", 120.3 * ss.YEAR, 81.9)
+    assert so_far(report) == "150 of 10000 years, 31 slip events, stuck, 120 years a second, 1.4 min left"
+    start = Report(0.0, 12.0, 1, 4, 0, "slipping", float("nan"), float("nan"))
+    assert so_far(start) == "0 of 12 s, 1 of 4 slip events, slipping"

@@ -1,0 +1,101 @@
+"""The figure of a catalogue shows its numbers, in units in which they can be read."""
+
+from __future__ import annotations
+
+import re
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import stickslip as ss
+from stickslip.figures import catalogue
+from stickslip.figures.run import plot_run
+from stickslip.figures.style import time_unit
+from tests.evolution.test_verified_numbers import SLAB, rate_law_slab
+
+mpl.use("Agg")
+
+UNIT = re.compile(r"\((year|day|s|ms|µs|m|mm|µm|nm)\)$")
+
+
+@pytest.fixture(scope="module")
+def cycles() -> ss.Solution:
+    return ss.load_scenario("cycles-block").run()
+
+
+def panel(figure: Figure, name: str) -> mpl.axes.Axes:
+    return next(axes for axes in figure.axes if axes.get_title(loc="left").startswith(name))
+
+
+def test_every_axis_has_its_unit(cycles: ss.Solution) -> None:
+    figure = catalogue.draw(catalogue.data(cycles))
+    assert len(figure.axes) == 7
+    texts = [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())]
+    assert all(UNIT.search(text) or text.startswith("events") for text in texts), texts
+    assert [panel(figure, name).get_xlabel().split()[-1] for name in "BCD"] == ["(year)", "(s)", "(ms)"]
+
+
+def test_it_draws_the_catalogue(cycles: ss.Solution) -> None:
+    events = cycles.events
+    figure = catalogue.draw(catalogue.data(cycles))
+    marks, ring = panel(figure, "A").lines
+    assert marks.get_xydata() == pytest.approx(np.column_stack([events.start / ss.YEAR, events.slip]), rel=1e-15)
+    assert ring.get_xydata()[0] == pytest.approx([events.start.iloc[-1] / ss.YEAR, events.slip.iloc[-1]], rel=1e-15)
+    assert panel(figure, "F").patches[0].get_data().values.sum() == len(events) - 1
+    points = panel(figure, "G").lines[0].get_xydata()
+    assert points == pytest.approx(np.full((len(events) - 2, 2), events.recurrence[1] / ss.YEAR), rel=1e-9)
+    time, slip = panel(figure, "C").lines[0].get_xydata().T
+    assert slip[-1] == pytest.approx(1e3 * events.slip.iloc[-1], rel=1e-9)  # mm
+    assert time[slip < 0.999 * slip[-1]].max() < events.duration.iloc[-1]
+
+
+def test_another_event_can_be_chosen(cycles: ss.Solution) -> None:
+    dataset = catalogue.data(cycles, 2)
+    assert int(dataset.chosen) == 2
+    with pytest.raises(ss.InputError, match="no event 99"):
+        catalogue.data(cycles, 99)
+
+
+def test_a_late_event_is_drawn_sharply() -> None:
+    """Milliseconds after 468 years, where seconds are 2e-6 apart: a straight line, to rounding."""
+    dataset = catalogue.data(ss.simulate(rate_law_slab(), 480 * ss.YEAR))
+    time, slip = dataset.close_time.values, dataset.close_slip.values
+    late = time > 0.0
+    assert int(dataset.chosen) == 1
+    assert slip[late] / time[late] == pytest.approx(np.full(late.sum(), 4.10204082), rel=1e-8, abs=0.0)
+    assert (slip[time < 0.0] == 0.0).all()
+
+
+def test_few_events_leave_panels_empty() -> None:
+    figure = catalogue.draw(catalogue.data(ss.simulate(rate_law_slab(), 12.0)))
+    assert [panel(figure, name).texts[0].get_text() for name in "FG"] == ["needs 2 events", "needs 3 events"]
+
+
+def test_no_events_cannot_be_drawn() -> None:
+    still = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0)
+    with pytest.raises(ss.InputError, match="no slip event"):
+        catalogue.data(still)
+
+
+def test_wide_ranges_are_logarithmic() -> None:
+    run = ss.simulate(rate_law_slab(selection="maximal"), 380 * ss.YEAR)
+    figure = catalogue.draw(catalogue.data(run))
+    assert panel(figure, "F").get_xscale() == panel(figure, "G").get_yscale() == "log"
+    assert panel(figure, "E").get_xscale() == "linear"
+
+
+def test_a_window_is_drawn_in_local_time() -> None:
+    figure = plot_run(ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1))
+    assert figure.axes[-1].get_xlabel() == "time since the event began (s)"
+    assert figure.axes[0].get_ylabel() == "slip in the event (m)"
+    time, slip = figure.axes[0].lines[0].get_xydata().T
+    assert (time[0], slip[0]) == (pytest.approx(-0.1 * 5.714285714, rel=1e-9), 0.0)
+
+
+@pytest.mark.parametrize(
+    ("span", "unit"), [(3e9, "year"), (9e4, "day"), (2e4, "s"), (0.6, "s"), (0.4, "ms"), (2e-3, "ms"), (3e-4, "µs")]
+)
+def test_time_is_shown_in_a_unit_that_can_be_read(span: float, unit: str) -> None:
+    assert time_unit(span)[0] == unit

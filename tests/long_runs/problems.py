@@ -1,0 +1,63 @@
+"""Runs that pass through every state of the engine: problem, duration (s), tolerance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import stickslip as ss
+from tests.evolution.test_moving_folds import KINKED, MATCHED, hardening
+from tests.evolution.test_moving_folds import SLAB as THIN
+
+F = ss.friction
+SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+
+
+def bundled(name: str, times: float = 1.0) -> tuple[ss.Problem, float]:
+    scenario = ss.load_scenario(name)
+    return scenario.problem, scenario.duration * times
+
+
+RUNS: dict[str, tuple[ss.Problem, float]] = {
+    "slip law, slab": bundled("fig5-slab-reconstructed"),
+    "rate law, leaps": bundled("second-event-perfect-delay"),
+    "rate law, maximal": bundled("second-event-maximal"),
+    "folds": bundled("fig4-loop"),
+    "folds, lossy": (
+        ss.Problem(replace(SLAB, driver_impedance=2e6), F.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=0.0, far_stress=8.4e7),
+        60.0,
+    ),
+    "moving folds": (ss.Problem(MATCHED, hardening(), initial_excess=1e5), 5.0),
+    "moving levels": (ss.Problem(MATCHED, hardening(), initial_excess=1e5, selection="maxwell"), 1.3),
+    "moving levels, knots": (ss.Problem(THIN, KINKED, pull_rate=0.2, initial_excess=1e5, selection="maximal"), 5.0),
+    "block that heals": bundled("cycles-block"),
+    "slab that heals": bundled("cycles-slab", 0.4),
+    "rate and state, block": bundled("rate-and-state-block", 0.1),
+    "rate and state, slab": bundled("rate-and-state-slab"),
+    "stiff contact mass": (
+        ss.Problem(replace(SLAB, contact_mass=1e3), F.VelocityStrengthening(0.6, 0.01, 1e-6), initial_excess=1e6),
+        20.0,
+    ),
+    "contact mass": (ss.Problem(replace(SLAB, contact_mass=1e6), F.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=1e5), 20.0),
+    "locked for ever": (
+        ss.Problem(replace(SLAB, driver_impedance=2e6), F.LinearSlipWeakening(0.8, 0.6, 0.1), initial_excess=1e5, far_stress=7e7),
+        5000.0,
+    ),
+}
+
+SLOW = ("moving levels", "moving levels, knots")
+"""Runs of seconds: the branches are worked out anew at every step."""
+
+
+def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
+    """What is not the same in two solutions, bit for bit."""
+    stores = zip(one.history.store._fields, one.history.store, other.history.store, strict=True)
+    found = [name for name, a, b in stores if a.shape != b.shape or a.tobytes() != b.tobytes()]
+    assert one.checkpoint is not None
+    assert other.checkpoint is not None
+    for name in ("state", "count", "branch", "crossings"):
+        a, b = getattr(one.checkpoint, name), getattr(other.checkpoint, name)
+        found += [] if np.array_equal(a, b, equal_nan=a.dtype.kind == "f") else [f"checkpoint {name}"]
+    ends = [(run.status, run.duration, run.history.duration, run.problem) for run in (one, other)]
+    return found + ([] if ends[0] == ends[1] else ["end"])

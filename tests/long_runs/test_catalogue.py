@@ -1,0 +1,196 @@
+"""A catalogue that is told while its history is forgotten is that of the whole history."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import signal
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import stickslip as ss
+from stickslip.evolution import layout as at
+from stickslip.evolution.drive import drive
+from stickslip.evolution.event_stream import EventStream
+from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.keeper import Orders
+from stickslip.evolution.report import Report
+from stickslip.evolution.tables import default_event_rate
+from stickslip.long_runs import catalogue as module
+from stickslip.long_runs.catalogue import CatalogueKeeper
+from stickslip.long_runs.rows import RowsInMemory
+from tests.long_runs.problems import RUNS, SLOW, bundled
+from tests.long_runs.test_resume import killed
+
+NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
+SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]
+
+
+def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
+    """Every number of two tables is the same, to the last digit, and so are their types."""
+    pd.testing.assert_frame_equal(one, other, check_exact=True)
+
+
+@pytest.mark.parametrize("name", [name for name in RUNS if name not in SLOW])
+@pytest.mark.parametrize("capacity", [64, 512])
+def test_it_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CAPACITY", capacity)
+    monkeypatch.setattr("stickslip.evolution.in_progress.FIRST_CAPACITY", capacity)
+    problem, duration = RUNS[name]
+    for rate in (None, 0.0):
+        table = ss.catalogue(problem, duration, event_rate=rate)
+        same(table, ss.simulate(problem, duration).catalogue(rate))
+        assert table.attrs["status"] == ss.simulate(problem, duration).status.name
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_files_hold_every_digit(suffix: str, tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    path = tmp_path / f"events.{suffix}"
+    table = ss.catalogue(problem, duration, path)
+    same(table, ss.simulate(problem, duration).catalogue())
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["events.checkpoint.nc", path.name]
+
+
+def test_netcdf_speaks_for_itself(tmp_path: Path) -> None:
+    ss.catalogue(*RUNS["slab that heals"], tmp_path / "events.nc")
+    with xr.open_dataset(tmp_path / "events.nc", engine="h5netcdf", decode_times=False) as file:
+        assert file.attrs["status"] == "finished"
+        assert 'kind = "linear-slip-weakening"' in file.attrs["scenario"]
+        assert [file[name].attrs["units"] for name in ("start", "slip", "peak_rate", "traction_drop")] == ["s", "m", "m s-1", "Pa"]
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
+    """Also where the end of the first run cut an event, whose row is made again."""
+    problem, duration = RUNS["slab that heals"]
+    whole = ss.simulate(problem, duration).catalogue()
+    for end in (0.5 * (whole.start[4] + whole.end[4]), 0.5 * (whole.end[4] + whole.start[5]), 0.6 * duration):
+        path = tmp_path / f"events.{suffix}"
+        first = ss.catalogue(problem, float(end), path)
+        assert len(first) < len(whole)
+        same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration), whole)
+        same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc"), whole)
+
+
+@pytest.mark.parametrize("events", [1, 5])
+def test_events_stop_it_where_they_stop_a_run(events: int, tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    short = ss.catalogue(problem, duration, tmp_path / "events.csv", events=events)
+    same(short, ss.simulate(problem, duration, events=events).catalogue())
+    assert short.attrs["status"] == "enough events"
+    longer = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", events=events + 2)
+    same(longer, ss.simulate(problem, duration, events=events + 2).catalogue())
+    same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration), ss.simulate(problem, duration).catalogue())
+
+
+def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten thousand cycles, of which the history would be two hundred thousand pieces."""
+    problem, duration = bundled("cycles-block", 1500.0)
+    run = RunInProgress.begin(problem, 1e-10)
+    monkeypatch.setattr(module.CatalogueKeeper, "note", lambda self, run, look: (look.tell(), self._remember(run)))
+    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par[at.RAMP]))
+    keeper = CatalogueKeeper.of(run, Orders(duration), stream)
+    keeper.rows = RowsInMemory()
+    capacities = {len(run.store.whole)}
+    for share in (0.01, 0.1, 1.0):
+        drive(run, share * duration, keeper)
+        run.count[at.TO_THE_END], run.before_end = 0, None
+        capacities.add(len(run.store.whole))
+    assert stream.told > 9_000
+    assert run.forgotten > 150_000
+    assert capacities == {512}
+
+
+def test_an_event_that_does_not_end_fills_the_room_and_says_so() -> None:
+    """A contact that creeps for ever above the event rate is one event, and its history has to be kept."""
+    problem = ss.Problem(ss.SpringBlock(1.0, 1.0, 10.0), ss.friction.SinusoidalSlip(0.5, 0.01, 1.0), 0.1, initial_excess=1e-3)
+    table = ss.catalogue(problem, 1e6, event_rate=1e-9, max_pieces=20_000)
+    assert table.attrs["status"] == "too many pieces"
+
+
+def test_progress_counts_what_was_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CAPACITY", 64)
+    problem, duration = RUNS["slab that heals"]
+    seen: list[Report] = []
+    table = ss.catalogue(problem, duration, progress=seen.append)
+    assert seen[-1].events == table.end.notna().sum()
+    assert seen[-1].pieces == len(ss.simulate(problem, duration).history)
+    assert {report.doing for report in seen} <= {"stuck", "creeping", "slipping"}
+    assert all(later.time >= earlier.time for earlier, later in pairwise(seen))
+
+
+LONG = """
+import signal, time
+import stickslip as ss
+import stickslip.evolution.drive as drive
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+problem = ss.load_scenario("cycles-slab").problem
+ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+@pytest.mark.parametrize(("suffix", "with_signal"), [("csv", "SIGKILL"), ("nc", "SIGKILL"), ("csv", "SIGINT"), ("nc", "SIGINT")])
+def test_killed_or_interrupted_it_ends_with_the_same_rows(suffix: str, with_signal: str, tmp_path: Path) -> None:
+    done = killed(LONG.format(suffix=suffix), tmp_path, "events.checkpoint.nc", signal.Signals[with_signal], times=3)
+    assert done.returncode == (0 if with_signal == "SIGINT" else -signal.SIGKILL)
+    checkpoint = tmp_path / "events.checkpoint.nc"
+    paused = module.Paused.read(checkpoint)
+    assert paused.stopped.status.name == ("interrupted" if with_signal == "SIGINT" else "under way")
+    end = paused.stopped.history.duration * 1.2
+    growing = paused.rows.growing
+    if with_signal == "SIGKILL":
+        with growing.open("a") as file:
+            file.write("1.5,2.5,half a row")  # what a process that dies while it writes leaves behind
+    same(ss.resume_catalogue(checkpoint, end), ss.simulate(paused.stopped.problem, end).catalogue())
+    assert not (tmp_path / "events.rows.csv").exists()
+
+
+def test_a_run_that_begins_anew_forgets_the_old_one(tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    for _ in range(2):
+        table = ss.catalogue(problem, duration, tmp_path / "events.csv")
+    same(table, ss.simulate(problem, duration).catalogue())
+
+
+def test_lost_rows_are_noticed(tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    ss.catalogue(problem, duration, tmp_path / "events.csv")
+    (tmp_path / "events.csv").write_text("start,end\n")
+    with pytest.raises(ss.InputError, match=r"events\.csv: has lost rows that the checkpoint counts on"):
+        ss.resume_catalogue(tmp_path / "events.checkpoint.nc", 2 * duration)
+
+
+def test_solution_and_checkpoint_are_not_taken_for_each_other(tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    ss.catalogue(problem, duration, tmp_path / "events.csv")
+    ss.simulate(problem, duration).save(tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a solution .*resume_catalogue"):
+        ss.resume(tmp_path / "events.checkpoint.nc")
+    with pytest.raises(ss.InputError, match=r"run\.nc: not a catalogue's checkpoint .*stickslip\.resume\)"):
+        ss.resume_catalogue(tmp_path / "run.nc")
+
+
+def test_bad_arguments(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, duration = RUNS["slab that heals"]
+    for arguments, message in (
+        ({"path": tmp_path / "events.txt"}, r"events\.txt: the name must end in \.csv, \.parquet or \.nc"),
+        ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
+        ({"event_rate": np.nan}, "event_rate must be a slip rate in m/s, got nan"),
+        ({"events": -1}, "catalogue: events must be a whole number above 0, got -1"),
+    ):
+        with pytest.raises(ss.InputError, match=message):
+            ss.catalogue(problem, duration, **arguments)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ss.InputError, match=r"events\.parquet: Parquet needs pyarrow \(pip install 'stickslip\[parquet\]'\)"):
+        ss.catalogue(problem, duration, tmp_path / "events.parquet")
+    assert list(tmp_path.iterdir()) == []

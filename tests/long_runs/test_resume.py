@@ -1,0 +1,215 @@
+"""A run that was stopped and taken up is the run that was not, bit for bit."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.evolution import layout as at
+from stickslip.evolution.checkpoint import Checkpoint
+from stickslip.evolution.drive import split_time
+from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.keeper import Orders, as_solution
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.report import Report
+from stickslip.evolution.setup import row_time
+from stickslip.evolution.status import UNDER_WAY
+from stickslip.storage import save_checkpoint
+from tests.long_runs.problems import RUNS, SLOW, differences
+
+
+def steps_of(problem: ss.Problem, duration: float) -> int:
+    """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
+    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    for steps in range(100_000):
+        code = run.advance(last, 1)
+        if code == at.FULL:
+            run.grow(10**6)
+        elif code != OUT_OF_BUDGET:
+            return steps
+    raise AssertionError("too long for a test")
+
+
+def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
+    """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
+    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    for step in range(100_000):
+        if step >= steps and run.length > 0:
+            break
+        if run.advance(last, 1) == at.FULL:
+            run.grow(10**6)
+    save_checkpoint(as_solution(run, Orders(duration), UNDER_WAY), path)
+    return run.stands()
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_stopped_anywhere_and_taken_up(name: str, tmp_path: Path) -> None:
+    problem, duration = RUNS[name]
+    whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
+    rng, steps = np.random.default_rng(len(name)), steps_of(problem, duration)
+    stops = {steps - 1} if name in SLOW else {1, 2, *rng.integers(1, steps + 1, 5).tolist(), steps}
+    for stop in stops:
+        stopped(problem, duration, int(stop), path)
+        assert ss.load(path).status.name == "under way"
+        assert differences(ss.resume(path), whole) == [], f"after {stop} of {steps} steps"
+        assert differences(ss.load(path), whole) == []
+
+
+def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
+    """At rest, in slip both explicit and implicit, on the way to a fold, within a piece, with crossings noted."""
+    met = set()
+    for problem, duration in RUNS.values():
+        run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+        for _ in range(3000):
+            if run.advance(last, 1) not in (OUT_OF_BUDGET, at.FULL) or run.length > 400:
+                break
+            count, state = run.count, run.state
+            met |= {"stick" if count[at.MODE] == 0 else "slip", f"at fold {count[at.AT_FOLD]}"}
+            met |= {"stiff"} if count[at.STIFF] else set()
+            met |= {"state"} if count[at.HAS_STATE] else set()
+            met |= {"leap"} if count[at.LEAP] > 1 else set()
+            met |= {"inside"} if 0.0 < state[at.XI] < 1.0 else set()
+            met |= {"crossings"} if run.follower.times else set()
+            met |= {"leaving"} if count[at.LEAVING] else set()
+    expected = {"stick", "slip", "at fold 0", "at fold 1", "stiff", "state", "leap", "inside", "crossings", "leaving"}
+    assert expected <= met, expected - met
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_finished_run_goes_on_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
+    problem, duration = RUNS[name]
+    whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
+    for share in (0.99,) if name in SLOW else np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
+        ss.simulate(problem, share * duration).save(path)
+        assert differences(ss.resume(path, duration), whole) == [], f"from {share} of the way"
+        assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
+
+
+def test_what_is_not_restored_is_noticed(tmp_path: Path) -> None:
+    """The comparison fails on a state that is a rounding error off."""
+    problem, duration = RUNS["slip law, slab"]
+    whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
+    stopped(problem, duration, 50, path)
+    half = ss.load(path)
+    assert half.checkpoint is not None
+    half.checkpoint.state[at.LAW_SLIP] *= 1.0 + 1e-15
+    save_checkpoint(half, path)
+    assert "rate" in differences(ss.resume(path), whole)
+
+
+@pytest.mark.parametrize("events", [1, 7, 30])
+def test_events_stop_a_run_where_the_last_one_is_known(events: int, tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    path = tmp_path / "run.nc"
+    whole = ss.simulate(problem, 10 * duration)
+    short = ss.simulate(problem, 10 * duration, events=events, checkpoint=path)
+    assert short.status.name == "enough events"
+    assert short.status.ok
+    assert short.events.end.notna().sum() == events
+    assert short.events.iloc[:events].equals(whole.events.iloc[:events])
+    seen: list[Report] = []
+    again = ss.simulate(problem, 10 * duration, events=events, progress=seen.append, checkpoint_every=0.0)
+    assert differences(again, short) == []
+    more = ss.resume(path, events=events + 5)
+    assert differences(more, ss.simulate(problem, 10 * duration, events=events + 5)) == []
+    assert differences(ss.resume(path, 10 * duration), replace(whole, events_wanted=None)) == []
+
+
+def test_fewer_events_than_there_were_are_refused(tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    ss.simulate(problem, duration, events=5, checkpoint=tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"run\.nc: the run has had 5 events already: it cannot stop after 3"):
+        ss.resume(tmp_path / "run.nc", events=3)
+
+
+def test_an_earlier_end_is_refused(tmp_path: Path) -> None:
+    problem, duration = RUNS["slip law, slab"]
+    ss.simulate(problem, duration, checkpoint=tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"run\.nc: the run has come to .* s already: a duration of 1 s lies before that"):
+        ss.resume(tmp_path / "run.nc", 1.0)
+
+
+def test_another_engine_is_refused(tmp_path: Path) -> None:
+    problem, duration = RUNS["slip law, slab"]
+    run = ss.simulate(problem, duration)
+    assert run.checkpoint is not None
+    other = replace(run, checkpoint=replace(run.checkpoint, engine="0123456789abcdef"))
+    other.save(tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"run\.nc: cannot be taken up: another version of stickslip's engine made it") as said:
+        ss.resume(tmp_path / "run.nc", 2 * duration)
+    assert "\n" not in str(said.value)
+    replace(run, checkpoint=None).save(tmp_path / "bare.nc")
+    with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be taken up: it does not hold where the engine stood"):
+        ss.resume(tmp_path / "bare.nc")
+    with pytest.raises(ss.InputError, match=r"none\.nc: no such file"):
+        ss.resume(tmp_path / "none.nc")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"events": 0}, "events must be a whole number above 0, got 0"),
+        ({"events": 2.5}, "events must be a whole number above 0, got 2.5"),
+        ({"checkpoint_every": -1.0}, "checkpoint_every must be a time in s, got -1.0"),
+        ({"checkpoint": "nowhere/run.nc"}, "nowhere/run.nc: cannot be written"),
+    ],
+)
+def test_bad_arguments(arguments: dict[str, float], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ss.InputError, match=message):
+        ss.simulate(*RUNS["slip law, slab"], **arguments)  # type: ignore[arg-type] # that is the point
+
+
+LONG = """
+import signal, time
+import stickslip as ss
+import stickslip.evolution.drive as drive
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+problem = ss.load_scenario("rate-and-state-block").problem
+ss.simulate(problem, 1e5 * ss.YEAR, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
+"""
+
+
+def killed(code: str, folder: Path, file: str, with_signal: signal.Signals, times: int = 1) -> subprocess.CompletedProcess[str]:
+    """Run code in a process of its own, and send a signal once its checkpoint has been renewed so often."""
+    process = subprocess.Popen([sys.executable, "-c", code], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    seen: set[int] = set()
+    for _ in range(6000):
+        if (folder / file).exists():
+            seen.add((folder / file).stat().st_mtime_ns)
+        if len(seen) > times or process.poll() is not None:
+            break
+        time.sleep(0.01)
+    assert process.poll() is None, process.communicate()[1]
+    process.send_signal(with_signal)
+    out, err = process.communicate(timeout=60)
+    return subprocess.CompletedProcess([], process.returncode, out, err)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+def test_kill_leaves_a_checkpoint_that_goes_on(tmp_path: Path) -> None:
+    killed(LONG, tmp_path, "run.nc", signal.SIGKILL, times=3)
+    begun = ss.load(tmp_path / "run.nc")
+    assert begun.status.name == "under way"
+    end = begun.history.duration * 1.1
+    assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGINT")
+def test_ctrl_c_leaves_a_solution_that_goes_on(tmp_path: Path) -> None:
+    done = killed(LONG, tmp_path, "run.nc", signal.SIGINT)
+    assert (done.returncode, done.stderr) == (0, "")
+    begun = ss.load(tmp_path / "run.nc")
+    assert begun.status.name == "interrupted"
+    end = begun.history.duration * 1.1
+    assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []

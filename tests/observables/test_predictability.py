@@ -1,0 +1,71 @@
+"""The growth of disturbances along a run, against runs that were really disturbed, and against the closed form of one echo."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.observables.predictability import predictability
+
+SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+TRIP = SLAB.two_way_time
+WEAKENING = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
+
+
+def run_of(excess: float, trips: float, driver: float = math.inf) -> ss.Solution:
+    body, far = replace(SLAB, driver_impedance=driver), {} if math.isinf(driver) else {"far_stress": 8e7}
+    return ss.simulate(ss.Problem(body, WEAKENING, pull_rate=0.1, initial_excess=excess, **far), trips * TRIP, rtol=1e-12)
+
+
+def amplification_at(solution: ss.Solution, time: float) -> float:
+    found = predictability(solution)
+    return float(found.amplification[np.searchsorted(found.time, time, side="right") - 1])
+
+
+def test_one_echo_in_closed_form() -> None:
+    """|1 - 2 Z / g'(v_B)| with g'(v_B) = Z (1 - 1/q^2) at the jump up, q^2 = alpha / alpha_c: 1.4876; relative 1e-9."""
+    run = ss.simulate(ss.Problem(SLAB, WEAKENING, initial_excess=1e-6), 1.5 * TRIP)
+    q2 = 1.0 / 0.196
+    assert amplification_at(run, 1.2 * TRIP) == pytest.approx(2.0 / (1.0 - 1.0 / q2) - 1.0, rel=1e-6)
+    assert amplification_at(run, 0.5 * TRIP) == 1.0
+
+
+@pytest.mark.parametrize("driver", [math.inf, 3e8, 1e6])
+def test_against_a_disturbed_run(driver: float) -> None:
+    """Loads of two runs that start 1e-4 Pa apart, after 3 to 60 round trips with several events: 1 % of their difference."""
+    push, trips = 1e-4, (0.4, 1.4, 3.4, 20.4, 50.4)
+    run, pushed = (run_of(excess, 60.0, driver) for excess in (1.0, 1.0 + push))
+    for trip in trips:
+        apart = abs(float(pushed.load(trip * TRIP) - run.load(trip * TRIP))) / push
+        if apart > 1e-3:  # else a rigid start only fades
+            assert amplification_at(run, trip * TRIP) == pytest.approx(apart, rel=1e-2)
+    assert predictability(run_of(1.0, 60.0)).largest > 2.0
+
+
+def test_the_horizon() -> None:
+    """Just above alpha_c an echo multiplies by 4e5 and the window is 3e-4 Pa wide: two echoes are beyond prediction."""
+    critical = ss.load_scenario("fig7-slab-critical")
+    found = predictability(ss.simulate(critical.problem, 20.0))
+    assert found.scale == pytest.approx(3e-4, rel=0.1)
+    assert found.largest > 1e4
+    assert found.horizon < 20.0
+    assert "only statistics" in found.text
+    calm = predictability(run_of(1.0, 5.0))
+    assert math.isinf(calm.horizon)
+    assert "throughout" in calm.text
+    assert 0.0 < calm.exponent < 1.0
+
+
+def test_other_problems_are_refused_in_one_line() -> None:
+    for body, law in (
+        (SLAB, ss.friction.SinusoidalSlip(1.0, 0.1, 5.0)),
+        (ss.SpringBlock(1.0, 1.0, 1.0), WEAKENING),
+        (replace(SLAB, contact_mass=1.0), WEAKENING),
+    ):
+        run = ss.simulate(ss.Problem(body, law, initial_excess=0.0), 1.0)
+        with pytest.raises(ss.InputError, match=r"^predictability: needs a slab[^\n]*$"):
+            predictability(run)

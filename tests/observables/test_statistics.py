@@ -1,0 +1,54 @@
+"""Statistics of small catalogues, worked out by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from tests.evolution.test_verified_numbers import SLAB, rate_law_slab
+
+TABLE = pd.DataFrame(
+    {
+        "end": [1.0, 3.0, 7.0, 8.0, np.nan],
+        "recurrence": [np.nan, 2.0, 4.0, 1.0, 5.0],
+        "slip": [1.0, 2.0, 3.0, 2.0, 100.0],
+    }
+)
+
+
+def test_by_hand() -> None:
+    found = ss.catalogue_statistics(TABLE)
+    assert list(found.index) == ["recurrence", "slip"]
+    recurrence, slip = found.loc["recurrence"], found.loc["slip"]
+    assert (recurrence["count"], recurrence["mean"], recurrence["median"]) == (4, 3.0, 3.0)
+    deviation = np.sqrt((1.0 + 1.0 + 4.0 + 4.0) / 3.0)
+    assert recurrence["deviation"] == pytest.approx(deviation, rel=1e-15, abs=0.0)
+    assert recurrence["variation"] == pytest.approx(deviation / 3.0, rel=1e-15, abs=0.0)
+    assert (slip["count"], slip["mean"], slip["smallest"], slip["largest"]) == (4, 2.0, 1.0, 3.0)  # not the one cut off
+    # 2, 4, 1 against 4, 1, 5: covariances -13/3 over (14/3 * 26/3)^(1/2), means 7/3 and 10/3
+    assert recurrence["next"] == pytest.approx(-19.0 / np.sqrt(14.0 * 26.0), rel=1e-12, abs=0.0)
+
+
+def test_equal_values_follow_each_other_without_correlation() -> None:
+    found = ss.catalogue_statistics(ss.load_scenario("cycles-block").run().events)
+    assert found.variation["recurrence"] < 1e-9
+    assert found.variation["slip"] < 1e-9
+    assert np.isnan(found.next["recurrence"])
+
+
+def test_too_few_events() -> None:
+    one = ss.catalogue_statistics(ss.simulate(rate_law_slab(), 12.0).events)
+    assert one.loc["recurrence", "count"] == 0
+    assert one.loc["slip", "mean"] == pytest.approx(23.4402332474, rel=1e-10, abs=0.0)
+    assert np.isnan(one.loc["slip", "deviation"])
+    none = ss.catalogue_statistics(ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0).events)
+    assert (none["count"] == 0).all()
+    assert none["mean"].isna().all()
+
+
+def test_energies_are_described_where_the_table_has_them() -> None:
+    run = ss.load_scenario("cycles-block").run()
+    found = ss.catalogue_statistics(run.catalogue(energies=True))
+    assert found.loc["released", "variation"] < 1e-9
