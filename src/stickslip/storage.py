@@ -153,7 +153,7 @@ def _history(solution: Solution) -> xr.Dataset:
         }
     )
     if len(history.creep):
-        about = {"columns": "start_row round_trips error", "units": "1 1 m", "long_name": "leaps over creep"}
+        about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
         dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}

@@ -163,7 +163,7 @@ def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-d
     """Leaps are in the table, in the summary and in the file; the waves within are not known."""
     solution = ss.simulate(printed(100), 300 * ROUND, creep_rtol=1e-4)
     again = ss.load(solution.save(tmp_path / "creep.nc"))
-    assert list(solution.creep.columns) == ["start", "end", "start_row", "round_trips", "error"]
+    assert list(solution.creep.columns) == ["start", "end", "start_row", "round_trips", "error", "time_error"]
     assert again.creep.equals(solution.creep)
     time = np.linspace(0.0, 300 * ROUND, 500)
     np.testing.assert_array_equal(again.slip(time), solution.slip(time))
@@ -176,9 +176,9 @@ def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-d
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"friction": F.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)}, "a law of slip alone"),
-        ({"body": replace(SLAB, driver_impedance=1e7)}, "rigid driver"),
-        ({"pull_rate": 0.0}, "pull rate"),
+        ({"friction": F.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)}, "a friction law of slip alone, HyperbolicRate is not"),
+        ({"body": replace(SLAB, driver_impedance=1e7)}, "a rigid driver"),
+        ({"pull_rate": 0.0}, "a pull rate that is not 0"),
     ],
 )
 def test_refused(changes: dict[str, object], message: str) -> None:

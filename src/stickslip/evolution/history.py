@@ -37,7 +37,7 @@ class Epoch(NamedTuple):
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""
 
-NO_LEAPS = np.empty((0, 3))
+NO_LEAPS = np.empty((0, 4))
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,8 @@ class History:
     duration: float
     epoch: Epoch = START
     creep: Floats = field(default_factory=NO_LEAPS.copy)
-    """Leaps over creep, one a row: round trips before it, round trips in it, bound of the error of slip (m)."""
+    """Leaps over creep, one a row: round trips before it, round trips in it, bounds of the error of slip (m) where it lands and of
+    the time (s) at which that slip is reached."""
 
     def seen_from(self, epoch: Epoch) -> History:
         """The same history with its times counted from another epoch."""

@@ -65,7 +65,8 @@ class Solution(Readings):
     @cached_property
     def creep(self) -> pd.DataFrame:
         """Leaps over creep (`simulate(..., creep_rtol=...)`), one row each: start and end (s), start_row (whole round trips before
-        it: it starts at this one's very beginning), round_trips in it, error (bound, of the slip where it lands, m).
+        it, without rounding), round_trips in it, error (bound, of the slip where it lands, m), time_error (the same in s: over the
+        slip rate there, by how much what comes next may be early or late).
 
         Within a leap slip is an average over round trips: right to the error, true slip weaves around it by half of what it grows
         in a round trip. Slip rate, traction and load are averages too.

@@ -274,18 +274,19 @@ def creep_table(history: History) -> pd.DataFrame:
     """One row a leap over creep."""
     import pandas as pd
 
-    row, trips, error = history.creep.T
+    row, trips, error, delay = history.creep.T
     start, end = history.seconds(row, np.zeros(len(row))), history.seconds(row + trips, np.zeros(len(row)))
-    table = pd.DataFrame({"start": start, "end": end, "start_row": row, "round_trips": trips, "error": error})
-    return table.astype({"start_row": int, "round_trips": int})
+    columns = {"start": start, "end": end, "start_row": row, "round_trips": trips, "error": error, "time_error": delay}
+    return pd.DataFrame(columns).astype({"start_row": int, "round_trips": int})
 
 
 def creep_note(creep: Floats) -> str:
     """One line on the leaps over creep of `History.creep`; empty where there are none."""
     if not len(creep):
         return ""
-    leaps, (_, trips, error) = len(creep), creep.T
-    return f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips, error of slip at most {error.max():.1e} m"
+    leaps, (_, trips, error, delay) = len(creep), creep.T
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips"
+    return f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
 
 
 def rule_in_force(problem: Problem) -> str:

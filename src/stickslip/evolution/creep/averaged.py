@@ -33,6 +33,7 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.evolution.creep.pattern import Pattern
+from stickslip.evolution.layout import Floats
 from stickslip.evolution.moving_branches import strength_change
 from stickslip.problem import Problem
 
@@ -90,6 +91,15 @@ class Creep:
     mean_bend: float  # its change in a round trip
     error: float  # of ubar, m
 
+    @property
+    def seen(self) -> float:
+        """Share of an amplitude that the range within two round trips shows at least.
+
+        Slip goes up and down as sin(2 x t / R) where x / tan(x) = 1 - room: twice in four round trips where room is 1, once where
+        it is 1/5, more slowly where it is less, and then 1 - cos(2 x) is what shows.
+        """
+        return min(1.0, 5.0 * self.room)
+
 
 @dataclass(frozen=True)
 class AveragedCreep:
@@ -130,9 +140,14 @@ class AveragedCreep:
         error = (sum(abs(term) for term in terms) + resting) / z2 / room
         return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
 
-    def swing(self, creep: Creep) -> float:
-        """Amplitude of slip (m) with which rates in the first round trip go up and down around their mean."""
-        return self.pattern.swing(creep.lift, self.impedance * creep.mean_rate) / self.impedance
+    def swing(self, creep: Creep, before: Floats) -> float:
+        """How far slip (m) goes up and down around its mean in the first round trip of a creep and the one before it.
+
+        `before`: slip (m) and duration (s) of each piece of slip of that one.
+        """
+        areas, lengths = self.pattern.shares(creep.lift)
+        slips, times = np.append(before[0], areas / self.impedance), np.append(before[1], lengths)
+        return float(np.ptp(np.cumsum([0.0, *(slips - creep.mean_rate * times)]))) / creep.seen
 
     def start(self) -> Creep:
         """The state at n = 0."""

@@ -14,6 +14,7 @@ from stickslip.evolution.creep.landing import Piece, landing
 from stickslip.evolution.creep.pattern import Pattern, monotone_parts
 from stickslip.evolution.creep.plan import Plan, Planner
 from stickslip.evolution.creep.scribe import Scribe, seen
+from stickslip.evolution.history import NO_LEAPS
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.setup import row_time
@@ -41,8 +42,8 @@ class CreepLeaps:
 
     problem: Problem
     tolerance: float
-    taken: list[tuple[int, int, float]] = field(default_factory=list)
-    """Round trips before each leap and in it, and a bound of the error of slip (m)."""
+    taken: list[tuple[float, ...]] = field(default_factory=list)
+    """What `History.creep` holds, of each leap."""
 
     def __post_init__(self) -> None:
         body = self.problem.body
@@ -56,11 +57,11 @@ class CreepLeaps:
 
     def table(self, count: Integers) -> Floats:
         """The leaps so far, as in `History.creep`."""
-        return np.array(self.taken[: count[at.CREEP_LEAPS]], float).reshape(-1, 3)
+        return np.array([*NO_LEAPS, *self.taken[: count[at.CREEP_LEAPS]]]).reshape(-1, NO_LEAPS.shape[1])
 
     def take_up(self, table: Floats) -> None:
         """The leaps of a run that goes on."""
-        self.taken = [(int(begun), int(trips), float(error)) for begun, trips, error in table]
+        self.taken = [tuple(leap) for leap in table.tolist()]
 
     def are_due(self, count: Integers, last_row: int) -> bool:
         """Whether the engine has paused for them."""
@@ -102,7 +103,13 @@ class CreepLeaps:
         """For a leap of at most so many round trips from the coming one on."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
-        return Planner(averaged, abs(float(run.state[at.SLIP_NOW])), self.tolerance, fastest, most)
+        return Planner(averaged, abs(float(run.state[at.SLIP_NOW])), self.tolerance, fastest, self._slips(run), most)
+
+    def _slips(self, run: RunInProgress) -> Floats:
+        """Slip (m) and duration (s) of each piece of slip in the last round trip."""
+        rows, store = self._previous(run.count), run.store
+        slips = self.direction * np.diff([*store.slip[rows], run.state[at.SLIP_NOW]])
+        return np.stack([slips, store.theta_to[rows] - store.theta_from[rows]])[:, store.mode[rows] != 0]
 
     def _averaged(self, run: RunInProgress) -> AveragedCreep:
         """Creep from the coming round trip on."""
@@ -120,7 +127,8 @@ class CreepLeaps:
         """Leap, and run exact round trips behind it; whether they go on as the leap did."""
         begun, slip = int(run.count[at.ROW]), float(run.state[at.SLIP_NOW])
         self._write(run, averaged, plan)
-        self.taken[run.count[at.CREEP_LEAPS] :] = [(begun, plan.trips, plan.error)]
+        delay = plan.error / plan.states[-1].rate * row_time(self.problem)
+        self.taken[run.count[at.CREEP_LEAPS] :] = [(begun, plan.trips, plan.error, delay)]
         run.count[at.CREEP_LEAPS] += 1
         if not self._goes_on(run, begun + plan.trips + 1 + CHECKED, last):
             return False

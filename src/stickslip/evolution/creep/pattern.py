@@ -107,16 +107,15 @@ class Pattern:
         areas, lengths = self._shares(lift, part, xi, rises)
         length, before = float(lengths.sum()), np.cumsum(lengths)
         steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), SMALLEST)
-        place = (before[part] - lengths[part] * rises) / max(length, SMALLEST)
+        place = np.clip((before[part] - lengths[part] * rises) / max(length, SMALLEST), 0.0, 1.0)
         return Above(float(areas.sum()), length, float(steep.sum()), float((steep * (place - 0.5) ** 2).sum()))
 
-    def swing(self, lift: float, mean: float) -> float:
-        """Of a lifted load the largest amplitude, up to any offset, of the integral of (what lies above zero - mean), Pa s."""
-        areas, lengths = self._shares(lift, *self._crossings(-lift))
-        return 0.5 * float(np.ptp(np.cumsum([0.0, *(areas - mean * lengths)])))
+    def shares(self, lift: float) -> tuple[Floats, Floats]:
+        """Area (Pa s) and length (s) above zero of each part, when the load is lifted by `lift` (Pa)."""
+        return self._shares(lift, *self._crossings(-lift))
 
     def _shares(self, lift: float, part: NDArray[np.intp], xi: Floats, rises: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """Area (Pa s) and length (s) above zero of each part of a lifted load, with its crossings."""
+        """The same, the crossings known."""
         inside = self.ends[0] >= -lift
         areas, lengths = self.whole * inside, self.width * inside
         covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]

@@ -13,8 +13,6 @@ from stickslip.evolution.layout import Floats
 SAFETY = 4.0
 """Bound of the error in sizes of the terms of second order (which are counted in: where all is smooth the error is a hundredth of
 them)."""
-SHARE = 1.0
-"""Amplitude of slip that goes up and down from one round trip to the next, in what slips meanwhile where slip has just begun."""
 SETTLED = 3.0
 """Largest slip rate at the start, in mean rates. Up to 2 there is no rest; what has slipped faster rests until the mean has
 caught up."""
@@ -50,17 +48,18 @@ class Planner:
     slipped: float  # before, since the start of the run, m
     tolerance: float
     fastest: float  # slip rate at the start, m/s
+    before: Floats  # see AveragedCreep.swing
     most: int  # round trips that there may be
     at_end: bool = False
     largest: float = 0.0  # of the terms of second order so far, m
-    swing: float = 0.0  # amplitude of slip from one round trip to the next so far, m
+    swing: float = 0.0  # range of slip that goes up and down from one round trip to the next so far, m
 
     def plan(self) -> Plan | None:
         """A leap, None if there is none."""
         start = self.averaged.start()  # its own error says little: rates next to 0 look like borders of slip for a round trip
         if start.room <= 0.0 or self.fastest > SETTLED * start.mean_rate:
             return None
-        self.swing = self.averaged.swing(start)
+        self.swing = self.averaged.swing(start, self.before)
         if self.swing > self._allowed(start):
             return None
         states, stride, growth = [start], FIRST_STRIDE * self.averaged.gain, LONGER
@@ -78,7 +77,7 @@ class Planner:
             states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
         if len(states) == 1:
             return None
-        return Plan(states, SAFETY * max(state.error for state in states[1:]) + self.swing)
+        return Plan(states, self.error(states[-1], 0.0))
 
     def error(self, state: Creep, swing: float) -> float:
         """Bound of the error of slip so far (m), the amplitude of slip from one round trip to the next given."""
@@ -88,7 +87,12 @@ class Planner:
         return self.tolerance * (self.slipped + state.slip)
 
     def _fits(self, state: Creep, swing: float) -> bool:
-        if state.room <= 0.0 or state.slip >= self.averaged.strength.room or self.error(state, swing) > self._allowed(state):
+        if (
+            state.room <= 0.0
+            or state.rate <= 0.0
+            or state.slip >= self.averaged.strength.room
+            or self.error(state, swing) > self._allowed(state)
+        ):
             return False
         self.at_end |= state.trips > self.most
         return state.trips <= self.most
@@ -113,17 +117,17 @@ class Planner:
 
 
 def swing_of(begin: Creep, middle: Creep, end: Creep) -> float:
-    """Amplitude of slip (m) that new slip leaves behind, which begins anywhere between 0 and twice the mean rate.
+    """Range of slip (m), twice its amplitude, that new slip leaves behind, which begins anywhere between 0 and twice the mean rate.
 
     What begins to slip within one round trip does so together. If the length that slips grows smoothly that is its growth in a
     round trip; growth that this does not explain may come all at once.
     """
     trips, growth = end.trips - begin.trips, max(end.length - begin.length, 0.0)
     widening = begin.widening, middle.widening, end.widening
-    if not (trips > 1.0 and max(widening) < np.inf):
-        return SHARE * end.mean_rate * growth
-    smooth = trips * (widening[0] + 4.0 * widening[1] + widening[2]) / 6.0
-    return SHARE * end.mean_rate * min(growth, max(widening) + abs(growth - smooth))
+    if trips > 1.0 and max(widening) < np.inf:
+        smooth = trips * (widening[0] + 4.0 * widening[1] + widening[2]) / 6.0
+        growth = min(growth, max(widening) + abs(growth - smooth))
+    return 2.0 * end.mean_rate * growth / end.seen
 
 
 def hermite(length: float, rise: float, first: float, last: float) -> Floats:
