@@ -63,7 +63,7 @@ def test_first_pulse_of_the_printed_slab() -> None:
     assert len(solution.history) < 50_000
 
 
-@pytest.mark.parametrize("tolerance", [1e-5, 1e-4, 1e-3])
+@pytest.mark.parametrize("tolerance", [2e-5, 1e-4, 1e-3])
 def test_slip_within_the_bound(tolerance: float) -> None:
     """A hundred times faster: averaged slip within the bound where a leap lands, within the tolerance all along."""
     exact, solution = brute_force(printed(100), 420), ss.simulate(printed(100), 420 * ROUND, creep_rtol=tolerance)
@@ -79,7 +79,9 @@ def test_slip_within_the_bound(tolerance: float) -> None:
 def test_time_of_the_pulse(tolerance: float, error: float) -> None:
     """Ten times faster, 134 million pieces by brute force: the error of the pulse's time (s) falls with the tolerance."""
     near = PULSE_BY_ENGINE[10]
-    assert pulse(ss.simulate(printed(10), near + 30, creep_rtol=tolerance), near) == pytest.approx(near, rel=0.0, abs=error)
+    solution = ss.simulate(printed(10), near + 30, creep_rtol=tolerance)
+    assert pulse(solution, near) == pytest.approx(near, rel=0.0, abs=error)
+    assert error < float(solution.creep.time_error.iloc[0]) < 0.01 * near
 
 
 def test_exact_before_anything_dynamic() -> None:

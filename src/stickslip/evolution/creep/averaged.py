@@ -141,13 +141,15 @@ class AveragedCreep:
         return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
 
     def swing(self, creep: Creep, before: Floats) -> float:
-        """How far slip (m) goes up and down around its mean in the first round trip of a creep and the one before it.
+        """Amplitude of slip (m) around its mean, or more: from the range in the first round trip and the one before.
 
-        `before`: slip (m) and duration (s) of each piece of slip of that one.
+        `before`: offsets (s) of the ends of the pieces of that one, and slip (m) since its start.
         """
-        areas, lengths = self.pattern.shares(creep.lift)
-        slips, times = np.append(before[0], areas / self.impedance), np.append(before[1], lengths)
-        return float(np.ptp(np.cumsum([0.0, *(slips - creep.mean_rate * times)]))) / creep.seen
+        areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(creep.lift))
+        ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
+        first = before[1] - creep.mean_rate * np.interp(before[0], ends, lengths)
+        second = first[-1] + areas / self.impedance - creep.mean_rate * lengths
+        return float(np.ptp([0.0, *first, *second])) / creep.seen
 
     def start(self) -> Creep:
         """The state at n = 0."""

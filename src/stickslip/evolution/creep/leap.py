@@ -103,13 +103,13 @@ class CreepLeaps:
         """For a leap of at most so many round trips from the coming one on."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
-        return Planner(averaged, abs(float(run.state[at.SLIP_NOW])), self.tolerance, fastest, self._slips(run), most)
+        return Planner(averaged, abs(float(run.state[at.SLIP_NOW])), self.tolerance, fastest, self._before(run), most)
 
-    def _slips(self, run: RunInProgress) -> Floats:
-        """Slip (m) and duration (s) of each piece of slip in the last round trip."""
+    def _before(self, run: RunInProgress) -> Floats:
+        """The last round trip as `AveragedCreep.swing` takes it."""
         rows, store = self._previous(run.count), run.store
-        slips = self.direction * np.diff([*store.slip[rows], run.state[at.SLIP_NOW]])
-        return np.stack([slips, store.theta_to[rows] - store.theta_from[rows]])[:, store.mode[rows] != 0]
+        slip = np.append(store.slip[rows], run.state[at.SLIP_NOW])
+        return np.stack([store.theta_to[rows], self.direction * (slip[1:] - slip[0])])
 
     def _averaged(self, run: RunInProgress) -> AveragedCreep:
         """Creep from the coming round trip on."""
