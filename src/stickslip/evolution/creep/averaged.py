@@ -140,12 +140,13 @@ class AveragedCreep:
         error = (sum(abs(term) for term in terms) + resting) / z2 / room
         return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
 
-    def swing(self, creep: Creep, before: Floats) -> float:
+    def swing(self, lift: float, creep: Creep, before: Floats) -> float:
         """Amplitude of slip (m) around its mean, or more: from the range in the first round trip and the one before.
 
-        `before`: offsets (s) of the ends of the pieces of that one, and slip (m) since its start.
+        `lift` is that of the first round trip, the mean that of a creep near there; `before`: offsets (s) of the ends of the pieces
+        of the one before, and slip (m) since its start.
         """
-        areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(creep.lift))
+        areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
         ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
         first = before[1] - creep.mean_rate * np.interp(before[0], ends, lengths)
         second = first[-1] + areas / self.impedance - creep.mean_rate * lengths

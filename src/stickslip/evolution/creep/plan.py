@@ -57,9 +57,10 @@ class Planner:
     def plan(self) -> Plan | None:
         """A leap, None if there is none."""
         start = self.averaged.start()  # its own error says little: rates next to 0 look like borders of slip for a round trip
-        if start.room <= 0.0 or self.fastest > SETTLED * start.mean_rate:
+        near = start, self.averaged.at(start.lift + self.averaged.gain)
+        if min(state.room for state in near) <= 0.0 or self.fastest > SETTLED * start.mean_rate:
             return None
-        self.swing = self.averaged.swing(start, self.before)
+        self.swing = max(self.averaged.swing(start.lift, state, self.before) for state in near)
         if self.swing > self._allowed(start):
             return None
         states, stride, growth = [start], FIRST_STRIDE * self.averaged.gain, LONGER
