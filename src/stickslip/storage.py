@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 import stickslip
 from stickslip.errors import InputError
 from stickslip.evolution.checkpoint import ARRAYS, Checkpoint
-from stickslip.evolution.history import History
+from stickslip.evolution.history import NO_LEAPS, History
 from stickslip.evolution.layout import Store
 from stickslip.evolution.readings import Curve, Readings
 from stickslip.evolution.solution import Solution
@@ -70,13 +70,12 @@ def provenance(solution: Solution) -> dict[str, Any]:
 
 def origin(solution: Solution) -> dict[str, Any]:
     """The same without what has to be worked out."""
-    scenario = Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted)
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
-        "scenario": scenario.to_toml(),
+        "scenario": Scenario.of(solution).to_toml(),
         "selection_rule": solution.problem.rule,
         "rtol": solution.rtol,
         "duration": solution.duration,
@@ -171,6 +170,9 @@ def _history(solution: Solution) -> xr.Dataset:
             "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
         }
     )
+    if len(history.creep):
+        about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
+        dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
         dataset["history_state"] = (("piece", "term"), store.state, about)
@@ -256,13 +258,14 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, load.shape[1]))
     duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
     store = Store(whole, real, load, rate, state)
-    history = History(store, scenario.problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached))
+    creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
+    history = History(store, scenario.problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached), creep=creep)
     status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
     checkpoint = None
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, scenario.events)
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

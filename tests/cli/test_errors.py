@@ -24,6 +24,12 @@ CASES = [
     (["run", "fig6-slab", "--duration", "0"], "run: --until must be greater than 0 s, got 0"),
     (["run", "fig6-slab", "--duration", "nan"], "run: --until must be finite, got nan"),
     (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
+    (
+        ["run", "fig6-slab", "--creep-rtol", "1e-6"],
+        "run: --creep-rtol must be 0 here: leaps over creep need a friction law of slip",
+    ),
+    (["run", "fig6-block-printed", "--creep-rtol", "1e-6"], "run: --creep-rtol must be 0 here: leaps over creep need a slab"),
+    (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
     (["run", "fig6-slab", "--rtol", "much"], "Invalid value for '--rtol'"),
     (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
     (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),

@@ -59,7 +59,8 @@ REFUSED = [
     (["run", "cycles-block", "--catalog", "events.txt"], "--catalog events.txt: the name must end in .csv or .parquet or .nc"),
     (["run", "cycles-block", "--catalog", "no/events.csv"], "--catalog no/events.csv: there is no folder no"),
     (["run", "cycles-block", "--catalog", "a.csv", "--out", "a.nc"], "run: a catalogue keeps slip events only, no history: leave"),
-    (["run", "--resume", "run.nc", "--rtol", "1e-8"], "run: --resume goes on as the run began: leave --rtol, --selection and"),
+    (["run", "--resume", "run.nc", "--rtol", "1e-8"], "run: --resume goes on as the run began: leave --rtol, --creep-rtol,"),
+    (["run", "--resume", "run.nc", "--creep-rtol", "1e-6"], "run: --resume goes on as the run began: leave --rtol, --creep-rtol,"),
     (["run", "--resume", "none.nc"], "none.nc: no such file"),
     (["run", "--resume", "bad.nc"], "bad.nc: not a netCDF file that can be read"),
     (["run", "--resume", "run.nc", "--until", "1 s"], "run.nc: the run has come to"),
@@ -78,6 +79,30 @@ def test_one_line_and_nothing_changed(command, tmp_path: Path, arguments: list[s
     assert shown.err.count("\n") == 1
     assert (tmp_path / "run.nc").read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.nc", "run.nc"]
+
+
+def test_creep_is_leapt_over(command, tmp_path: Path):
+    """By the option and by the scenario's key; the summary says so; a run and a catalogue go on."""
+    shown = command("run", "fig5-slab-printed", "--until", "2.6 days", "--creep-rtol", "1e-5", "--out", "run.nc")
+    assert shown.code == 0
+    assert re.search(
+        r"creep_rtol 1e-05: 1 leap over 39\d\d\d round trips, error at most 1\.\de-10 m of slip, 0\.\d+ s of time", shown.out
+    )
+    text = command("new", "fig5-slab-printed").out.replace("[run]\n", "[run]\ncreep_rtol = 1e-5\n")
+    (tmp_path / "mine.toml").write_text(text)
+    assert "creep_rtol" in command("check", "mine.toml").out
+    scenario = ss.load_scenario(tmp_path / "mine.toml")
+    (tmp_path / "again.toml").write_text(scenario.to_toml())
+    assert ss.load_scenario(tmp_path / "again.toml") == scenario
+    assert "creep_rtol 1e-05: no leaps over creep" in command("run", "mine.toml").out
+    for option in (["--out", "again.nc"], ["--catalog", "events.csv"]):
+        assert command("run", "mine.toml", "--until", "2.6 days", *option).code == 0
+    assert differences(ss.load(tmp_path / "again.nc"), ss.load(tmp_path / "run.nc")) == []
+    whole = ss.simulate(scenario.problem, 3 * 86_400.0, creep_rtol=1e-5)
+    for file in ("run.nc", "events.checkpoint.nc"):
+        assert "2 leaps over 4" in command("run", "--resume", file, "--until", "3 days").out
+    assert differences(ss.load(tmp_path / "run.nc"), whole) == []
+    pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole.events, check_exact=True)
 
 
 @pytest.mark.parametrize("events", ['"5"', "0", "2.5", "true"])

@@ -34,7 +34,7 @@ def intervals(count: int, seed: int) -> at.Store:
 @pytest.mark.parametrize("seed", range(5))
 def test_the_last_piece_at_a_phase(seed: int) -> None:
     store = intervals(60, seed)
-    phases, phase = Phases.of(store), (np.arange(40) + 0.5) / 40.0
+    phases, phase = Phases.of(store, 1.0), (np.arange(40) + 0.5) / 40.0
     for upto in (0, 7, 59):
         covers = (store.theta_from[: upto + 1] < phase[:, None]) & (phase[:, None] < store.theta_to[: upto + 1])
         last = np.where(covers.any(axis=1), upto - np.argmax(covers[:, ::-1], axis=1), -1)
@@ -49,13 +49,13 @@ def test_at_an_edge_the_side_decides() -> None:
     store = at.new_store(2)
     store.theta_from[:], store.theta_to[:] = [0.0, 0.5], [0.5, 1.0]
     edge, upto = np.array([0.5]), np.array([1])
-    assert Phases.of(store).latest(edge, upto, "left").tolist() == [0]
-    assert Phases.of(store).latest(edge, upto, "right").tolist() == [1]
+    assert Phases.of(store, 1.0).latest(edge, upto, "left").tolist() == [0]
+    assert Phases.of(store, 1.0).latest(edge, upto, "right").tolist() == [1]
 
 
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
 def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
-    """Before each round trip that is met: all that stands in the slab keeps within the strength up to there, sampled; abs 1e-6 Pa."""
+    """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
     run, last, met = RunInProgress.begin(problem, 1e-10), split_time(2000.0, row_time(problem)), 0
     impedance, ramp = SLAB.impedance, float(run.setup.par[at.RAMP])
     while run.advance(last, 1) == -1 and met < 150:
@@ -63,7 +63,7 @@ def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
         if not between_trips or run.count[at.NEW_FROM] != run.length or run.count[at.MODE] != 0:
             continue
         store = at.trimmed(run.store, run.length)
-        piece, low, high = Phases.of(store).standing(run.length - 1)
+        piece, low, high = Phases.of(store, row_time(problem)).standing(run.length - 1)
         assert low[0] == 0.0
         assert (low[1:] == high[:-1]).all()
         leaves = np.polynomial.polynomial.polyval(PLACES, (store.load[piece] - 2.0 * impedance * store.rate[piece]).T)

@@ -31,6 +31,7 @@ duration = "12 s"
 LENGTH = 'must be a number in m or a text with a unit such as "10 m"'
 DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'
 STRESS = 'must be a number in Pa or a text with a unit such as "10 Pa"'
+CREEP = "must be 0 (no leaps over creep, every round trip is run) or at most 0.01"
 FAR = "far_stress and far_stress_rate need a slab with a finite driver_impedance"
 
 CASES = [
@@ -74,6 +75,13 @@ CASES = [
     ('"12 s"', "-3", "[run] duration must be greater than 0 s, got -3"),
     ('"12 s"', '"12 s"\nrtol = 0.5', "[run] rtol must be at most 0.01, got 0.5"),
     ('"12 s"', '"12 s"\nrtol = 0.0', "[run] rtol must be at least 1e-15 (a pure number), got 0"),
+    ('"12 s"', '"12 s"\ncreep_rtol = -1e-6', "[run] creep_rtol must be at least 0 (a pure number), got -1e-06"),
+    ('"12 s"', '"12 s"\ncreep_rtol = 0.5', f"[run] creep_rtol {CREEP}, got 0.5"),
+    (
+        '"12 s"',
+        '"12 s"\ncreep_rtol = 1e-6',
+        "[run] creep_rtol must be 0 here: leaps over creep need a friction law of slip alone, HyperbolicRate is not",
+    ),
     ('"12 s"', '"12 s"\nselection = "maxwel"', "[run] selection 'maxwel' is unknown; did you mean 'maxwell'?"),
     (
         '"12 s"',

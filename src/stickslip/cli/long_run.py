@@ -28,6 +28,7 @@ class Request:
     until: str | None
     events: int | None
     rtol: float | None
+    creep_rtol: float | None
     selection: str | None
     resume: Path | None
     out: Path | None
@@ -41,8 +42,9 @@ class Request:
         self.pictures.check()
         if self.name is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
-        if self.resume is not None and (self.rtol is not None or self.selection is not None or self.catalog is not None):
-            raise InputError("run: --resume goes on as the run began: leave --rtol, --selection and --catalog away")
+        as_begun = (self.rtol, self.creep_rtol, self.selection, self.catalog)
+        if self.resume is not None and any(option is not None for option in as_begun):
+            raise InputError("run: --resume goes on as the run began: leave --rtol, --creep-rtol, --selection and --catalog away")
         if self.keeps_events_only and (self.out or self.pictures.wanted):
             options = ", ".join(["--out"] * (self.out is not None) + self.pictures.wanted)
             raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
@@ -77,6 +79,7 @@ class Request:
 
     def scenario(self) -> Scenario:
         """The scenario with what the options change. Raises InputError."""
+        from stickslip.evolution.creep.conditions import check_creep_rtol
         from stickslip.scenarios.scenario import load_scenario
         from stickslip.scenarios.schema import check_rtol
         from stickslip.selection import names, unknown
@@ -86,6 +89,8 @@ class Request:
         changes: dict[str, Any] = {"duration": self.duration, "events": self.wanted_events}
         if self.rtol is not None:
             changes["rtol"] = check_rtol(self.rtol, "run", "--rtol")
+        if self.creep_rtol is not None:
+            changes["creep_rtol"] = check_creep_rtol(loaded.problem, self.creep_rtol, "run", "--creep-rtol")
         if self.selection is not None:
             if self.selection not in names():
                 raise InputError(f"run: --selection '{self.selection}' {unknown(self.selection)}")
@@ -101,36 +106,34 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
     from stickslip.long_runs.resume import resume
+    from stickslip.scenarios.scenario import Scenario
     from stickslip.storage import load
 
     check_same(request, load(request.resume).problem)
     with progress(request.resume.stem) as report:
         solution = resume(request.resume, request.duration, events=request.wanted_events, progress=report, checkpoint=request.out)
-    return as_scenario(solution, request.resume), solution
+    return Scenario.of(solution, request.resume.stem), solution
 
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run without a history, from the start or from where it stopped. Raises InputError."""
+    from stickslip.evolution.in_progress import RunInProgress
+    from stickslip.evolution.keeper import Orders
     from stickslip.long_runs.catalogue import Paused, begin
+    from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
         chosen = request.scenario()
         assert request.catalog is not None
         with progress(chosen.name) as report:
-            return chosen, begin(chosen.problem, chosen.duration, chosen.rtol, chosen.events, request.catalog, report)
+            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol)
+            return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog)
     paused = Paused.read(request.resume)
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:
         found = paused.go_on(request.duration, request.wanted_events, report)
     goal = paused.stopped.duration if request.duration is None else request.duration
-    return replace(as_scenario(paused.stopped, request.resume), duration=goal), found
-
-
-def as_scenario(solution: Solution, file: Path) -> Scenario:
-    """What a run was a run of."""
-    from stickslip.scenarios.scenario import Scenario
-
-    return Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted, name=file.stem)
+    return replace(Scenario.of(paused.stopped, request.resume.stem), duration=goal), found
 
 
 def check_same(request: Request, problem: Problem) -> None:

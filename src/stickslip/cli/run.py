@@ -54,6 +54,14 @@ def run(
         typer.Option(help="Go on with the run in a file of --out, or a checkpoint of --catalog.", show_default=False),
     ] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    creep_rtol: Annotated[
+        float | None,
+        typer.Option(
+            help="Leap over slow creep between pulses (a slab under a law of slip), with an error of slip of at most this "
+            "times the slip so far: 1e-6, say. 0 runs every round trip.",
+            show_default=False,
+        ),
+    ] = None,
     selection: Annotated[
         str | None,
         typer.Option(
@@ -73,6 +81,7 @@ def run(
       stickslip run mine.toml --out mine.nc --figure mine.png
       stickslip run fig6-slab --until "480 years" --selection maxwell
       stickslip run fig6-slab --space-time waves.png --animation slab.gif
+      stickslip run fig5-slab-printed --until "3 days" --creep-rtol 1e-6
       stickslip run cycles-block --until "10000 years" --catalog events.csv
       stickslip run --resume mine.nc --until "1000 years"
 
@@ -86,7 +95,7 @@ def run(
     from stickslip.cli.summary import show_catalogue, show_solution
 
     drawn = Pictures(figure, path, catalog_figure, space_time, animation)
-    request = Request(scenario, until, events, rtol, selection, resume, out, catalog, drawn)
+    request = Request(scenario, until, events, rtol, creep_rtol, selection, resume, out, catalog, drawn)
     request.check()
     if request.keeps_events_only:
         chosen, found = list_events(request)

@@ -27,7 +27,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     screen, force = console(), scenario.problem.load_unit
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
-    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    _say_how(screen, scenario, solution.creep_note)
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
@@ -44,12 +44,19 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen = console()
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
-    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    _say_how(screen, scenario, found.creep_note)
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
     if found.horizon_note:
         screen.print(f"predictability: {found.horizon_note}", soft_wrap=True)
     for file in found.files:
         screen.print(f"written: {file}", soft_wrap=True)
+
+
+def _say_how(screen: Console, scenario: Scenario, creep: str) -> None:
+    """Duration, tolerances, and leaps over creep, if they were allowed."""
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    if scenario.creep_rtol > 0.0:
+        screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
 
 
 def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:

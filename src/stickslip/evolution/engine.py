@@ -208,6 +208,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
     NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. END_AHEAD: what
     comes next depends on where the run ends; the caller sets TO_THE_END and goes on. Up to there a longer run is the same.
+    PAUSED: row PAUSE_AT, or one behind it, comes next.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """
@@ -233,6 +234,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             if not next_piece(run):
                 if not end_row(run, rest_limit(run), last_row):
                     return at.END_AHEAD
+                if run.counts[at.ROW] >= run.counts[at.PAUSE_AT]:
+                    return at.PAUSED
                 continue
             if run.counts[at.FOLDS_MOVE] == 1:
                 continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -56,6 +56,8 @@ BLOCK = 1024
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""
 
+NO_LEAPS = np.empty((0, 4))
+
 
 @dataclass(frozen=True)
 class Moments:
@@ -101,6 +103,9 @@ class History:
     ramp: float
     duration: float
     epoch: Epoch = START
+    creep: Floats = field(default_factory=NO_LEAPS.copy)
+    """Leaps over creep, one a row: round trips before it, round trips in it, bounds of the error of slip (m) where it lands and of
+    the time (s) at which that slip is reached."""
 
     def seen_from(self, epoch: Epoch) -> History:
         """The same history with its times counted from another epoch."""
@@ -128,6 +133,10 @@ class History:
 
     def __len__(self) -> int:
         return len(self.store.whole)
+
+    def is_averaged(self, row: int) -> bool:
+        """Whether a stored row is a leap over creep: its pieces are averages over round trips."""
+        return bool((self.creep[:, 0] == row).any())
 
     def find(self, time: Floats, side: Side) -> Moments:
         """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
@@ -176,7 +185,7 @@ class History:
     @cached_property
     def phases(self) -> Phases:
         """Its pieces, by phase."""
-        return Phases.of(self.store)
+        return Phases.of(self.store, self.row_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """What stands in the body at the end of a row: pieces in order of phase, each from where to where in the row (s)."""

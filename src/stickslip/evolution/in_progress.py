@@ -9,8 +9,10 @@ import numpy as np
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint, engine
+from stickslip.evolution.creep.leap import CreepLeaps
 from stickslip.evolution.echoes import Echoes, new_echoes, replant
 from stickslip.evolution.echoes import resized as with_room
+from stickslip.evolution.history import NO_LEAPS, History
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.phases import standing_behind
@@ -35,6 +37,7 @@ class RunInProgress:
     store: Store
     echoes: Echoes
     follower: RuleFollower
+    leaps: CreepLeaps | None = None
     before_end: Checkpoint | None = None
     forgotten: int = 0
 
@@ -42,20 +45,25 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(cls, problem: Problem, rtol: float) -> Self:
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float = 0.0) -> Self:
         """At t = 0."""
         setup, state, count = prepare(problem, rtol)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
+        leaps = CreepLeaps(problem, creep_rtol) if creep_rtol > 0.0 else None
+        if leaps is not None:
+            leaps.begin(count)
         scratch, echoes = np.zeros((WORK_ROWS, at.TERMS)), new_echoes(FIRST_CAPACITY)
-        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower)
+        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower, leaps)
 
     @classmethod
-    def at_checkpoint(cls, problem: Problem, rtol: float, store: Store, checkpoint: Checkpoint) -> Self:
-        """Where another run stood; `store` is its history, from which nothing is changed."""
-        run = cls.begin(problem, rtol)
+    def at_checkpoint(cls, history: History, rtol: float, creep_rtol: float, checkpoint: Checkpoint) -> Self:
+        """Where another run stood; in its history nothing is changed."""
+        run = cls.begin(history.problem, rtol, creep_rtol)
+        if run.leaps is not None:
+            run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        run.store, run.echoes = at.resized(store, checkpoint.length, capacity), new_echoes(capacity)
+        run.store, run.echoes = at.resized(history.store, checkpoint.length, capacity), new_echoes(capacity)
         run.restore(checkpoint)
         return run
 
@@ -73,7 +81,20 @@ class RunInProgress:
         xi, speed, bend = self.state[[at.XI, at.SPEED, at.BEND]]
         return float(self.count[at.ROW] * row_time(self.problem) + self.state[at.THETA_FROM] + xi * (speed + xi * bend))
 
+    @property
+    def creep(self) -> Floats:
+        """Leaps over creep so far, as in `History.creep`."""
+        return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
+
     def advance(self, last: tuple[int, float], budget: int) -> int:
+        """Go on by one call of the engine, or by one leap over creep. Returns the code of `engine.advance`."""
+        if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
+            self.leaps.at_row_end(self, last)
+            return OUT_OF_BUDGET
+        code = self.step(last, budget)
+        return OUT_OF_BUDGET if code == at.PAUSED else code
+
+    def step(self, last: tuple[int, float], budget: int) -> int:
         """As `engine.advance`; the branches of a law of slip and slip rate are renewed where they are due."""
         code = self.follower.advance(self._table, self.store, last, budget)
         if code != at.NEED_BRANCHES:

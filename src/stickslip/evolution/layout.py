@@ -43,7 +43,11 @@ HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 
 IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
 SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
 LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip began; slips beyond resolution, less others
-COUNTS = 38
+PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
+COUNTS = 41
+
+NEVER = 2**62
+"""No row."""
 
 # ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
 K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
@@ -53,7 +57,7 @@ MET, BROUGHT = 1, 2
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES = range(7)
+FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED = range(8)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------

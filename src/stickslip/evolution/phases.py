@@ -87,10 +87,11 @@ class Phases:
     members: Integers
 
     @classmethod
-    def of(cls, store: Store) -> Self:
-        """Of the pieces of a history."""
-        edges = np.unique(np.concatenate([store.theta_from, store.theta_to]))
-        first, past = (np.searchsorted(edges, theta) for theta in (store.theta_from, store.theta_to))
+    def of(cls, store: Store, row_time: float) -> Self:
+        """Of the pieces of a history with rows so long (s). Leaps over creep, which are longer, are averages, and stand nowhere."""
+        stands = store.theta_to <= row_time
+        edges = np.unique(np.concatenate([store.theta_from[stands], store.theta_to[stands]]))
+        first, past = (np.where(stands, np.searchsorted(edges, theta), 0) for theta in (store.theta_from, store.theta_to))
         leaves = 1 << max(len(edges) - 2, 0).bit_length()
         counts = np.zeros(2 * leaves, np.int64)
         _collect(first, past, leaves, counts, np.empty(0, np.int64))
@@ -126,7 +127,7 @@ def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Fl
     while True:
         first = max(len(store.whole) - looked, 0)
         recent = trimmed(store, len(store.whole), first)
-        piece, low, high = Phases.of(recent).standing(len(recent.whole) - 1)
+        piece, low, high = Phases.of(recent, row_time).standing(len(recent.whole) - 1)
         if first == 0 or (low[0] == 0.0 and high[-1] == row_time and np.array_equal(low[1:], high[:-1])):
             return first + piece, low, high
         looked *= 4

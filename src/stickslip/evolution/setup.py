@@ -167,6 +167,7 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     state[at.STATE_NOW] = problem.state
     if not problem.friction.sticks:
         count[at.MODE] = 1 if problem.load >= 0.0 else -1
+    count[at.PAUSE_AT] = at.NEVER
     count[at.FOLDS_MOVE] = folds_move(problem)
     count[at.KNOTS_IN_RATE] = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

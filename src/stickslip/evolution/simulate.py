@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from stickslip.errors import InputError
+from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.drive import drive
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
@@ -20,6 +21,7 @@ def simulate(
     duration: float,
     rtol: float = 1e-10,
     *,
+    creep_rtol: float = 0.0,
     events: int | None = None,
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
@@ -31,10 +33,17 @@ def simulate(
     Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time. A run of
     which a `checkpoint` file (.nc) is kept, renewed every `checkpoint_every` seconds of wall clock, can be taken up again by
     `stickslip.resume`, also after it has been killed; at the end the file holds the solution. rtol lies between 1e-15 and 1e-2.
-    Raises InputError for an argument out of range, or a contact that cannot even start.
+
+    Under a law of slip a slab may creep for days between pulses, slipping a little in each round trip. With creep_rtol (up to
+    1e-2) the run leaps over creep, with an error of slip of at most creep_rtol times the slip since the start, and is exact
+    before and after; `solution.creep` lists the leaps. With 0 every round trip is run.
+
+    Raises InputError for an argument out of range, a contact that cannot even start, or creep_rtol in a problem that has no
+    such leaps.
     """
     check_run("simulate", duration, rtol, events, checkpoint_every)
-    run = RunInProgress.begin(problem, rtol)
+    check_creep_rtol(problem, creep_rtol, "simulate")
+    run = RunInProgress.begin(problem, rtol, creep_rtol)
     kept = None if checkpoint is None else Path(checkpoint)
     return go_on(run, Orders(duration, events, progress, kept, checkpoint_every, max_pieces))
 

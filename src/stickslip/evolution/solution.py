@@ -15,7 +15,7 @@ from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.history import History
 from stickslip.evolution.readings import Readings
 from stickslip.evolution.status import Status
-from stickslip.evolution.tables import default_event_rate, events_table
+from stickslip.evolution.tables import creep_note, creep_table, default_event_rate, events_table
 from stickslip.evolution.window import Window, window_around
 from stickslip.problem import Problem
 
@@ -42,6 +42,8 @@ class Solution(Readings):
     """From where the run, or a longer one, can go on (`stickslip.resume`)."""
     events_wanted: int | None = None
     """Slip events after which the run was to stop."""
+    creep_rtol: float = 0.0
+    """Tolerance of leaps over creep; 0 where every round trip was run."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
@@ -59,6 +61,22 @@ class Solution(Readings):
 
         rate = default_event_rate(self.problem) if event_rate is None else event_rate
         return events_table(self.history, rate, event_energies if energies else None)
+
+    @cached_property
+    def creep(self) -> pd.DataFrame:
+        """Leaps over creep (`simulate(..., creep_rtol=...)`), one row each: start and end (s), start_row (whole round trips before
+        it, without rounding), round_trips in it, error (bound, of the slip where it lands, m), time_error (the same in s: over the
+        slip rate there, by how much what comes next may be early or late).
+
+        Within a leap slip is an average over round trips: right to the error, true slip weaves around it by half of what it grows
+        in a round trip. Slip rate, traction and load are averages too.
+        """
+        return creep_table(self.history)
+
+    @property
+    def creep_note(self) -> str:
+        """One line on the leaps over creep; empty where there are none."""
+        return creep_note(self.history.creep)
 
     def window(self, event: int | pd.Series = 0, before: float | None = None, after: float | None = None) -> Window:
         """The run around one slip event, in local time: seconds since the event began, sharp however late that is.
@@ -116,6 +134,7 @@ class Solution(Readings):
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
+            *([("creep", self.creep_note)] if self.creep_note else []),
             *([("trapped", self.trapped_note)] if self.trapped_note else []),
             *([("horizon", self.horizon_note)] if self.horizon_note else []),
         ]

@@ -142,6 +142,25 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
     return pd.DataFrame(columns).assign(rule=rule_in_force(history.problem) if len(piece) else "")
 
 
+def creep_table(history: History) -> pd.DataFrame:
+    """One row a leap over creep."""
+    import pandas as pd
+
+    row, trips, error, delay = history.creep.T
+    start, end = history.seconds(row, np.zeros(len(row))), history.seconds(row + trips, np.zeros(len(row)))
+    columns = {"start": start, "end": end, "start_row": row, "round_trips": trips, "error": error, "time_error": delay}
+    return pd.DataFrame(columns).astype({"start_row": int, "round_trips": int})
+
+
+def creep_note(creep: Floats) -> str:
+    """One line on the leaps over creep of `History.creep`; empty where there are none."""
+    if not len(creep):
+        return ""
+    leaps, (_, trips, error, delay) = len(creep), creep.T
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips"
+    return f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
+
+
 def rule_in_force(problem: Problem) -> str:
     """The selection rule, where the contact equation has several solutions at some load (and slip); else empty."""
     if not is_algebraic(problem):

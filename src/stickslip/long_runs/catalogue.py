@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
+from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream, Look, Place
 from stickslip.evolution.in_progress import RunInProgress
@@ -17,7 +18,7 @@ from stickslip.evolution.report import Progress
 from stickslip.evolution.simulate import check_run, check_started
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Status
-from stickslip.evolution.tables import default_event_rate
+from stickslip.evolution.tables import creep_note, default_event_rate
 from stickslip.long_runs.resume import check_events, events_wanted, taken_up
 from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
 from stickslip.observables.predictability import is_followed, predictability_of_events
@@ -37,6 +38,7 @@ def catalogue(
     path: str | Path | None = None,
     *,
     rtol: float = 1e-10,
+    creep_rtol: float = 0.0,
     events: int | None = None,
     event_rate: float | None = None,
     progress: Progress | None = None,
@@ -52,35 +54,26 @@ def catalogue(
     For the other arguments, and errors, see `stickslip.simulate`; InputError also for a path that says no format.
     """
     check_run("catalogue", duration, rtol, events, checkpoint_every)
+    check_creep_rtol(problem, creep_rtol, "catalogue")
     rate = default_event_rate(problem) if event_rate is None else event_rate
     if not rate >= 0.0:
         raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {event_rate!r}")
     if path is not None:
         check_catalogue(Path(path))
-        return begin(problem, duration, rtol, events, Path(path), progress, rate, checkpoint_every, max_pieces).read()
-    run = RunInProgress.begin(problem, rtol)
+    run = RunInProgress.begin(problem, rtol, creep_rtol)
     orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
+    if path is not None:
+        return begin(run, orders, Path(path), rate).read()
     return follow(run, orders, EventStream(problem, rate, float(run.setup.par[at.RAMP])), RowsInMemory()).read()
 
 
-def begin(
-    problem: Problem,
-    duration: float,
-    rtol: float,
-    events: int | None,
-    path: Path,
-    progress: Progress | None,
-    event_rate: float | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int = MAX_PIECES,
-) -> Catalogue:
+def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None) -> Catalogue:
     """Follow a run from its start, into a file; what was there under these names is gone."""
-    rows, run = Rows(path), RunInProgress.begin(problem, rtol)
+    rows = Rows(path)
     checkpoint_of(rows).unlink(missing_ok=True)
     rows.clear()
-    rate = default_event_rate(problem) if event_rate is None else event_rate
-    orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
-    return follow(run, orders, EventStream(problem, rate, float(run.setup.par[at.RAMP])), rows)
+    rate = default_event_rate(run.problem) if event_rate is None else event_rate
+    return follow(run, orders, EventStream(run.problem, rate, float(run.setup.par[at.RAMP])), rows)
 
 
 def resume_catalogue(
@@ -146,12 +139,13 @@ class Paused:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """What came of a run: its rows, how many events are over, what ended it, and a line on how long they are predictable."""
+    """What came of a run: its rows, how many events are over, what ended it, and lines on what is predictable and on creep."""
 
     rows: Rows | RowsInMemory
     events: int
     status: Status
     horizon_note: str
+    creep_note: str
 
     @property
     def files(self) -> list[Path]:
@@ -162,6 +156,8 @@ class Catalogue:
         """The table."""
         table = self.rows.read()
         table.attrs = {"status": self.status.name, "status_message": self.status.message}
+        if self.creep_note:
+            table.attrs["creep"] = self.creep_note
         return table
 
 
@@ -173,8 +169,8 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
     code = drive(run, orders.duration, keeper)
     check_started(run, code, "catalogue")
     keeper.finish(run, code)
-    note = predictability_of_events(rows.read(), run.rtol).text if is_followed(run.problem) else ""
-    return Catalogue(rows, stream.told, STATUSES[code], note)
+    horizon = predictability_of_events(rows.read(), run.rtol).text if is_followed(run.problem) else ""
+    return Catalogue(rows, stream.told, STATUSES[code], horizon, creep_note(run.creep))
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,8 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
 
     Work is what the driver puts in (net of what radiates through a driver of finite impedance); balance is
     work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that bounces to and fro in
-    waves. Raises InputError for times outside the run.
+    waves. Raises InputError for times outside the run, and in a leap over creep or within a round trip behind it: the waves that
+    left the contact there are not known.
     """
     time = np.atleast_1d(np.asarray(t, float))
     history = readings.history

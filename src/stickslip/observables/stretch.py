@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from stickslip.errors import InputError
 from stickslip.evolution.history import Floats, Moments, Side
 from stickslip.evolution.layout import TERMS
 from stickslip.observables.waves import Waves
@@ -35,6 +36,8 @@ class Stretch:
         middle = 0.5 * (breaks + np.append(breaks[1:], self.high))
         at = self.history.find(middle, "right")
         another = np.append(True, (np.diff(at.piece) != 0) | (np.diff(at.leaped) != 0.0))
+        if any(self.history.is_averaged(row) for row in np.unique(self.history.store.row[at.piece])):
+            raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
         self.start: Floats = breaks[another]
         """Times (s) from which on another piece of the history stands, or the same one some whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]

@@ -73,7 +73,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         "body": (body, vars(problem.body)),
         "loading": (body, vars(problem)),
         "initial": (body, initial),
-        "run": (body, {"duration": scenario.duration, "rtol": scenario.rtol}),
+        "run": (body, {"duration": scenario.duration, "rtol": scenario.rtol, "creep_rtol": scenario.creep_rtol or None}),
     }
     facts = {
         table: [

@@ -6,11 +6,12 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
 from stickslip.errors import InputError, nearest
+from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
@@ -27,7 +28,8 @@ LARGEST = 1_000_000
 
 @dataclass(frozen=True)
 class Scenario:
-    """A problem, how long to run it (s) and how accurately, or until how many slip events are over.
+    """A problem, how long to run it (s) and how accurately, or until how many slip events are over; with leaps over creep of a
+    tolerance above 0.
 
     Where it came from does not count when two are compared.
     """
@@ -38,14 +40,29 @@ class Scenario:
     title: str = ""
     description: str = ""
     events: int | None = None
+    creep_rtol: float = 0.0
     name: str = field(default="scenario", compare=False)
     source: str = field(default="", compare=False, repr=False)
+
+    @classmethod
+    def of(cls, solution: Solution, name: str = "scenario") -> Self:
+        """What a solution is a run of."""
+        return cls(
+            problem=solution.problem,
+            duration=solution.duration,
+            rtol=solution.rtol,
+            events=solution.events_wanted,
+            creep_rtol=solution.creep_rtol,
+            name=name,
+        )
 
     def run(self, progress: Progress | None = None, **keep: Any) -> Solution:
         """Simulate. `progress` and what else is given is handed to `stickslip.simulate`."""
         from stickslip.evolution.simulate import simulate  # the compiler behind it takes a second to import
 
-        return simulate(self.problem, self.duration, self.rtol, events=self.events, progress=progress, **keep)
+        return simulate(
+            self.problem, self.duration, self.rtol, creep_rtol=self.creep_rtol, events=self.events, progress=progress, **keep
+        )
 
     def to_toml(self) -> str:
         """The scenario as TOML: every value written out, in SI, and read back to the last digit."""
@@ -57,8 +74,8 @@ class Scenario:
         given.pop("selection")
         tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
-        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "selection": problem.rule}
-        tables["run"] = _without_none(run)
+        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol or None}
+        tables["run"] = _without_none(run | {"selection": problem.rule})
         return tomli_w.dumps(tables, multiline_strings=True)
 
 
@@ -94,7 +111,8 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
     run = content["run"]
     check_rtol(run["rtol"], file, "[run] rtol")
     about = {"title": content["title"], "description": content["description"], "name": name or file, "source": text}
-    return Scenario(problem, run["duration"], run["rtol"], events=run["events"], **about)
+    check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
+    return Scenario(problem, run["duration"], run["rtol"], events=run["events"], creep_rtol=run["creep_rtol"], **about)
 
 
 def _problem(content: dict[str, Any], file: str) -> Problem:

@@ -1,0 +1,211 @@
+"""Runs with leaps over creep: stopped and taken up, stopped by events, streamed, in local time."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.evolution import layout as at
+from stickslip.evolution.drive import split_time
+from stickslip.evolution.history import Epoch
+from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.keeper import Orders, as_solution
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.report import Report
+from stickslip.evolution.setup import row_time
+from stickslip.evolution.simulate import go_on
+from stickslip.evolution.status import UNDER_WAY
+from stickslip.evolution.window import Window
+from stickslip.long_runs import catalogue as module
+from stickslip.long_runs.resume import taken_up
+from stickslip.storage import save_checkpoint
+from tests.evolution.creep_truth import ROUND, printed
+from tests.evolution.test_creep import SLAB
+from tests.long_runs.problems import differences as differences_of_runs
+from tests.long_runs.test_resume import killed
+
+STABLE = ss.friction.ExponentialSlipWeakening(static=0.8, dynamic=0.3, distance=30.0)
+RUNS: dict[str, tuple[ss.Problem, float, float]] = {
+    "up to a pulse": (printed(100), 2420.0, 1e-4),
+    "several leaps": (printed(100), 2420.0, 5e-5),
+    "stable": (ss.Problem(SLAB, STABLE, pull_rate=2e-6, initial_excess=1e4), 420 * ROUND, 1e-4),
+    "backwards": (ss.Problem(SLAB, STABLE, pull_rate=-2e-6, initial_load=-80_010_000.0), 420 * ROUND, 1e-4),
+}
+"""Problem, duration (s), tolerance of the leaps."""
+
+
+@cache
+def whole_run(name: str) -> ss.Solution:
+    problem, duration, rtol = RUNS[name]
+    return ss.simulate(problem, duration, creep_rtol=rtol)
+
+
+def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
+    """What is not the same in two solutions, bit for bit."""
+    found = [] if np.array_equal(one.history.creep, other.history.creep) else ["leaps"]
+    return found + ([] if one.creep_rtol == other.creep_rtol else ["creep_rtol"]) + differences_of_runs(one, other)
+
+
+def begun(name: str) -> tuple[RunInProgress, tuple[int, float]]:
+    problem, duration, rtol = RUNS[name]
+    return RunInProgress.begin(problem, 1e-10, rtol), split_time(duration, row_time(problem))
+
+
+def gone_on(path: Path, duration: float) -> ss.Solution:
+    """As `resume`, which would also write the file again."""
+    return go_on(taken_up(ss.load(path), path, duration), Orders(duration))
+
+
+def step(run: RunInProgress, last: tuple[int, float]) -> bool:
+    """One step of the engine, or one leap; False at the end."""
+    code = run.advance(last, 1)
+    if code == at.FULL:
+        run.grow(10**6)
+    return code in (OUT_OF_BUDGET, at.FULL)
+
+
+def around_leaps(name: str) -> list[int]:
+    """Steps just before leaps, at them, and just behind."""
+    run, last = begun(name)
+    stops, steps, leaps = {1}, 0, 0
+    while step(run, last):
+        steps += 1
+        if len(run.creep) > leaps:
+            leaps = len(run.creep)
+            stops |= {steps - 1, steps, steps + 1}
+    return sorted(stops | {steps})
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_stopped_around_leaps_and_taken_up(name: str, tmp_path: Path) -> None:
+    whole, path, duration = whole_run(name), tmp_path / "run.nc", RUNS[name][1]
+    assert len(whole.creep) > 0
+    for stop in around_leaps(name):
+        run, last = begun(name)
+        for _ in range(stop):
+            step(run, last)
+        save_checkpoint(as_solution(run, Orders(duration), UNDER_WAY), path)
+        assert differences(gone_on(path, duration), whole) == [], f"after {stop} steps"
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_an_end_within_a_leap_goes_on_as_if_it_had_not_been(name: str, tmp_path: Path) -> None:
+    """The end of the first run cuts a leap, or allows none: a longer one takes it whole."""
+    problem, duration, rtol = RUNS[name]
+    whole, path = whole_run(name), tmp_path / "run.nc"
+    first, last = whole.creep.iloc[0], whole.creep.iloc[-1]
+    for end in (first.start + 10 * ROUND, 0.5 * (first.start + first.end), last.end - ROUND, last.end + 2.5 * ROUND):
+        save_checkpoint(ss.simulate(problem, float(end), creep_rtol=rtol), path)
+        assert differences(gone_on(path, duration), whole) == [], f"from {end}"
+
+
+def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
+    """The comparison fails where the table of leaps, or when to look for the next one, is not what it was."""
+    problem, duration, rtol = RUNS["several leaps"]
+    whole, path = whole_run("several leaps"), tmp_path / "run.nc"
+    half = ss.simulate(problem, 0.9 * duration, creep_rtol=rtol)
+    for place, change in ((at.CREEP_LEAPS, -1), (at.PAUSE_FOR, 3)):
+        assert half.checkpoint is not None
+        count = half.checkpoint.count.copy()
+        count[place] += change
+        save_checkpoint(replace(half, checkpoint=replace(half.checkpoint, count=count)), path)
+        assert differences(gone_on(path, duration), whole) != []
+
+
+@pytest.mark.parametrize("events", [1, 2])
+def test_events_stop_it(events: int, tmp_path: Path) -> None:
+    """However often the run is looked at; and it says that it creeps."""
+    problem, duration, rtol = RUNS["up to a pulse"]
+    path, seen = tmp_path / "run.nc", list[Report]()
+    short = ss.simulate(problem, 2 * duration, creep_rtol=rtol, events=events, checkpoint=path)
+    assert short.status.name == "enough events"
+    assert short.events.end.notna().sum() == events
+    again = ss.simulate(problem, 2 * duration, creep_rtol=rtol, events=events, progress=seen.append, checkpoint_every=0.0)
+    assert differences(again, short) == []
+    assert differences(ss.resume(path, duration), replace(whole_run("up to a pulse"), events_wanted=None)) == []
+    assert "creeping" in {report.doing for report in seen} or events == 1
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CAPACITY", 64)
+    monkeypatch.setattr("stickslip.evolution.in_progress.FIRST_CAPACITY", 64)
+    problem, duration, rtol = RUNS[name]
+    for rate in (None, 0.0):
+        table = ss.catalogue(problem, duration, creep_rtol=rtol, event_rate=rate)
+        pd.testing.assert_frame_equal(table, whole_run(name).catalogue(rate), check_exact=True)
+        assert table.attrs["creep"] == whole_run(name).creep_note
+    path, short = tmp_path / "events.csv", float(whole_run(name).creep.end.iloc[-1]) - ROUND
+    ss.catalogue(problem, short, path, creep_rtol=rtol)
+    resumed = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration)
+    pd.testing.assert_frame_equal(resumed, whole_run(name).catalogue(), check_exact=True)
+    assert resumed.attrs["creep"] == whole_run(name).creep_note
+
+
+CREEPING = """
+import signal, time
+import stickslip as ss
+import stickslip.evolution.drive as drive
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+problem = ss.load_scenario("fig5-slab-printed").problem
+ss.simulate(problem, 20 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+def test_killed_it_goes_on(tmp_path: Path) -> None:
+    killed(CREEPING, tmp_path, "run.nc", signal.SIGKILL, times=2)
+    stopped = ss.load(tmp_path / "run.nc")
+    assert stopped.status.name == "under way"
+    assert len(stopped.creep) > 0
+    end = stopped.history.duration * 1.01
+    assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(stopped.problem, end, creep_rtol=1e-5)) == []
+
+
+def test_window_on_the_pulse_behind_creep() -> None:
+    """Around its peak the slip history in local time is that of the run with every round trip, to the tolerance of the leap."""
+    problem, duration, rtol = RUNS["up to a pulse"]
+    exact, leaped = ss.simulate(problem, duration), whole_run("up to a pulse")
+    slip, slip_leaped = (_around_peak(run.window(-1)) for run in (exact, leaped))
+    np.testing.assert_allclose(slip_leaped, slip, rtol=0.0, atol=10 * rtol * np.ptp(slip))
+    peaks = [run.window(-1).event.peak_time for run in (exact, leaped)]
+    assert abs(peaks[1] - peaks[0]) < float(leaped.creep.time_error.sum())
+
+
+def _around_peak(window: Window) -> np.ndarray:
+    """Slip (m) since the peak."""
+    peak = float(window.event.peak_after)
+    return window.event_slip(peak + np.linspace(-6.0, 2.0, 300)) - float(window.event_slip(peak))
+
+
+def test_time_behind_years_of_creep_is_sharp() -> None:
+    """The second pulse of the printed slab, after 332 days: local times count from a whole number of round trips."""
+    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+    window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
+    assert window.epoch.row > 5_000_000
+    assert 0.0 <= window.epoch.offset < ROUND
+    assert window.event.start == pytest.approx(window.epoch.row * ROUND + window.epoch.offset, rel=1e-15, abs=0.0)
+    peak = float(window.event.peak_after)
+    near = peak + np.array([0.0, 1e-9, 2e-9])  # a float of seconds since the start has a resolution of 4e-9 s here
+    np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
+
+
+def test_no_gap_at_the_borders_of_a_leap_seen_from_anywhere() -> None:
+    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+    for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
+        history = run.history.seen_from(epoch)
+        for leap in run.creep.itertuples():
+            for row in (leap.start_row, leap.start_row + leap.round_trips):
+                border = float(history.seconds(np.array([row]), np.zeros(1))[0])
+                time = border + np.spacing(max(abs(border), ROUND)) * np.arange(-8.0, 9.0)
+                slip = history.slipped(history.find(time, "right"))
+                assert np.ptp(slip) < 1e-11 * slip[0]
