@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -69,6 +70,18 @@ class Readings:
             raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
         at, shape = self._at(t, "right")
         return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+
+    def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
+        """Write t, slip, slip rate and shear stress as SCEC's on-fault time series: see `stickslip.exports.scec.write_scec`."""
+        from stickslip.exports.scec import write_scec
+
+        return write_scec(self, path, sampling_rate, **options)
+
+    def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
+        """Write miniSEED or SAC through ObsPy: see `stickslip.exports.seismogram.write_seismogram`."""
+        from stickslip.exports.seismogram import write_seismogram
+
+        return write_seismogram(self, path, sampling_rate, **options)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
