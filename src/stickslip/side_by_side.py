@@ -30,11 +30,12 @@ COLUMNS = {
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
     "events": ("", "slip events, see `Solution.events`"),
+    "pulses": ("", "of the largest event: maxima of the slip rate, see `Solution.events`"),
     "slip": ("m", "slip of the largest event"),
     "peak_rate": ("m/s", "largest slip rate of the run"),
     "static_drop": ("load", "of the largest event: stiffness (G/h, or K) times its slip"),
-    "traction_drop": ("load", "of the largest event: traction just before minus traction at rest after"),
-    "dynamic_drop": ("load", "of the largest event: traction just before minus the smallest one while it slips"),
+    "traction_drop": ("load", "of the largest event: traction at rest before it minus traction at rest after it"),
+    "dynamic_drop": ("load", "of the largest event: traction at rest before it minus the smallest one while it slips"),
     "duration": ("s", "of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate"),
     "slip_rate": ("", "smooth, or jumps"),
@@ -50,6 +51,14 @@ class Source:
 
     name: str
     run: Callable[[Progress | None], Solution]
+    finished: bool = True
+
+    def solution(self, progress: Progress | None = None) -> Solution:
+        """Its solution. Raises KeyboardInterrupt where Ctrl-C ends its run."""
+        found = self.run(progress)
+        if not self.finished and found.status.name == "interrupted":
+            raise KeyboardInterrupt
+        return found
 
 
 def read_source(source: str | Path | Scenario | Solution, until: float | None = None, rtol: float | None = None) -> Source:
@@ -68,7 +77,7 @@ def read_source(source: str | Path | Scenario | Solution, until: float | None = 
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = source if isinstance(source, Scenario) else load_scenario(source)
     changed = replace(scenario, duration=until or scenario.duration, rtol=rtol or scenario.rtol)
-    return Source(scenario.name, changed.run)
+    return Source(scenario.name, changed.run, finished=False)
 
 
 def _shown(source: Any) -> str:
@@ -85,9 +94,10 @@ class Comparison:
     def __post_init__(self) -> None:
         if len(self.runs) < 2:
             raise InputError(f"compare: needs two runs or more, got {len(self.runs)}")
-        if self.event is not None:
-            for solution in self.runs.values():
-                solution.window(self.event)  # refuses an event that there is not
+        for name, solution in self.runs.items():
+            count = len(solution.events)
+            if self.event is not None and not -count <= self.event < count:
+                raise InputError(f"compare: {name} has no slip event {self.event}: it has {count}, counted from 0")
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -144,16 +154,8 @@ def compare(
     for name, source in zip(called, read, strict=True):
         if progress is not None:
             progress(name)
-        runs[name] = followed(source)
+        runs[name] = source.solution()
     return Comparison(runs, event)
-
-
-def followed(source: Source, progress: Progress | None = None) -> Solution:
-    """The solution of a source. Raises KeyboardInterrupt where Ctrl-C ended its run."""
-    solution = source.run(progress)
-    if progress is not None and solution.status.name == "interrupted":
-        raise KeyboardInterrupt
-    return solution
 
 
 def distinct(names: Sequence[str]) -> list[str]:
@@ -168,6 +170,7 @@ def distinct(names: Sequence[str]) -> list[str]:
 
 def _row(name: str, solution: Solution) -> dict[str, Any]:
     problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
+    slips = solution.catalogue(0.0)
     row = {
         "name": name,
         "body": problem.body.kind,
@@ -175,27 +178,35 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "rule": problem.rule,
         "regime": choices(solution).regime,
         "events": len(events),
+        "pulses": 0,
         "shocks": shocks,
         "slip_rate": "jumps" if shocks else "smooth",
-        "peak_rate": solution.catalogue(0.0).peak_rate.max(),
+        "peak_rate": slips.peak_rate.max(),
         "load_unit": problem.load_unit,
         "status": solution.status.name,
     }
     if events.empty:
         return row
     largest = events.iloc[int(events.slip.to_numpy().argmax())]
+    before = _rest_before(largest, slips) if problem.friction.sticks else float(largest.traction_before)
     return row | {
+        "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "traction_drop": largest.traction_drop,
-        "dynamic_drop": _dynamic_drop(solution, largest),
+        "traction_drop": before - largest.traction_after,
+        "dynamic_drop": before - _smallest_traction(solution, largest),
         "duration": events.duration.iloc[0],
     }
 
 
-def _dynamic_drop(solution: Solution, event: pd.Series) -> float:
-    """From the 2000 times and the limits at shocks of `curve`: its error is of second order in their distance."""
+def _rest_before(event: pd.Series, slips: pd.DataFrame) -> float:
+    """Traction before the slip in which the event is: a block moves for a while before its rate counts as an event."""
+    return float(slips[slips.start <= event.start].traction_before.iloc[-1])
+
+
+def _smallest_traction(solution: Solution, event: pd.Series) -> float:
+    """Of the 2000 times and the limits at shocks of `curve`: its error is of second order in their distance."""
     window = solution.window(event, before=0.0)
     last = window.shown[1] if pd.isna(event.duration) else float(event.duration)
     (_, traction), (_, rate) = (window.curve(name, 0.0, last) for name in ("traction", "slip_rate"))
-    return float(event.traction_before - traction[rate != 0.0].min())  # a jump into rest leaves another traction behind
+    return float(traction[rate != 0.0].min())  # a jump into rest leaves another traction behind

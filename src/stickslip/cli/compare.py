@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -72,7 +73,7 @@ def _compared(names: list[str], until: str | None, rtol: float | None, event: in
     """Everything is read before anything is run. Raises InputError."""
     from stickslip.cli.long_run import progress
     from stickslip.scenarios.schema import check_rtol, read_duration
-    from stickslip.side_by_side import Comparison, distinct, followed, read_source
+    from stickslip.side_by_side import Comparison, distinct, read_source
 
     if len(names) < 2:
         raise InputError(f"compare: needs two runs or more, got {len(names)}; `stickslip new --list` lists the bundled ones")
@@ -82,12 +83,12 @@ def _compared(names: list[str], until: str | None, rtol: float | None, event: in
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress(name) as report:
-            runs[name] = followed(source, report)
+            runs[name] = source.solution(report)
     return Comparison(runs, event)
 
 
 def _show(found: Comparison) -> None:
-    from stickslip.cli.show import clean, console, number, table, with_unit
+    from stickslip.cli.show import clean, console, number, table
 
     screen, rows = console(), found.table.to_dict("records")
     about = table("", "body", "friction", "rule", "regime", "status")
@@ -95,27 +96,22 @@ def _show(found: Comparison) -> None:
         about.add_row(clean(row["name"]), *(str(row[name]) for name in ("body", "friction", "rule", "regime", "status")))
     screen.print(about)
     screen.print()
-    headings = (
-        "events",
-        "largest\nslip\nm",
-        "peak\nrate\nm/s",
-        "static\ndrop",
-        "traction\ndrop",
-        "dynamic\ndrop",
-        "first\nlasts\ns",
-    )
+    headings = ("events", "largest\nslip\nm", "its\npulses", "peak\nrate\nm/s", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
     came = table("", *headings, "shocks", "slip\nrate", numbers=True)
     came.columns[0].justify = "left"
     for row in rows:
-        drops = (with_unit(round_to(row[name]), row["load_unit"]) for name in ("static_drop", "traction_drop", "dynamic_drop"))
-        sizes = (number(row["slip"], 6), number(row["peak_rate"], 6), *drops, number(row["duration"], 6))
+        drops = (_drop(row[name], row["load_unit"]) for name in ("static_drop", "dynamic_drop"))
+        pulses, rate = f"{row['pulses']:g}", number(row["peak_rate"], 6)
+        sizes = (number(row["slip"], 6), pulses, rate, *drops, number(row["duration"], 6))
         came.add_row(clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"]), row["slip_rate"])
     screen.print(came)
 
 
-def round_to(value: float, digits: int = 5) -> float:
-    """A number to so many digits."""
-    return float(f"{value:.{digits}g}")
+def _drop(value: float, unit: str) -> str:
+    """A drop to five digits; a dash where there is no event."""
+    from stickslip.cli.show import with_unit
+
+    return "-" if math.isnan(value) else with_unit(float(f"{value:.5g}"), unit)
 
 
 def _save(found: Comparison, out: Path | None, figure: Path | None) -> list[str]:

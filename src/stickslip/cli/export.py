@@ -68,11 +68,11 @@ def export(
 def _readings(run: str, until: str | None, event: int | None) -> tuple[str, Readings, bool]:
     from stickslip.cli.long_run import progress
     from stickslip.scenarios.schema import read_duration
-    from stickslip.side_by_side import followed, read_source
+    from stickslip.side_by_side import read_source
 
     source = read_source(run, None if until is None else read_duration(until, "export", "--until"))
     with progress(source.name) as report:
-        solution = followed(source, report)
+        solution = source.solution(report)
     return source.name, solution if event is None else solution.window(event), solution.status.ok
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +12,19 @@ from numpy.typing import NDArray
 
 from stickslip.errors import InputError
 from stickslip.evolution.readings import Readings
+from stickslip.evolution.window import Window
 
 Floats = NDArray[np.float64]
 
 MOST = 20_000_000
-"""Samples of the longest series, those of the filter included."""
-FINER = 16
-"""With a filter the run is sampled so many times finer first."""
+"""Values that are computed for the longest series: one a sample, with the filter some hundred."""
+FINER = 8
+"""With a filter there are so many averages to a sample."""
+_GAUSS = np.polynomial.legendre.leggauss(8)
+NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
+"""For averages between breaking points, a cell or less apart: there the run is a polynomial."""
+BLOCK = 1 << 17
+"""Times that are looked up together: keeps the memory bounded."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +50,9 @@ def sample(
     """A run, or a window on it, `sampling_rate` times a second (Hz) from `start` to `end` (s; default: all that is shown).
 
     Values are those of the solution at the times of the samples, from the right where one falls on a shock. A shock has no
-    highest frequency: with `antialias` the run is sampled 16 times finer and low-passed to half the sampling rate (linear phase,
-    Kaiser window, no delay), which spreads each shock over some samples before and after it. Needs scipy.
+    highest frequency: with `antialias` the run is averaged over an eighth of the distance of the samples (exactly, where it
+    slips) and low-passed to half the sampling rate (linear phase, Kaiser window, no delay), which spreads each shock over some
+    samples before and after it. Needs scipy.
     Raises InputError for a rate that is not positive, times outside the run, more than 2e7 samples, and without scipy.
     """
     first, last = (own if given is None else given for own, given in zip(run.shown, (start, end), strict=True))
@@ -53,23 +61,46 @@ def sample(
     if not run.history.span[0] <= first < last <= run.history.span[1]:
         low, high = run.history.span
         raise InputError(f"samples must lie within the run, {low:g} to {high:g} s, got {first:g} to {last:g} s")
-    finer = FINER if antialias else 1
-    wanted = (last - first) * sampling_rate
-    if not wanted * finer < MOST:
-        raise InputError(f"{wanted:.3g} samples are too many: take a lower rate, or an event of it (at most {MOST // finer})")
-    count = math.floor(wanted * (1.0 + 1e-12)) + 1
-    time = np.minimum(first + np.arange((count - 1) * finer + 1) / (finer * sampling_rate), last)
-    slip = run.event_slip(time) if "event_slip" in run.curves else run.slip(time) - run.problem.initial_slip  # type: ignore[attr-defined]
-    values = [slip, run.slip_rate(time), run.traction(time)]
+    count = _count((last - first) * sampling_rate, MOST // (FINER * len(NODES)) if antialias else MOST)
     if antialias:
-        values = [_thinned(one, finer) for one in values]
-    return Series(first, sampling_rate, *values)
+        _scipy_signal()
+        fine = first + np.arange((count - 1) * FINER + 1) / (FINER * sampling_rate)
+        return Series(first, sampling_rate, *(_thinned(one) for one in _means(run, fine, 1.0 / (FINER * sampling_rate))))
+    return Series(first, sampling_rate, *_values(run, np.minimum(first + np.arange(count) / sampling_rate, last)))
 
 
-def _thinned(values: Floats, factor: int) -> Floats:
-    """Every factor-th value of the low-passed series; both ends go on as they are."""
-    signal = _scipy_signal()
-    return np.asarray(signal.resample_poly(values, 1, factor, padtype="edge"))
+def _count(wanted: float, most: int) -> int:
+    """Samples in a time of so many distances."""
+    if not wanted < most:
+        raise InputError(f"{wanted:.3g} samples are too many: take a lower rate, or an event of it (at most {most})")
+    return math.floor(wanted * (1.0 + 1e-12)) + 1
+
+
+def _values(run: Readings, time: Floats) -> list[Floats]:
+    """Slip since the start, slip rate and traction, right limits."""
+
+    def slip(t: Floats) -> Floats:
+        return run.event_slip(t) if isinstance(run, Window) else run.slip(t) - run.problem.initial_slip
+
+    blocks = np.split(time, range(BLOCK, len(time), BLOCK))
+    return [np.concatenate([read(block) for block in blocks]) for read in (slip, run.slip_rate, run.traction)]
+
+
+def _means(run: Readings, time: Floats, width: float) -> Iterator[Floats]:
+    """Averages of the same over `width` (s) around each time, by Gauss's rule between the breaking points of the run."""
+    low, high = run.history.span
+    bounds = np.clip(np.append(time - 0.5 * width, time[-1] + 0.5 * width), low, high)
+    breaks = run.breaks[(run.breaks > bounds[0]) & (run.breaks < bounds[-1])]
+    edges = np.union1d(bounds, breaks)
+    lengths, cells = np.diff(edges), np.searchsorted(edges, bounds[:-1])
+    nodes = edges[:-1, None] + lengths[:, None] * NODES
+    for one in _values(run, nodes.ravel()):
+        yield np.add.reduceat(lengths * (one.reshape(nodes.shape) @ WEIGHTS), cells) / np.diff(bounds)
+
+
+def _thinned(values: Floats) -> Floats:
+    """Every eighth value of the low-passed series; both ends go on as they are."""
+    return np.asarray(_scipy_signal().resample_poly(values, 1, FINER, padtype="edge"))
 
 
 def _scipy_signal() -> Any:
