@@ -61,16 +61,6 @@ class Readings:
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
-    def state(self, t: ArrayLike) -> Floats:
-        """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).
-
-        Raises InputError for a law without one.
-        """
-        if self.problem.friction.state is None:
-            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
-        at, shape = self._at(t, "right")
-        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
-
     def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
         """Write t, slip, slip rate and shear stress as SCEC's on-fault time series: see `stickslip.exports.scec.write_scec`."""
         from stickslip.exports.scec import write_scec
@@ -82,6 +72,16 @@ class Readings:
         from stickslip.exports.seismogram import write_seismogram
 
         return write_seismogram(self, path, sampling_rate, **options)
+
+    def state(self, t: ArrayLike) -> Floats:
+        """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).
+
+        Raises InputError for a law without one.
+        """
+        if self.problem.friction.state is None:
+            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
+        at, shape = self._at(t, "right")
+        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
