@@ -125,7 +125,9 @@ def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, count: int) -> None:
     for k, values in enumerate(drawn):
         line = {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k // len(COLOURS) % len(DASHES)]}
         heights = values.values - values.values[0] if flat else shown(values)
-        axes.plot(dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=1.3, **line)
+        axes.plot(
+            dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **line
+        )  # equal ones stay visible
     text, symbol = label(drawn[0]), drawn[0].attrs["symbol"]
     if row != "traction" and _far_apart([float(np.abs(values).max()) for values in drawn]):
         _make_logarithmic(axes)
