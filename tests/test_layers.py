@@ -28,6 +28,7 @@ LAYERS = (
     ("scenarios",),
     ("storage",),
     ("long_runs",),
+    ("exports", "side_by_side"),
     ("figures",),
     ("paper",),
     ("cli",),

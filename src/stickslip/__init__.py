@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from stickslip.long_runs.resume import resume
     from stickslip.observables.statistics import catalogue_statistics
     from stickslip.scenarios import load_scenario
+    from stickslip.side_by_side import Comparison, compare
     from stickslip.storage import load, save
+    from stickslip.studies.analogy import Analogy, analogy
     from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
@@ -37,10 +39,14 @@ YEAR = 31_557_600.0
 """Julian year, s."""
 
 _LATER = {
+    "Analogy": "stickslip.studies.analogy",
+    "Comparison": "stickslip.side_by_side",
     "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
+    "analogy": "stickslip.studies.analogy",
     "catalogue": "stickslip.long_runs.catalogue",
     "catalogue_statistics": "stickslip.observables.statistics",
+    "compare": "stickslip.side_by_side",
     "critical_value": "stickslip.contact.critical",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
@@ -56,14 +62,18 @@ _LATER = {
 
 __all__ = [
     "YEAR",
+    "Analogy",
+    "Comparison",
     "ElasticSlab",
     "InputError",
     "Problem",
     "Regularisation",
     "Solution",
     "SpringBlock",
+    "analogy",
     "catalogue",
     "catalogue_statistics",
+    "compare",
     "critical_value",
     "friction",
     "load",

@@ -11,12 +11,14 @@ import pandas
 import pytest
 
 from stickslip import __version__
-from stickslip.cli.names import STARTERS, complete_regularisation, complete_scenario
+from stickslip.cli.names import STARTERS, complete_regularisation, complete_scenario, complete_source
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 
+COMMANDS = ["run", "check", "new", "compare", "analogy", "export", "regularise", "paper"]
 
-@pytest.mark.parametrize("name", ["run", "check", "new", "regularise", "paper"])
+
+@pytest.mark.parametrize("name", COMMANDS)
 def test_help_says_what_it_does_with_an_example(command, name):
     shown = command(name, "--help")
     assert shown.code == 0
@@ -26,7 +28,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
 def test_without_arguments_it_teaches(command):
     shown = command()
     assert shown.code == 0
-    for name in ("run", "check", "new", "regularise", "paper"):
+    for name in COMMANDS:
         assert re.search(rf"│ {name} ", shown.out)
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
@@ -223,3 +225,45 @@ def test_paper_says_what_it_wrote(command, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.paper.make", make)
     shown = command("paper", "--out", "new/folder")
     assert (shown.code, shown.out, shown.err) == (0, f"written: {Path('new/folder/report.html')}\n", "")
+
+
+def test_compare_says_what_each_run_did(command, tmp_path: Path):
+    files = ("--figure", "both.png", "--out", "both.csv")
+    shown = command("compare", "fig6-block-reconstructed", "fig6-slab", *files)
+    assert shown.code == 0
+    for pattern in (
+        r"^fig6-block-reconstructed +spring-block +hyperbolic-rate +perfect-delay +regular +finished",
+        r"^fig6-slab +elastic-slab +hyperbolic-rate +perfect-delay +irregular +finished",
+        r"^fig6-block-reconstructed +1 +2\.06116 +1 +3\.51122 +70\.698 TN +38\.917 TN +1\.57238 +0 +smooth",
+        r"^fig6-slab +1 +23\.4402 +1 +4\.10204 +80\.4 MPa +40\.2 MPa +5\.71429 +2 +jumps",
+    ):
+        assert re.search(pattern, shown.out, re.MULTILINE), pattern
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["both.csv", "both.png"]
+    table = pandas.read_csv(tmp_path / "both.csv", comment="#")
+    assert list(table.name) == ["fig6-block-reconstructed", "fig6-slab"]
+    assert table.slip[1] == pytest.approx(23.4402332474, rel=1e-9, abs=0.0)
+
+
+def test_compare_takes_files_of_runs(command, tmp_path: Path):
+    assert command("run", "fig6-slab", "--out", "saved.nc").code == 0
+    shown = command("compare", "saved.nc", "fig6-slab", "fig6-slab")
+    for name in ("saved", "fig6-slab", r"fig6-slab \(2\)"):
+        assert re.search(rf"^{name} +1 +23\.4402 +1 +4\.10204 ", shown.out, re.MULTILINE)
+    assert complete_source("save") == ["saved.nc"]
+    assert complete_scenario("save") == []
+
+
+def test_analogy_maps_a_scenario(command, tmp_path: Path):
+    axes = ("--map", "wavelength=5..41.6:2:log", "--map", "alpha=0.00392..1:2:log")
+    shown = command("analogy", "block-or-slab", *axes, "--out", "map.csv", "--figure", "map.png")
+    assert shown.code == 0
+    assert "The block stands for the slab at 1 of 4 points" in shown.out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.csv", "map.png"]
+    assert list(pandas.read_csv(tmp_path / "map.csv", comment="#").stands) == [False, True, False, False]
+
+
+def test_export_writes_time_series(command, tmp_path: Path):
+    assert "written: late.txt" in command("export", "second-event-maxwell", "late.txt", "--event", "1", "-r", "50").out
+    text = (tmp_path / "late.txt").read_text()
+    assert "# problem=second-event-maxwell\n" in text
+    assert "\nt slip slip-rate shear-stress\n" in text

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from stickslip import ElasticSlab, Problem
 from stickslip.friction import LAWS, Coulomb, FrictionLaw
 from stickslip.friction.difference import difference
+from stickslip.friction.slopes import slopes
 from stickslip.scenarios.scenario import Scenario, read_scenario
-from stickslip.scenarios.stability import slopes
 from stickslip.scenarios.templates import template
 
 from .drawn import compiled_value, laws

@@ -13,7 +13,7 @@ ULP = 2.3e-16
 YEAR = 31_557_600.0
 
 
-OURS = ("cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
+OURS = ("block-or-slab", "cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
 PAPERS = [name for name in library.names() if name not in OURS]
 
 

@@ -8,10 +8,10 @@ import pytest
 
 from stickslip import ElasticSlab, Problem, SpringBlock
 from stickslip.friction import LAWS, SinusoidalSlip
+from stickslip.friction.slopes import slopes
 from stickslip.scenarios import library
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.stability import slopes
 from stickslip.scenarios.templates import template
 
 LAW = SinusoidalSlip(1.0, 0.5, 5.0)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from stickslip.bodies.spring_block import SpringBlock
 from stickslip.errors import InputError
 from stickslip.quantities import check_quantities, quantity
 
@@ -74,3 +75,23 @@ class ElasticSlab:
         if self.p_wave_speed is None:
             raise InputError("ElasticSlab: normal_strain needs p_wave_speed")
         return -self.normal_stress / (self.density * self.p_wave_speed**2)
+
+    def equivalent_block(self) -> SpringBlock:
+        """The block of the slab's slow limit, for each m^2 of contact: K = G/h, m = rho h/3 + contact mass, S of 1 m^2, no damping.
+
+        Slow means that the motion takes many travel times h/c. The slab is then sheared evenly, its velocity falls linearly from
+        the contact to the driver and it holds rho (h/3) v^2/2. It is the order (omega h/c)^2 of the load that the slab takes at
+        the frequency omega, G k cot(k h) = G/h - omega^2 rho h/3 + ..., k = omega/c. It is not the block of the first mode, whose
+        m = rho h/2 and K = (pi^2/8) G/h swings at the slab's own c/4h: this one swings at sqrt(3) c/(2 pi h), 10 % faster.
+
+        Raises InputError for a driver that is not rigid: its impedance stands behind the spring, not beside it as a block's
+        damping does; in the slow limit it lets the spring go and leaves a mass rho h.
+        Source: Campillo et al. 1996 compare the two bodies; which block a slab is follows from its eqs (7)-(13) as above.
+        """
+        if not math.isinf(self.driver_impedance):
+            raise InputError(
+                "ElasticSlab: equivalent_block needs a rigid driver: behind one of finite impedance nothing holds the slab in the "
+                f"slow limit, so there is no spring; got driver_impedance = {self.driver_impedance:g} Pa s/m"
+            )
+        mass = self.density * self.thickness / 3.0 + self.contact_mass
+        return SpringBlock(mass=mass, stiffness=self.stiffness, normal_force=self.normal_stress)

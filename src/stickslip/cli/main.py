@@ -9,7 +9,10 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
+from stickslip.cli.analogy import analogy
 from stickslip.cli.check import check
+from stickslip.cli.compare import compare
+from stickslip.cli.export import export
 from stickslip.cli.new import new
 from stickslip.cli.paper import paper
 from stickslip.cli.regularise import regularise
@@ -26,6 +29,9 @@ slips, how it stops, and whether the answer is even unique.
   stickslip new slab > mine.toml   a commented scenario to start from
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
+  stickslip compare A B            runs side by side: a table, a figure
+  stickslip analogy                when does a block stand for a slab
+  stickslip export mine.toml F     time series for other tools
   stickslip regularise mine.toml   which selection rule does physics choose
   stickslip paper --out paper      the source paper, claim by claim
 """
@@ -38,7 +44,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, check, new, regularise, paper):
+for command in (run, check, new, compare, analogy, export, regularise, paper):
     app.command()(command)
 
 

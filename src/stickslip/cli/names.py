@@ -9,11 +9,20 @@ STARTERS = ("slab", "block")
 
 def complete_scenario(incomplete: str) -> list[str]:
     """Bundled scenarios, and the TOML files and folders that match what is typed."""
+    return _complete_files(incomplete, (".toml",))
+
+
+def complete_source(incomplete: str) -> list[str]:
+    """The same, and files of runs."""
+    return _complete_files(incomplete, (".toml", ".nc"))
+
+
+def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
     from stickslip.scenarios import library
 
     typed = Path(incomplete)
     folder = typed if incomplete.endswith("/") else typed.parent
-    files = [str(path) + ("/" if path.is_dir() else "") for path in _listing(folder) if path.is_dir() or path.suffix == ".toml"]
+    files = [str(path) + ("/" if path.is_dir() else "") for path in _listing(folder) if path.is_dir() or path.suffix in suffixes]
     return [name for name in [*library.names(), *sorted(files)] if name.startswith(incomplete)]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,6 +64,18 @@ class Readings:
         """Load at times t (s): beta of eqs (12)-(13) for the slab (Pa), the spring's force for the block (N)."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
+
+    def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
+        """Write t, slip, slip rate and shear stress as SCEC's on-fault time series: see `stickslip.exports.scec.write_scec`."""
+        from stickslip.exports.scec import write_scec
+
+        return write_scec(self, path, sampling_rate, **options)
+
+    def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
+        """Write miniSEED or SAC through ObsPy: see `stickslip.exports.seismogram.write_seismogram`."""
+        from stickslip.exports.seismogram import write_seismogram
+
+        return write_seismogram(self, path, sampling_rate, **options)
 
     def state(self, t: ArrayLike) -> Floats:
         """State of the friction law at times t (s), in the law's own unit (`FrictionLaw.state`).

@@ -5,11 +5,10 @@ from __future__ import annotations
 import cmath
 import math
 
-import numpy as np
-
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.loop import first_rate
-from stickslip.friction import FrictionLaw, RateAndState
+from stickslip.friction import RateAndState
+from stickslip.friction.slopes import slopes
 from stickslip.problem import Problem
 from stickslip.reference.growth_rate import growth_rate
 from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
@@ -49,18 +48,6 @@ def wait_of(problem: Problem) -> float:
     """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab."""
     rate = loading_rate(problem)
     return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
-
-
-def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:
-    """Derivatives of mu with respect to slip (1/m) and slip rate (s/m) at a law slip (m) and a rate (m/s; 0 means 0+).
-
-    By a complex step, which loses no digits: a law's formula is analytic.
-    """
-    piece = int(law.piece_at(slip, rate))
-    step = 1e-100
-    by_slip = np.imag(law.piece_coefficient(piece, np.complex128(complex(slip, step)), np.complex128(rate)))
-    by_rate = np.imag(law.piece_coefficient(piece, np.complex128(slip), np.complex128(complex(rate, step))))
-    return float(by_slip) / step, float(by_rate) / step
 
 
 def stability_of(problem: Problem) -> str:

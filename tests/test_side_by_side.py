@@ -1,0 +1,151 @@
+"""Runs side by side: the table against closed forms and the paper's verdicts, and what it refuses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.figures.side_by_side import data
+from stickslip.paper.claims import CLAIMS, Outcome, Runs
+from stickslip.side_by_side import COLUMNS, Comparison, compare, distinct
+
+FIG6 = ("fig6-block-reconstructed", "fig6-slab")
+
+
+@pytest.fixture(scope="module")
+def fig6() -> Comparison:
+    return compare(*FIG6)
+
+
+def test_drops_of_coulomb_friction_are_those_of_the_closed_form() -> None:
+    """Slab: slips at the dynamic level for a round trip: dynamic drop (muS - muD) S, static drop twice that. Block: the same over
+    its normal force. The pull is slow, not zero: 1e-6 of the drops."""
+    law, pull = ss.friction.Coulomb(0.8, 0.3), 1e-9
+    slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+    block = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
+    runs = [ss.simulate(ss.Problem(body, law, pull_rate=pull, initial_excess=0.0), 10.0) for body in (slab, block)]
+    table = compare(*runs, names=["slab", "block"]).table.set_index("name")
+    for name, normal in (("slab", 1e8), ("block", 1e14)):
+        row = table.loc[name]
+        assert row.dynamic_drop == pytest.approx(0.5 * normal, rel=1e-6, abs=0.0)
+        assert row.static_drop == pytest.approx(1.0 * normal, rel=1e-6, abs=0.0)
+        assert row.traction_drop == pytest.approx(1.0 * normal, rel=1e-6, abs=0.0)
+    assert list(table.slip_rate) == ["jumps", "smooth"]
+    assert list(table.load_unit) == ["Pa", "N"]
+
+
+def test_smooth_and_jumping_are_what_the_paper_says(fig6: Comparison) -> None:
+    """Claims 5 and 6: the block's slip rate is continuous, the slab's jumps; the verdicts come from the paper's own measurement."""
+    runs = Runs()
+    for row, claim in zip(fig6.table.itertuples(), (5, 6), strict=True):
+        assert CLAIMS[claim](runs).outcome is Outcome.PRINTED
+        assert row.slip_rate == ("smooth" if claim == 5 else "jumps")
+        assert row.shocks == len(runs.case(str(row.name)).shocks)
+
+
+def test_the_table_is_that_of_the_runs(fig6: Comparison) -> None:
+    assert list(fig6.table) == list(COLUMNS)
+    for row in fig6.table.itertuples():
+        run = fig6.runs[str(row.name)]
+        assert row.events == len(run.events)
+        assert row.slip == run.events.slip.max()
+        assert row.duration == run.events.duration[0]
+        assert row.status == "finished"
+    assert list(fig6.table.regime) == ["regular", "irregular"]
+
+
+def test_a_run_without_an_event_has_a_row_too() -> None:
+    table = compare("fig7-block-critical", "fig7-slab-critical").table
+    assert list(table.events) == [0, 1]
+    assert pd.isna(table.slip[0])
+    assert pd.isna(table.duration[0])
+    assert 1e-9 < table.peak_rate[0] < 1e-4 * table.peak_rate[1]
+
+
+def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> None:
+    path = fig6.save(tmp_path / "both.csv")
+    comment = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    assert comment[0].startswith(f"# stickslip {ss.__version__}: runs side by side")
+    assert "# slip (m): slip of the largest event" in comment
+    assert "# stiffness = 34300000000000.0" in comment
+    read = pd.read_csv(path, comment="#")
+    pd.testing.assert_frame_equal(read, fig6.table, check_exact=True)
+    assert [one.name for one in tmp_path.iterdir()] == ["both.csv"]
+
+
+def test_files_scenarios_and_solutions_are_taken(tmp_path: Path) -> None:
+    scenario = ss.load_scenario("fig6-slab")
+    saved = scenario.run().save(tmp_path / "saved.nc")
+    found = compare(saved, "fig6-slab", scenario, ss.load(saved))
+    assert list(found.runs) == ["saved", "fig6-slab", "fig6-slab (2)", "run"]
+    assert found.table.slip.nunique() == 1
+    longer = compare("fig6-slab", scenario, until=7.0, rtol=1e-6)
+    assert [(run.duration, run.rtol) for run in longer.runs.values()] == [(7.0, 1e-6)] * 2
+
+
+def test_progress_names_each_run() -> None:
+    told: list[str] = []
+    compare("fig6-slab", "fig6-slab", progress=told.append)
+    assert told == ["fig6-slab", "fig6-slab (2)"]
+
+
+def test_distinct_names() -> None:
+    assert distinct(["a", "b", "a", "a"]) == ["a", "b", "a (2)", "a (3)"]
+
+
+def test_what_is_refused(fig6: Comparison) -> None:
+    done = fig6.runs["fig6-slab"]
+    for arguments, options, message in (
+        (("fig6-slab",), {}, "needs two"),
+        (("fig6-slab", "fig6-slap"), {}, "did you mean 'fig6-slab'"),
+        (("fig6-slab", done), {"until": 3.0}, "has been run: leave until and rtol away"),
+        (FIG6, {"names": ["one"]}, "names: 2 are needed, got 1"),
+        (FIG6, {"until": -1.0}, "until must be a positive time"),
+        (FIG6, {"rtol": 1.0}, "rtol must be at most"),
+        (FIG6, {"event": 1}, "fig6-block-reconstructed has no slip event 1: it has 1"),
+    ):
+        with pytest.raises(ss.InputError, match=message):
+            compare(*arguments, **options)  # type: ignore[arg-type]
+
+
+def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
+    dataset = data(fig6.runs)
+    assert dataset.run0_traction.attrs["units"] == "1"
+    assert float(dataset.run0_traction[0]) == pytest.approx(0.8, rel=1e-12, abs=0.0)
+    assert float(dataset.run1_traction.min()) == pytest.approx(-0.399999969 / 100, rel=1e-4, abs=0.0)
+    assert float(dataset.run1_slip_time.max()) == pytest.approx(1.25 * 5.714285714, rel=1e-9, abs=0.0)
+    figure = fig6.plot()
+    assert [axes.get_ylabel() for axes in figure.axes] == ["slip $u-u_0$ (m)", "slip rate $v$ (m/s)", r"friction $\tau/S$"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == list(FIG6)
+
+
+def test_runs_of_very_different_lengths_share_no_seconds() -> None:
+    runs = {"short": ss.load_scenario("fig6-slab").run(), "long": ss.load_scenario("second-event-maxwell").run()}
+    dataset = data(runs)
+    assert dataset.attrs["shares"] == 1
+    assert float(dataset.run1_slip_time.max()) == 1.0
+    assert dataset.attrs["spans"] == ["7.143 s", "480 year"]
+    assert "share of each run's own" in Comparison(runs).plot().axes[-1].get_xlabel()
+
+
+def test_one_event_of_each_in_local_time() -> None:
+    runs = {rule: ss.load_scenario(f"second-event-{rule}").run() for rule in ("maxwell", "maximal")}
+    dataset = data(runs, 1)
+    assert (dataset.attrs["shares"], dataset.attrs["local"]) == (0, 1)
+    for k, run in enumerate(runs.values()):
+        event = run.events.iloc[1]
+        assert float(dataset[f"run{k}_slip"].max()) == pytest.approx(event.slip, rel=1e-9, abs=0.0)
+        assert float(dataset[f"run{k}_slip_time"].min()) == pytest.approx(-0.1 * event.duration, rel=1e-12, abs=0.0)
+
+
+def test_an_unchanged_friction_is_drawn_as_its_change() -> None:
+    slab = ss.load_scenario("fig7-slab-critical")
+    figure = compare(slab, replace(slab, rtol=1e-8)).plot()
+    assert figure.axes[2].get_ylabel().startswith("change of traction")
+    assert figure.axes[1].get_yscale() == "linear"
+    wide = compare("fig7-block-critical", "fig7-slab-critical").plot()
+    assert wide.axes[1].get_yscale() == "log"
