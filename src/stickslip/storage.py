@@ -265,7 +265,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol)
+    return Solution(
+        scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol, scenario.shortest_event
+    )
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -28,6 +28,12 @@ CASES = [
         ["run", "fig6-slab", "--creep-rtol", "1e-6"],
         "run: --creep-rtol must be 0 here: leaps over creep need a friction law of slip",
     ),
+    (
+        ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
+        "run: --shortest-event must be 0 here: only under a slab with a",
+    ),
+    (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
+    (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
     (["run", "fig6-block-printed", "--creep-rtol", "1e-6"], "run: --creep-rtol must be 0 here: leaps over creep need a slab"),
     (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
     (["run", "fig6-slab", "--rtol", "much"], "Invalid value for '--rtol'"),

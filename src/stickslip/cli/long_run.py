@@ -29,6 +29,7 @@ class Request:
     events: int | None
     rtol: float | None
     creep_rtol: float | None
+    shortest_event: str | None
     selection: str | None
     resume: Path | None
     out: Path | None
@@ -42,9 +43,10 @@ class Request:
         self.pictures.check()
         if self.name is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
-        as_begun = (self.rtol, self.creep_rtol, self.selection, self.catalog)
+        as_begun = (self.rtol, self.creep_rtol, self.shortest_event, self.selection, self.catalog)
         if self.resume is not None and any(option is not None for option in as_begun):
-            raise InputError("run: --resume goes on as the run began: leave --rtol, --creep-rtol, --selection and --catalog away")
+            options = "--rtol, --creep-rtol, --shortest-event, --selection and --catalog"
+            raise InputError(f"run: --resume goes on as the run began: leave {options} away")
         if self.keeps_events_only and (self.out or self.pictures.wanted):
             options = ", ".join(["--out"] * (self.out is not None) + self.pictures.wanted)
             raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
@@ -80,8 +82,9 @@ class Request:
     def scenario(self) -> Scenario:
         """The scenario with what the options change. Raises InputError."""
         from stickslip.evolution.creep.conditions import check_creep_rtol
+        from stickslip.evolution.lumping import check_shortest_event
         from stickslip.scenarios.scenario import load_scenario
-        from stickslip.scenarios.schema import check_rtol
+        from stickslip.scenarios.schema import SHORTEST_EVENT, check_rtol, read_duration
         from stickslip.selection import names, unknown
 
         assert self.name is not None
@@ -91,6 +94,9 @@ class Request:
             changes["rtol"] = check_rtol(self.rtol, "run", "--rtol")
         if self.creep_rtol is not None:
             changes["creep_rtol"] = check_creep_rtol(loaded.problem, self.creep_rtol, "run", "--creep-rtol")
+        if self.shortest_event is not None:
+            shortest = read_duration(self.shortest_event, "run", "--shortest-event", SHORTEST_EVENT)
+            changes["shortest_event"] = check_shortest_event(loaded.problem, shortest, "run", "--shortest-event")
         if self.selection is not None:
             if self.selection not in names():
                 raise InputError(f"run: --selection '{self.selection}' {unknown(self.selection)}")
@@ -126,7 +132,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
         chosen = request.scenario()
         assert request.catalog is not None
         with progress(chosen.name) as report:
-            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol)
+            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol, chosen.shortest_event)
             return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog)
     paused = Paused.read(request.resume)
     check_same(request, paused.stopped.problem)

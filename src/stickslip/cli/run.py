@@ -62,6 +62,14 @@ def run(
             show_default=False,
         ),
     ] = None,
+    shortest_event: Annotated[
+        str | None,
+        typer.Option(
+            help='Lump slip events that are shorter than this, say "1 ms" (a slab under rate weakening ends in ever '
+            "shorter ones). 0 resolves them all.",
+            show_default=False,
+        ),
+    ] = None,
     selection: Annotated[
         str | None,
         typer.Option(
@@ -95,7 +103,7 @@ def run(
     from stickslip.cli.summary import show_catalogue, show_solution
 
     drawn = Pictures(figure, path, catalog_figure, space_time, animation)
-    request = Request(scenario, until, events, rtol, creep_rtol, selection, resume, out, catalog, drawn)
+    request = Request(scenario, until, events, rtol, creep_rtol, shortest_event, selection, resume, out, catalog, drawn)
     request.check()
     if request.keeps_events_only:
         chosen, found = list_events(request)

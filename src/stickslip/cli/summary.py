@@ -55,6 +55,8 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
 def _say_how(screen: Console, scenario: Scenario, creep: str) -> None:
     """Duration, tolerances, and leaps over creep, if they were allowed."""
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    if scenario.shortest_event > 0.0:
+        screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
     if scenario.creep_rtol > 0.0:
         screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
 

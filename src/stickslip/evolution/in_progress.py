@@ -45,9 +45,9 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(cls, problem: Problem, rtol: float, creep_rtol: float = 0.0) -> Self:
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float = 0.0, shortest_event: float = 0.0) -> Self:
         """At t = 0."""
-        setup, state, count = prepare(problem, rtol)
+        setup, state, count = prepare(problem, rtol, shortest_event)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
         leaps = CreepLeaps(problem, creep_rtol) if creep_rtol > 0.0 else None
@@ -57,9 +57,11 @@ class RunInProgress:
         return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower, leaps)
 
     @classmethod
-    def at_checkpoint(cls, history: History, rtol: float, creep_rtol: float, checkpoint: Checkpoint) -> Self:
+    def at_checkpoint(
+        cls, history: History, checkpoint: Checkpoint, rtol: float, creep_rtol: float = 0.0, shortest_event: float = 0.0
+    ) -> Self:
         """Where another run stood; in its history nothing is changed."""
-        run = cls.begin(history.problem, rtol, creep_rtol)
+        run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)

@@ -41,7 +41,7 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
     history = History(kept, run.problem, row_time(run.problem), float(run.setup.par[at.RAMP]), reached, creep=run.creep)
     found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
-    return found if run.leaps is None else replace(found, creep_rtol=run.leaps.tolerance)
+    return replace(found, creep_rtol=run.leaps.tolerance if run.leaps else 0.0, shortest_event=float(run.setup.par[at.SHORTEST]))
 
 
 @dataclass(kw_only=True)

@@ -10,6 +10,7 @@ from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.drive import drive
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
+from stickslip.evolution.lumping import check_shortest_event
 from stickslip.evolution.report import Progress
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import INTERRUPTED, STATUSES
@@ -22,6 +23,7 @@ def simulate(
     rtol: float = 1e-10,
     *,
     creep_rtol: float = 0.0,
+    shortest_event: float = 0.0,
     events: int | None = None,
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
@@ -38,12 +40,17 @@ def simulate(
     1e-2) the run leaps over creep, with an error of slip of at most creep_rtol times the slip since the start, and is exact
     before and after; `solution.creep` lists the leaps. With 0 every round trip is run.
 
+    A slab under rate weakening may end in a storm of ever shorter events. With a shortest_event (s) those that are shorter are
+    lumped (see `stickslip.evolution.lumping`): what comes before the storm stays as it is, and of the rest the statistics of what
+    is longer.
+
     Raises InputError for an argument out of range, a contact that cannot even start, or creep_rtol in a problem that has no
     such leaps.
     """
     check_run("simulate", duration, rtol, events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "simulate")
-    run = RunInProgress.begin(problem, rtol, creep_rtol)
+    check_shortest_event(problem, shortest_event, "simulate")
+    run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
     kept = None if checkpoint is None else Path(checkpoint)
     return go_on(run, Orders(duration, events, progress, kept, checkpoint_every, max_pieces))
 

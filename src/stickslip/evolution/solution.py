@@ -43,6 +43,8 @@ class Solution(Readings):
     events_wanted: int | None = None
     """Slip events after which the run was to stop."""
     creep_rtol: float = 0.0
+    shortest_event: float = 0.0
+    """Events shorter than this (s) are lumped; 0: none."""
     """Tolerance of leaps over creep; 0 where every round trip was run."""
 
     @cached_property

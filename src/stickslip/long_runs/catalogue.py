@@ -14,6 +14,7 @@ from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream, Look, Place
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
+from stickslip.evolution.lumping import check_shortest_event
 from stickslip.evolution.report import Progress
 from stickslip.evolution.simulate import check_run, check_started
 from stickslip.evolution.solution import Solution
@@ -39,6 +40,7 @@ def catalogue(
     *,
     rtol: float = 1e-10,
     creep_rtol: float = 0.0,
+    shortest_event: float = 0.0,
     events: int | None = None,
     event_rate: float | None = None,
     progress: Progress | None = None,
@@ -55,12 +57,13 @@ def catalogue(
     """
     check_run("catalogue", duration, rtol, events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "catalogue")
+    check_shortest_event(problem, shortest_event, "catalogue")
     rate = default_event_rate(problem) if event_rate is None else event_rate
     if not rate >= 0.0:
         raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {event_rate!r}")
     if path is not None:
         check_catalogue(Path(path))
-    run = RunInProgress.begin(problem, rtol, creep_rtol)
+    run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
     orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
     if path is not None:
         return begin(run, orders, Path(path), rate).read()

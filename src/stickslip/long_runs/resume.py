@@ -64,7 +64,7 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
             f"{path}: cannot be taken up: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
             " which would go on in other digits; run it again from the start"
         )
-    run = RunInProgress.at_checkpoint(stopped.history, stopped.rtol, stopped.creep_rtol, checkpoint)
+    run = RunInProgress.at_checkpoint(stopped.history, checkpoint, stopped.rtol, stopped.creep_rtol, stopped.shortest_event)
     reached = float(stopped.history.end[run.length - 1])
     if duration is not None and duration < reached:
         raise InputError(f"{path}: the run has come to {reached:.9g} s already: a duration of {duration:.9g} s lies before that")

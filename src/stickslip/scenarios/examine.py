@@ -69,11 +69,12 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     problem = scenario.problem
     body = type(problem.body)
     initial = {f.name.removeprefix("initial_"): getattr(problem, f.name) for f in fields(problem) if f.name.startswith("initial_")}
+    run = {name: getattr(scenario, name) or None for name in ("duration", "rtol", "creep_rtol", "shortest_event")}
     holders = {
         "body": (body, vars(problem.body)),
         "loading": (body, vars(problem)),
         "initial": (body, initial),
-        "run": (body, {"duration": scenario.duration, "rtol": scenario.rtol, "creep_rtol": scenario.creep_rtol or None}),
+        "run": (body, run),
     }
     facts = {
         table: [

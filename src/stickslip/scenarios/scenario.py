@@ -12,6 +12,7 @@ import tomli_w
 
 from stickslip.errors import InputError, nearest
 from stickslip.evolution.creep.conditions import check_creep_rtol
+from stickslip.evolution.lumping import check_shortest_event
 from stickslip.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
@@ -41,6 +42,7 @@ class Scenario:
     description: str = ""
     events: int | None = None
     creep_rtol: float = 0.0
+    shortest_event: float = 0.0
     name: str = field(default="scenario", compare=False)
     source: str = field(default="", compare=False, repr=False)
 
@@ -53,6 +55,7 @@ class Scenario:
             rtol=solution.rtol,
             events=solution.events_wanted,
             creep_rtol=solution.creep_rtol,
+            shortest_event=solution.shortest_event,
             name=name,
         )
 
@@ -60,9 +63,8 @@ class Scenario:
         """Simulate. `progress` and what else is given is handed to `stickslip.simulate`."""
         from stickslip.evolution.simulate import simulate  # the compiler behind it takes a second to import
 
-        return simulate(
-            self.problem, self.duration, self.rtol, creep_rtol=self.creep_rtol, events=self.events, progress=progress, **keep
-        )
+        how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "events": self.events}
+        return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
 
     def to_toml(self) -> str:
         """The scenario as TOML: every value written out, in SI, and read back to the last digit."""
@@ -75,6 +77,7 @@ class Scenario:
         tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
         run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol or None}
+        run["shortest_event"] = self.shortest_event or None
         tables["run"] = _without_none(run | {"selection": problem.rule})
         return tomli_w.dumps(tables, multiline_strings=True)
 
@@ -112,7 +115,9 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
     check_rtol(run["rtol"], file, "[run] rtol")
     about = {"title": content["title"], "description": content["description"], "name": name or file, "source": text}
     check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
-    return Scenario(problem, run["duration"], run["rtol"], events=run["events"], creep_rtol=run["creep_rtol"], **about)
+    check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
+    how = {name: run[name] for name in ("events", "creep_rtol", "shortest_event")}
+    return Scenario(problem, run["duration"], run["rtol"], **how, **about)
 
 
 def _problem(content: dict[str, Any], file: str) -> Problem:

@@ -30,6 +30,7 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
 CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0 runs every round trip", at_least=0)
+SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0 resolves them all", at_least=0)
 LARGEST_RTOL = 1e-2
 STATE = Quantity("1", "state variable of the friction law, if it has one")
 
@@ -57,7 +58,8 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     if table in KINDS:
         return _declared(kind)
     if table == "run":
-        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), "creep_rtol": (CREEP_RTOL, 0.0)}
+        shortest = (SHORTEST_EVENT, 0.0)
+        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), "creep_rtol": (CREEP_RTOL, 0.0), "shortest_event": shortest}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
     remembered = Quantity(state.unit, state.meaning) if state else STATE
@@ -129,13 +131,16 @@ def without_owner(error: InputError) -> str:
     return str(error).partition(": ")[2]
 
 
-def read_duration(text: str, where: str, name: str = "duration") -> float:
-    """A duration (s) typed by hand: a number of seconds, or a text with a unit. Raises InputError beginning with `where`."""
+def read_duration(text: str, where: str, name: str = "duration", declared: Quantity = DURATION) -> float:
+    """A time (s; if not `declared` otherwise a run's) typed by hand: a number of seconds, or a text with a unit.
+
+    Raises InputError beginning with `where`.
+    """
     try:
         value: float | str = float(text)
     except ValueError:
         value = text
-    return read_quantity(value, DURATION, where, name)
+    return read_quantity(value, declared, where, name)
 
 
 def check_rtol(value: float, where: str, name: str = "rtol") -> float:
