@@ -32,6 +32,11 @@ CASES = [
         ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
         "run: --shortest-event must be 0 here: only under a slab with a",
     ),
+    (["run", "fig6-slab", "--energies"], "run: --energies belongs to --catalog FILE"),
+    (
+        ["run", "fig5-slab-printed", "--energies", "--creep-rtol", "1e-6", "--catalog", "events.csv"],
+        "run: --energies and --creep-rtol exclude each other",
+    ),
     (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
     (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
     (["run", "fig6-block-printed", "--creep-rtol", "1e-6"], "run: --creep-rtol must be 0 here: leaps over creep need a slab"),

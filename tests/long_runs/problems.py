@@ -23,7 +23,7 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
     "slip law, slab": bundled("fig5-slab-reconstructed"),
     "rate law, leaps": bundled("second-event-perfect-delay"),
     "rate law, maximal": bundled("second-event-maximal"),
-    "rate law, fragments": (ss.Problem(SLAB, F.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1234, initial_excess=0.0), 2500.0),
+    "rate law, fragments": (ss.Problem(SLAB, F.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1234, initial_excess=0.0), 2100.0),
     "folds": bundled("fig4-loop"),
     "folds, lossy": (
         ss.Problem(replace(SLAB, driver_impedance=2e6), F.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=0.0, far_stress=8.4e7),

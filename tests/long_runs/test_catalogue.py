@@ -21,7 +21,7 @@ from stickslip.evolution.event_stream import EventStream
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.keeper import Orders
 from stickslip.evolution.report import Report
-from stickslip.evolution.tables import default_event_rate
+from stickslip.evolution.tables import ENERGY_COLUMNS, default_event_rate
 from stickslip.long_runs import catalogue as module
 from stickslip.long_runs.catalogue import CatalogueKeeper
 from stickslip.long_runs.rows import RowsInMemory
@@ -77,6 +77,21 @@ def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
         assert len(first) < len(whole)
         same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration), whole)
         same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc"), whole)
+
+
+@pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals", "block that heals"])
+def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As those of the whole run, and taken up too: relative 1e-12 of the largest, for sums run over other pieces."""
+    monkeypatch.setattr(module, "CAPACITY", 64)
+    problem, duration = RUNS[name]
+    whole = ss.simulate(problem, duration).catalogue(energies=True)
+    ss.catalogue(problem, 0.7 * duration, tmp_path / "events.csv", energies=True)
+    found = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration)
+    assert list(found.columns) == list(whole.columns)
+    for energy in ENERGY_COLUMNS:
+        np.testing.assert_allclose(found[energy], whole[energy], rtol=0.0, atol=1e-12 * whole.released.abs().max(), err_msg=energy)
+    finished = found[found.end.notna()]
+    assert (finished.balance.abs() < 1e-9 * finished.released.abs().max()).all()
 
 
 @pytest.mark.parametrize("events", [1, 5])

@@ -34,6 +34,7 @@ class Request:
     resume: Path | None
     out: Path | None
     catalog: Path | None
+    energies: bool
     pictures: Pictures
 
     def check(self) -> None:
@@ -50,6 +51,8 @@ class Request:
         if self.keeps_events_only and (self.out or self.pictures.wanted):
             options = ", ".join(["--out"] * (self.out is not None) + self.pictures.wanted)
             raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
+        if self.energies and self.catalog is None:
+            raise InputError("run: --energies belongs to --catalog FILE")
         if self.catalog is not None:
             from stickslip.long_runs.rows import SUFFIXES, check_catalogue
 
@@ -125,15 +128,16 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run without a history, from the start or from where it stopped. Raises InputError."""
     from stickslip.evolution.in_progress import RunInProgress
     from stickslip.evolution.keeper import Orders
-    from stickslip.long_runs.catalogue import Paused, begin
+    from stickslip.long_runs.catalogue import Paused, begin, check_energies
     from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
         chosen = request.scenario()
         assert request.catalog is not None
+        check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
             run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol, chosen.shortest_event)
-            return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog)
+            return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog, energies=request.energies)
     paused = Paused.read(request.resume)
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:

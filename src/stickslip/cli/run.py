@@ -44,6 +44,7 @@ def run(
         Path | None,
         typer.Option("--catalog", help="Keep slip events only, in bounded memory (.csv, .parquet or .nc).", show_default=False),
     ] = None,
+    energies: Annotated[bool, typer.Option("--energies", help="Events of --catalog with their energies (takes its time).")] = False,
     until: Annotated[
         str | None,
         typer.Option("--until", "--duration", help='Run this long instead: s, or with a unit ("480 year").', show_default=False),
@@ -103,7 +104,7 @@ def run(
     from stickslip.cli.summary import show_catalogue, show_solution
 
     drawn = Pictures(figure, path, catalog_figure, space_time, animation)
-    request = Request(scenario, until, events, rtol, creep_rtol, shortest_event, selection, resume, out, catalog, drawn)
+    request = Request(scenario, until, events, rtol, creep_rtol, shortest_event, selection, resume, out, catalog, energies, drawn)
     request.check()
     if request.keeps_events_only:
         chosen, found = list_events(request)

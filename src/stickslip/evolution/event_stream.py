@@ -16,7 +16,7 @@ from stickslip.evolution.events import NOT_YET, SlipEvents
 from stickslip.evolution.history import History
 from stickslip.evolution.layout import Integers, Store
 from stickslip.evolution.setup import row_time
-from stickslip.evolution.tables import event_rows
+from stickslip.evolution.tables import with_energies
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ class Place(NamedTuple):
 
 
 BEFORE = Place(-1, 0.0)
+WAVES_OF = 3
+"""Round trips before an event whose waves are in the slab when it begins, or have just left it."""
 
 
 @dataclass
@@ -45,6 +47,12 @@ class EventStream:
     first: int = 0
     last_start: Place = BEFORE  # of the last event that was told
     told: int = 0
+    energies: bool = False
+    """Whether rows have the energies of events too, for which waves are needed that left the contact before."""
+
+    def needed(self, store: Store) -> int:
+        """The first piece without which new events could not be told."""
+        return int(np.searchsorted(store.row, store.row[self.first] - WAVES_OF)) if self.energies else self.first
 
     def look(self, store: Store, length: int) -> Look:
         """What is new in the first `length` pieces of a history."""
@@ -86,7 +94,8 @@ class Look:
         """Rows of the new events; on demand also of those that the end of the history leaves open."""
         before = min(self.old, 1)  # whose start says when the first new one recurs
         wanted = slice(self.old - before, None if unknown else self.old + len(self.known_by))
-        return event_rows(self.history, self.events.some(wanted)).iloc[before:].reset_index(drop=True)
+        events = self.events.some(wanted)
+        return with_energies(self.history, events, self.stream.energies).iloc[before:].reset_index(drop=True)
 
     def tell(self) -> None:
         """The new events are old ones from now on; what lies well before the last of them is no longer needed."""

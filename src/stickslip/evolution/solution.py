@@ -59,10 +59,8 @@ class Solution(Readings):
         An event is a maximal interval with |v| above event_rate (m/s; default 1e-6 S (range of mu) / Z, for the block
         / sqrt(K m); 0 takes every slip).
         """
-        from stickslip.observables.energy import event_energies
-
         rate = default_event_rate(self.problem) if event_rate is None else event_rate
-        return events_table(self.history, rate, event_energies if energies else None)
+        return events_table(self.history, rate, energies)
 
     @cached_property
     def creep(self) -> pd.DataFrame:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,8 +47,6 @@ ENERGY_COLUMNS = {
     "balance": ("energy", "released + work - heat - damped: zero for an exact solution"),
 }
 
-Energies = Callable[[History, Moments, Moments], Mapping[str, Floats]]
-
 CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 
 
@@ -60,14 +57,17 @@ def default_event_rate(problem: Problem) -> float:
     return 1e-6 * problem.normal * problem.friction.variation / resistance
 
 
-def events_table(history: History, threshold: float, energies: Energies | None = None) -> pd.DataFrame:
-    """One row a maximal interval with |slip rate| above the threshold (m/s); columns as in EVENT_COLUMNS.
+def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
+    """One row a maximal interval with |slip rate| above the threshold (m/s); columns as in EVENT_COLUMNS, and ENERGY_COLUMNS."""
+    return with_energies(history, SlipEvents.of(history, threshold), energies)
 
-    `energies` gives those of ENERGY_COLUMNS from the first and last moments of all events.
-    """
-    events = SlipEvents.of(history, threshold)
+
+def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
+    """One row an event, with its energies if they are wanted."""
+    from stickslip.observables.energy import event_energies
+
     table = event_rows(history, events)
-    return table if energies is None else table.assign(**energies(history, events.begin, events.end))
+    return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
 
 
 def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:

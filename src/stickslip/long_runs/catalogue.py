@@ -43,16 +43,18 @@ def catalogue(
     shortest_event: float = 0.0,
     events: int | None = None,
     event_rate: float | None = None,
+    energies: bool = False,
     progress: Progress | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int = MAX_PIECES,
 ) -> pd.DataFrame:
     """The slip events of a run up to `duration` (s), or until so many `events` are over, in bounded memory.
 
-    The table is that of `Solution.catalogue(event_rate)`, with a last row for an event that the run's end leaves open; its
-    `attrs` say what ended the run. With a `path` (.csv, .parquet, .nc) the rows go to this file, and beside it NAME.checkpoint.nc
-    is renewed every `checkpoint_every` seconds of wall clock: `stickslip.resume_catalogue` takes it up. The history is forgotten
-    up to the last event but one; an event, with what precedes it, of more than `max_pieces` pieces ends the run with a status.
+    The table is that of `Solution.catalogue(event_rate, energies=energies)`, with a last row for an event that the end leaves
+    open; its `attrs` say what ended the run. With a `path` (.csv, .parquet, .nc) the rows go to this file, and beside it
+    NAME.checkpoint.nc is renewed every `checkpoint_every` seconds of wall clock: `stickslip.resume_catalogue` takes it up. The
+    history is forgotten up to the last event but one, but for what stands in the body; an event, with what precedes it, of more
+    than `max_pieces` pieces ends the run with a status.
     For the other arguments, and errors, see `stickslip.simulate`; InputError also for a path that says no format.
     """
     check_run("catalogue", duration, rtol, events, checkpoint_every)
@@ -63,20 +65,32 @@ def catalogue(
         raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {event_rate!r}")
     if path is not None:
         check_catalogue(Path(path))
+    check_energies(creep_rtol, energies, "catalogue")
     run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
     orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
     if path is not None:
-        return begin(run, orders, Path(path), rate).read()
-    return follow(run, orders, EventStream(problem, rate, float(run.setup.par[at.RAMP])), RowsInMemory()).read()
+        return begin(run, orders, Path(path), rate, energies).read()
+    return follow(run, orders, stream_of(run, rate, energies), RowsInMemory()).read()
 
 
-def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None) -> Catalogue:
+def check_energies(creep_rtol: float, energies: bool, where: str, options: str = "energies and creep_rtol") -> None:
+    """Refuse energies of a run that leaps over creep. Raises InputError."""
+    if energies and creep_rtol > 0.0:
+        raise InputError(f"{where}: {options} exclude each other: what leaps over creep send into the slab is not known")
+
+
+def stream_of(run: RunInProgress, event_rate: float, energies: bool) -> EventStream:
+    """The events of a run from its start."""
+    return EventStream(run.problem, event_rate, float(run.setup.par[at.RAMP]), energies=energies)
+
+
+def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None, energies: bool = False) -> Catalogue:
     """Follow a run from its start, into a file; what was there under these names is gone."""
     rows = Rows(path)
     checkpoint_of(rows).unlink(missing_ok=True)
     rows.clear()
     rate = default_event_rate(run.problem) if event_rate is None else event_rate
-    return follow(run, orders, EventStream(run.problem, rate, float(run.setup.par[at.RAMP])), rows)
+    return follow(run, orders, stream_of(run, rate, energies), rows)
 
 
 def resume_catalogue(
@@ -135,9 +149,9 @@ class Paused:
         check_catalogue(rows.path)
         rows.take_up(int(about["told"]), int(about["bytes"]))
         start = Place(int(about["last_piece"]), float(about["last_xi"]))
-        rate, ramp = float(about["event_rate"]), float(run.setup.par[at.RAMP])
         run.forgotten = int(about["forgotten"])
-        return follow(run, orders, EventStream(run.problem, rate, ramp, int(about["first"]), start, int(about["told"])), rows)
+        fresh = stream_of(run, float(about["event_rate"]), bool(about["energies"]))
+        return follow(run, orders, replace(fresh, first=int(about["first"]), last_start=start, told=int(about["told"])), rows)
 
 
 @dataclass(frozen=True)
@@ -208,7 +222,7 @@ class CatalogueKeeper(Keeper):
 
     def make_room(self, run: RunInProgress) -> bool:
         """Forget what neither events nor the engine need; more room only if that is most of what there is."""
-        dropped = run.forget_before(self.stream.first) if run.before_end is None else 0
+        dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
         if dropped > 0:
             self.stream.forget(dropped)
             self._remember(run)
@@ -250,6 +264,7 @@ class CatalogueKeeper(Keeper):
             "last_piece": stream.last_start.piece,
             "last_xi": stream.last_start.xi,
             "event_rate": stream.threshold,
+            "energies": int(stream.energies),
             "forgotten": run.forgotten,
         }
 
