@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from stickslip.observables.statistics import catalogue_statistics
     from stickslip.scenarios import load_scenario
     from stickslip.storage import load, save
+    from stickslip.studies.ensemble import Ensemble, ensemble
     from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
@@ -37,11 +38,13 @@ YEAR = 31_557_600.0
 """Julian year, s."""
 
 _LATER = {
+    "Ensemble": "stickslip.studies.ensemble",
     "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
     "catalogue": "stickslip.long_runs.catalogue",
     "catalogue_statistics": "stickslip.observables.statistics",
     "critical_value": "stickslip.contact.critical",
+    "ensemble": "stickslip.studies.ensemble",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
     "predictability": "stickslip.observables.predictability",
@@ -57,6 +60,7 @@ _LATER = {
 __all__ = [
     "YEAR",
     "ElasticSlab",
+    "Ensemble",
     "InputError",
     "Problem",
     "Regularisation",
@@ -65,6 +69,7 @@ __all__ = [
     "catalogue",
     "catalogue_statistics",
     "critical_value",
+    "ensemble",
     "friction",
     "load",
     "load_scenario",
