@@ -10,6 +10,7 @@ import typer
 from typer.exceptions import TyperException
 
 from stickslip.cli.check import check
+from stickslip.cli.ensemble import ensemble
 from stickslip.cli.new import new
 from stickslip.cli.paper import paper
 from stickslip.cli.regularise import regularise
@@ -27,6 +28,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
   stickslip regularise mine.toml   which selection rule does physics choose
+  stickslip ensemble mine.toml     how far can events and statistics be trusted
   stickslip paper --out paper      the source paper, claim by claim
 """
 
@@ -38,7 +40,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, check, new, regularise, paper):
+for command in (run, check, new, regularise, ensemble, paper):
     app.command()(command)
 
 

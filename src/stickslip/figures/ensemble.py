@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-WIDE = 100.0
-"""Values that span more than this factor are drawn on a logarithmic axis."""
+WIDE, CLOSE = 100.0, 3.0
+"""Slips, and spreads, that span more than these factors are drawn on a logarithmic axis."""
 
 
 def data(study: Ensemble) -> xr.Dataset:
@@ -99,15 +99,14 @@ def draw(dataset: xr.Dataset) -> Figure:
 def _draw_time_lines(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     start, member, same = (dataset[name].values for name in ("start", "of_member", "same"))
     style: Any = {"linestyle": "none", "marker": "|", "markersize": 7, "markeredgewidth": 0.8, "rasterized": True}
-    for of, colour, text in ((same == 1, BLUE, "as in the undisturbed run"), (same == 0, VERMILLION, "not")):
-        if of.any():
-            axes.plot(start[of] / size, member[of], color=colour, label=text, **style)
+    for of, colour in ((same == 1, BLUE), (same == 0, VERMILLION)):
+        axes.plot(start[of] / size, member[of], color=colour, **style)
     _draw_horizons(axes, dataset, size)
     count = dataset.sizes["member"]
     axes.set_ylim(count + 0.6, -0.6)
     axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
     axes.set_ylabel("member (0: undisturbed)")
-    letter(axes, f"A  slip events of {count} members" + (", the same (blue) or not" if (same == 0).any() else ", all the same"))
+    letter(axes, "A  slip events: " + ("the same (blue) or not" if (same == 0).any() else "all members have the same"))
 
 
 def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
@@ -120,9 +119,8 @@ def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     if np.isfinite(predicted[1:]).any():
         axes.plot(time, np.where(predicted < 10.0 * lost, predicted, np.nan), "--", color=VERMILLION, label="predicted")
     axes.axhline(lost, color=GREY, linewidth=0.8, linestyle=":")
-    axes.annotate(
-        "a tenth of the load's range", (1.0, lost), (-2, -3), ("axes fraction", "data"), "offset points", va="top", ha="right"
-    )
+    at: Any = ("axes fraction", "data")
+    axes.annotate("a tenth of the load's range", (0.0, lost), (4, 2), at, "offset points", color=INK)
     _draw_horizons(axes, dataset, size)
     axes.set_yscale("log")
     positive = np.concatenate([values[values > 0.0] for values in (growth, least[1:])])
@@ -173,7 +171,10 @@ def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
     complete = dataset["shared_members"].values == dataset.sizes["member"]
     for of, colour in ((there & complete, BLUE), (there & ~complete, VERMILLION)):
         axes.plot(number[of], spread[of], "o", color=colour, markersize=2.5, rasterized=True)
-    axes.set_yscale("log")
+    if spread[there].max() > CLOSE * spread[there].min():
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(0.0, 1.5 * spread[there].max())
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     axes.set_xlabel("event")
     axes.set_ylabel("root mean square (s)")

@@ -59,6 +59,11 @@ class Ensemble:
         return min(run.history.span[1] for run in (self.reference, *self.runs))
 
     @property
+    def ok(self) -> bool:
+        """Whether every run reached its end."""
+        return all(run.status.ok for run in (self.reference, *self.runs))
+
+    @property
     def stopped(self) -> str:
         """Why there are fewer members, or a shorter time, than asked for; empty if all is there."""
         early = [run for run in (self.reference, *self.runs) if not run.status.ok]
@@ -150,8 +155,9 @@ class Ensemble:
 
     @property
     def predicted_exponent(self) -> float:
-        """The same slope of the predicted growth at the same times; NaN where it is not known."""
-        small = self.growth[self.growth.small]
+        """The same slope of the predicted growth, at the same times while it is small too; NaN where it is not known."""
+        largest = self.separation.saturation / np.abs(self.pushes).max()
+        small = self.growth[self.growth.small & (self.growth.predicted < largest)]
         return slope(small.time.to_numpy(), small.predicted.to_numpy())
 
     @cached_property

@@ -53,9 +53,9 @@ def separation(reference: Solution, runs: Sequence[Solution], until: float) -> S
     times = (np.arange(count)[:, None] + share) * (until / count)
     undisturbed = _load(reference, times)
     gaps = np.abs([_load(run, times) - undisturbed for run in runs])
-    apart: Floats = np.asarray(np.quantile(gaps, 1.0 - LATE, axis=2), float)
-    range_, largest = float(np.ptp(undisturbed)), float(np.abs(undisturbed).max())
-    return Separation(np.arange(1, count + 1) * (until / count), apart, LOST * range_, ROUNDING * largest)
+    apart = np.asarray(np.quantile(gaps, 1.0 - LATE, axis=2), np.float64)
+    ends = np.asarray(until * np.arange(1, count + 1) / count, np.float64)
+    return Separation(ends, apart, LOST * float(np.ptp(undisturbed)), ROUNDING * float(np.abs(undisturbed).max()))
 
 
 def _load(run: Solution, times: Floats) -> Floats:
