@@ -45,8 +45,8 @@ def ensemble(
     beside the predicted one, and how far statistics of the members are apart.
 
     \b
-      stickslip ensemble fig7-slab-critical --until "141000 s" --figure spread.png
-      stickslip ensemble fig6-slab --until "30000 years" --events 60 --out events.csv
+      stickslip ensemble fig6-slab --until "30000 years" --events 65 --figure a.png
+      stickslip ensemble cycles-block --size 1e-6 --out events.csv
       stickslip ensemble mine.toml --members 20 --size 1e-6 --seed 1
 
     Ctrl-C shows and saves what the finished members say.
@@ -102,7 +102,7 @@ def _show(scenario: Scenario, study: Ensemble) -> None:
     if len(study.table):
         _show_events(study)
         _show_statistics(study)
-    for line in (study.stopped, study.text, study.growth_text):
+    for line in (study.note, study.stopped, study.text, study.growth_text):
         if line:
             screen.print(f"{line[0].upper()}{line[1:]}.", soft_wrap=True)
 

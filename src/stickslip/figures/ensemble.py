@@ -39,6 +39,7 @@ def data(study: Ensemble) -> xr.Dataset:
         "saturation": study.separation.saturation,
         "found": study.text,
         "growth_found": study.growth_text,
+        "note": study.note,
         "stopped": study.stopped,
     }
     return xr.Dataset(contents, attrs=attributes)
@@ -118,9 +119,10 @@ def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     lost = float(dataset.attrs["saturation"]) / float(np.abs(dataset["push"].values).max())
     if np.isfinite(predicted[1:]).any():
         axes.plot(time, np.where(predicted < 10.0 * lost, predicted, np.nan), "--", color=VERMILLION, label="predicted")
-    axes.axhline(lost, color=GREY, linewidth=0.8, linestyle=":")
-    at: Any = ("axes fraction", "data")
-    axes.annotate("a tenth of the load's range", (0.0, lost), (4, 2), at, "offset points", color=INK)
+    if lost > 0.0:
+        at: Any = ("axes fraction", "data")
+        axes.axhline(lost, color=GREY, linewidth=0.8, linestyle=":")
+        axes.annotate("a tenth of the load's range", (0.0, lost), (4, 2), at, "offset points", color=INK)
     _draw_horizons(axes, dataset, size)
     axes.set_yscale("log")
     positive = np.concatenate([values[values > 0.0] for values in (growth, least[1:])])

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-MAX_PIECES = 200_000
+MAX_PIECES, MAX_TOTAL = 200_000, 2_000_000
+"""Pieces of history of one run, and of all runs together (some 400 bytes each), unless more are allowed."""
 SMALLEST, LARGEST = 1e-15, 1e-2
 """Sizes between which a disturbance is one."""
 MOST_MEMBERS = 1000
@@ -57,6 +58,14 @@ class Ensemble:
     def until(self) -> float:
         """Time (s) up to which runs are compared: where the first of them ended."""
         return min(run.history.span[1] for run in (self.reference, *self.runs))
+
+    @property
+    def note(self) -> str:
+        """Where a disturbance of the initial load cannot do anything but make all earlier or later; else empty."""
+        problem = self.problem
+        if problem.friction.state is not None or _is_lossy(problem) or not -2.0 * problem.strength < problem.excess < 0.0:
+            return ""
+        return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 
     @property
     def ok(self) -> bool:
@@ -174,11 +183,12 @@ class Ensemble:
     @property
     def text(self) -> str:
         """What was found, in a few words."""
-        events, lost = len(self.table), self.first_lost
+        events, lost, members = len(self.table), self.first_lost, len(self.runs)
         if not events:
             return "no slip event"
         if lost is None:
-            return f"all {len(self.runs)} members have all {events} slip events"
+            which = "the same slip event" if events == 1 else f"the same {events} slip events"
+            return f"all {members} members have {which}" if members > 1 else f"the member has {which}"
         return (
             f"sequences differ from event {lost + 1} of {events} on, at {_time(self.horizon)}; then only statistics mean anything"
         )
@@ -193,7 +203,7 @@ class Ensemble:
         if self.prediction is None:
             return f"{measured} (no prediction for this problem)"
         horizon = self.prediction.horizon
-        lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon"
+        lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
 
     def save(self, path: str | Path) -> Path:
@@ -218,7 +228,7 @@ class Ensemble:
     def __repr__(self) -> str:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
         return "\n".join(
-            ["stickslip Ensemble", *(f"  {line}" for line in (about, self.text, self.growth_text, self.stopped) if line)]
+            ["stickslip Ensemble", *(f"  {line}" for line in (about, self.note, self.text, self.growth_text, self.stopped) if line)]
         )
 
 
@@ -233,28 +243,32 @@ def ensemble(
     seed: int = 0,
     event_rate: float | None = None,
     progress: Report | None = None,
-    max_pieces: int = MAX_PIECES,
+    max_pieces: int | None = None,
 ) -> Ensemble:
     """Run a problem undisturbed, and `members` times with its initial load disturbed, and compare.
 
     Each member's initial load (slab: the uniform stress tau0; block: the force of its spring) is larger or smaller by `size`/2 to
     `size` times the static strength S mu_s (of a law that never sticks: times the initial load); nothing else changes, not the
-    slip, nor a state of the law, nor the far stress. Signs and sizes are drawn from `seed`. A run that needs more than max_pieces
-    ends early, and all are compared up to there. Ctrl-C keeps the members that are finished; KeyboardInterrupt if there is none.
-    Raises InputError for an argument out of range.
+    slip, nor a state of the law, nor the far stress. Signs and sizes are drawn from `seed`; where the contact begins at its
+    strength or beyond, no member is held back (begun from rest, another load makes the same run earlier or later, see `note`).
+
+    A run that needs more than max_pieces (default: 200 000, and 2 000 000 of all runs together) ends early, and all are compared
+    up to there. event_rate (m/s) is that of `Solution.catalogue`. Ctrl-C keeps the members that are finished, KeyboardInterrupt
+    if there is none. Raises InputError for an argument out of range.
     """
     check_run("ensemble", duration, rtol, events, 0.0)
     pushes = _pushes(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
     tell = progress or (lambda text: None)
+    most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     tell("undisturbed")
-    reference = _run(problem, duration, rtol, events, max_pieces)
+    reference = _run(problem, duration, rtol, events, most)
     runs: list[Solution] = []
     try:
         for i, push in enumerate(pushes.tolist()):
             tell(f"member {i + 1} of {members}")
-            runs.append(_run(disturbed(problem, push), duration, rtol, events, max_pieces))
+            runs.append(_run(disturbed(problem, push), duration, rtol, events, most))
     except KeyboardInterrupt:
         if not runs:
             raise
@@ -292,8 +306,16 @@ def _pushes(problem: Problem, members: int, size: float, seed: int) -> Floats:
     scale = abs(problem.strength if problem.friction.sticks else problem.load)
     if scale == 0.0:
         raise InputError("ensemble: there is neither a strength nor an initial load of which a share could disturb it")
-    draw = np.random.default_rng(seed)
-    return np.asarray(size * scale * draw.uniform(0.5, 1.0, members) * draw.choice([-1.0, 1.0], members))
+    drawn = 2.0 * np.random.default_rng(seed).random(members) - 1.0
+    return _kept_going(problem, 0.5 * size * scale * (drawn + np.copysign(1.0, drawn)))
+
+
+def _kept_going(problem: Problem, pushes: Floats) -> Floats:
+    """None may hold back a contact that begins at its strength or beyond: from rest it would do the same a little later."""
+    beyond = problem.excess if problem.excess >= 0.0 else -problem.excess - 2.0 * problem.strength
+    sign = math.copysign(1.0, problem.excess)
+    held_back = (beyond >= 0.0) & (beyond + sign * pushes < 0.0)
+    return np.where(held_back, -pushes, pushes)
 
 
 def _time(seconds: float) -> str:

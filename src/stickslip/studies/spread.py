@@ -69,7 +69,7 @@ def slope(time: Floats, growth: Floats) -> float:
     if time.size < 3:
         return np.nan
     away = time - time.mean()
-    return float(away @ np.log(growth) / (away @ away))
+    return float(away @ np.log(growth / growth[0]) / (away @ away))
 
 
 def shared_events(
