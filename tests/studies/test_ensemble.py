@@ -12,7 +12,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.studies.ensemble import Ensemble, disturbed, ensemble
+from stickslip.studies.disturbances import disturbed
+from stickslip.studies.ensemble import Ensemble, ensemble
 from stickslip.studies.spread import shared_events, slope, statistics_spread
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
@@ -115,7 +116,9 @@ def test_from_rest_all_is_the_same_but_earlier_or_later() -> None:
     assert ensemble(SLOW, 1.0, members=1).note == ""
 
 
-@pytest.mark.parametrize(("excess", "size", "signs"), [(0.0, 1e-12, {1.0}), (1.0, 1e-12, {-1.0, 1.0}), (-1.0, 1e-6, {-1.0, 1.0})])
+@pytest.mark.parametrize(
+    ("excess", "size", "signs"), [(0.0, 1e-12, {1.0}), (-0.0, 1e-12, {1.0}), (1.0, 1e-12, {-1.0, 1.0}), (-1.0, 1e-6, {-1.0, 1.0})]
+)
 def test_a_start_beyond_the_strength_is_not_held_back(excess: float, size: float, signs: set) -> None:
     forward = replace(FAST, initial_excess=excess)
     backward = replace(FAST, initial_excess=-excess - 2.0 * FAST.strength)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from stickslip.evolution.simulate import check_run, simulate
 from stickslip.evolution.solution import Solution
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem import Problem
+from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.spread import Separation, separation, shared_events, slope, statistics_spread
 
 if TYPE_CHECKING:
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
 
 MAX_PIECES, MAX_TOTAL = 200_000, 2_000_000
 """Pieces of history of one run, and of all runs together (some 400 bytes each), unless more are allowed."""
-SMALLEST, LARGEST = 1e-15, 1e-2
-"""Sizes between which a disturbance is one."""
-MOST_MEMBERS = 1000
-
 Report = Callable[[str], Any]
 
 
@@ -63,7 +60,7 @@ class Ensemble:
     def note(self) -> str:
         """Where a disturbance of the initial load cannot do anything but make all earlier or later; else empty."""
         problem = self.problem
-        if problem.friction.state is not None or _is_lossy(problem) or not -2.0 * problem.strength < problem.excess < 0.0:
+        if problem.friction.state is not None or is_lossy(problem) or not -2.0 * problem.strength < problem.excess < 0.0:
             return ""
         return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 
@@ -257,7 +254,7 @@ def ensemble(
     if there is none. Raises InputError for an argument out of range.
     """
     check_run("ensemble", duration, rtol, events, 0.0)
-    pushes = _pushes(problem, members, size, seed)
+    pushes = drawn(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
     tell = progress or (lambda text: None)
@@ -275,47 +272,11 @@ def ensemble(
     return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, event_rate)
 
 
-def disturbed(problem: Problem, push: float) -> Problem:
-    """The problem with an initial load that is larger by a push (Pa; block: N)."""
-    far = problem.load if problem.far_stress is None and _is_lossy(problem) else problem.far_stress
-    if not problem.friction.sticks:
-        return replace(problem, initial_load=problem.load + push, far_stress=far)
-    return replace(problem, initial_load=None, initial_excess=problem.excess + push, far_stress=far)
-
-
-def _is_lossy(problem: Problem) -> bool:
-    """Whether the slab has a driver of finite impedance, whose far stress is the initial load by default."""
-    return not math.isinf(getattr(problem.body, "driver_impedance", math.inf))
-
-
 def _run(problem: Problem, duration: float, rtol: float, events: int | None, max_pieces: int) -> Solution:
     solution = simulate(problem, duration, rtol, events=events, max_pieces=max_pieces)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
     return solution
-
-
-def _pushes(problem: Problem, members: int, size: float, seed: int) -> Floats:
-    """Disturbances of the initial load (Pa or N). Raises InputError."""
-    if not (isinstance(members, int) and 1 <= members <= MOST_MEMBERS):
-        raise InputError(f"ensemble: members must be a whole number from 1 to {MOST_MEMBERS}, got {members!r}")
-    if not SMALLEST <= size <= LARGEST:
-        raise InputError(f"ensemble: size must lie between {SMALLEST:g} and {LARGEST:g}, got {size!r}")
-    if not (isinstance(seed, int) and seed >= 0):
-        raise InputError(f"ensemble: seed must be a whole number, 0 or more, got {seed!r}")
-    scale = abs(problem.strength if problem.friction.sticks else problem.load)
-    if scale == 0.0:
-        raise InputError("ensemble: there is neither a strength nor an initial load of which a share could disturb it")
-    drawn = 2.0 * np.random.default_rng(seed).random(members) - 1.0
-    return _kept_going(problem, 0.5 * size * scale * (drawn + np.copysign(1.0, drawn)))
-
-
-def _kept_going(problem: Problem, pushes: Floats) -> Floats:
-    """None may hold back a contact that begins at its strength or beyond: from rest it would do the same a little later."""
-    beyond = problem.excess if problem.excess >= 0.0 else -problem.excess - 2.0 * problem.strength
-    sign = math.copysign(1.0, problem.excess)
-    held_back = (beyond >= 0.0) & (beyond + sign * pushes < 0.0)
-    return np.where(held_back, -pushes, pushes)
 
 
 def _time(seconds: float) -> str:
