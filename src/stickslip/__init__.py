@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from stickslip.side_by_side import Comparison, compare
     from stickslip.storage import load, save
     from stickslip.studies.analogy import Analogy, analogy
+    from stickslip.studies.ensemble import Ensemble, ensemble
     from stickslip.studies.regularise import Regularisation, regularise
 
 __version__ = "0.1.0"
@@ -41,6 +42,7 @@ YEAR = 31_557_600.0
 _LATER = {
     "Analogy": "stickslip.studies.analogy",
     "Comparison": "stickslip.side_by_side",
+    "Ensemble": "stickslip.studies.ensemble",
     "Regularisation": "stickslip.studies.regularise",
     "Solution": "stickslip.evolution.solution",
     "analogy": "stickslip.studies.analogy",
@@ -48,6 +50,7 @@ _LATER = {
     "catalogue_statistics": "stickslip.observables.statistics",
     "compare": "stickslip.side_by_side",
     "critical_value": "stickslip.contact.critical",
+    "ensemble": "stickslip.studies.ensemble",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
     "predictability": "stickslip.observables.predictability",
@@ -65,6 +68,7 @@ __all__ = [
     "Analogy",
     "Comparison",
     "ElasticSlab",
+    "Ensemble",
     "InputError",
     "Problem",
     "Regularisation",
@@ -75,6 +79,7 @@ __all__ = [
     "catalogue_statistics",
     "compare",
     "critical_value",
+    "ensemble",
     "friction",
     "load",
     "load_scenario",

@@ -14,8 +14,9 @@ from stickslip import __version__
 from stickslip.cli.names import STARTERS, complete_regularisation, complete_scenario, complete_source
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
+from stickslip.studies import ensemble as ensembles
 
-COMMANDS = ["run", "check", "new", "compare", "analogy", "export", "regularise", "paper"]
+COMMANDS = ["run", "check", "new", "compare", "analogy", "export", "regularise", "ensemble", "paper"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -171,6 +172,53 @@ def test_regularise_takes_sizes_with_units(command):
     for size in ("0.01", "0.001", "0.0001"):
         assert re.search(rf"^ *{size} ", shown.out, re.MULTILINE)
     assert "All rules have the same answer here" in shown.out
+
+
+def test_ensemble_says_what_members_share_and_how_they_part(command, tmp_path: Path):
+    options = ("--members", "2", "--until", "1e13", "--events", "6", "--out", "a.csv", "--figure", "a.svg")
+    shown = command("ensemble", "fig6-slab", *options)
+    assert shown.code == 0
+    assert shown.err == ""
+    for text in (
+        "2 members, initial load disturbed by up to 1e-12 of the strength (",
+        "6 slip events",
+        "1.479435009e+10",
+        "recurrence (s)",
+        "All 2 members have the same 6 slip events.",
+        "A disturbance is multiplied by 7.29, exponent 2.5",
+        "predicted 2.",
+    ):
+        assert text in shown.out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.svg"]
+    table = pandas.read_csv(tmp_path / "a.csv")
+    assert table.members.tolist() == [2] * 6
+    assert f"{table.start_spread[0]:.3g}" in shown.out
+
+
+def test_ensemble_shows_events_around_the_first_that_is_lost(command):
+    shown = command("ensemble", "fig6-slab", "--until", "1e13", "--events", "65", "--members", "2")
+    first, last = re.search(r"^\d+ slip events, of them (\d+) to (\d+)$", shown.out, re.MULTILINE).groups()
+    lost = re.search(r"^Sequences differ from event (\d+) of \d+ on", shown.out, re.MULTILINE)[1]
+    assert int(first) < int(lost) <= int(last) == int(first) + 11
+    assert re.search(rf"^ +{lost} .* [01] of 2 ", shown.out, re.MULTILINE)
+
+
+def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    original = ensembles._run
+    done = []
+
+    def stops(*arguments):
+        if len(done) == 3:
+            raise KeyboardInterrupt
+        done.append(original(*arguments))
+        return done[-1]
+
+    monkeypatch.setattr(ensembles, "_run", stops)
+    shown = command("ensemble", "cycles-block", "--out", "a.nc")
+    assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
+    assert "Interrupted: 2 of 8 members." in shown.out
+    assert "All 2 members have the same 7 slip events." in shown.out
+    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
 
 
 def test_the_shell_completes_regularisations():

@@ -106,6 +106,16 @@ CASES = [
     (["regularise", "fig4-loop", "--rtol", "1"], "regularise: --rtol must be at most 0.01, got 1"),
     (["regularise", "fig4-loop", "--out", "a.txt"], "--out a.txt: the name must end in .csv"),
     (["regularise", "fig4-loop", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
+    (["ensemble", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
+    (["ensemble", "fig6-slab", "--members", "0"], "ensemble: members must be a whole number from 1 to 1000, got 0"),
+    (["ensemble", "fig6-slab", "--members", "many"], "Invalid value for '--members'"),
+    (["ensemble", "fig6-slab", "--size", "1"], "ensemble: size must lie between 1e-15 and 0.01, got 1.0"),
+    (["ensemble", "fig6-slab", "--seed", "-1"], "ensemble: seed must be a whole number, 0 or more, got -1"),
+    (["ensemble", "fig6-slab", "--until", "1 kg"], "ensemble: --until must be a number in s or a text with a unit"),
+    (["ensemble", "fig6-slab", "--events", "0"], "ensemble: --events must be"),
+    (["ensemble", "fig6-slab", "--rtol", "1"], "ensemble: --rtol must be at most 0.01, got 1"),
+    (["ensemble", "fig6-slab", "--out", "a.txt"], "--out a.txt: the name must end in .csv or .nc"),
+    (["ensemble", "fig6-slab", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
 ]
 
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
-from stickslip.figures import admissible, comparison, hysteresis, laws, regimes, regularise, resistance, systems
+from stickslip.figures import admissible, comparison, ensemble, hysteresis, laws, regimes, regularise, resistance, systems
 from stickslip.figures.run import plot_run
 from stickslip.figures.style import STYLE
 from stickslip.paper.files import image
@@ -194,6 +194,30 @@ def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
     if "jump_time" in dataset.attrs:
         assert dataset.attrs["jump_time"] == pytest.approx(5.212841, rel=1e-6, abs=0.0)
         assert f"{study.verdict.order.power:.2f}" in {text.get_text() for text in figure.axes[0].texts}
+
+
+def test_an_ensemble_draws_what_members_share_and_how_they_part() -> None:
+    study = ss.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4)
+    data = ensemble.data(study)
+    assert data.sizes["event"] == sum(len(table) for table in study.catalogues)
+    assert int((data.same.values * (data.of_member.values > 0)).sum()) == int(study.table.members.sum())
+    figure = ensemble.draw(data)
+    lines, growth, slips, _ = sorted(figure.axes, key=lambda axes: axes.get_title(loc="left"))
+    assert growth.get_yscale() == "log"
+    measured = next(line for line in growth.lines if line.get_label() == "measured")
+    assert list(measured.get_ydata()) == [1.0, *study.growth.growth]
+    assert len(slips.lines) == 4
+    assert lines.get_xlim() == growth.get_xlim()
+    for axes in figure.axes:
+        assert axes.get_title(loc="left")
+        assert axes.get_xlabel()
+
+
+def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
+    for excess, duration in ((-1e6, 100.0), (-1e6, 1.0), (0.0, 1.0)):
+        study = ss.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=excess), duration, members=2)
+        assert image(study.plot(), "png")
+    assert study.catalogues[0].empty
 
 
 def test_a_run_plots_itself_and_keeps_the_users_style() -> None:

@@ -12,6 +12,7 @@ from typer.exceptions import TyperException
 from stickslip.cli.analogy import analogy
 from stickslip.cli.check import check
 from stickslip.cli.compare import compare
+from stickslip.cli.ensemble import ensemble
 from stickslip.cli.export import export
 from stickslip.cli.new import new
 from stickslip.cli.paper import paper
@@ -33,6 +34,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip analogy                when does a block stand for a slab
   stickslip export mine.toml F     time series for other tools
   stickslip regularise mine.toml   which selection rule does physics choose
+  stickslip ensemble mine.toml     how far can events and statistics be trusted
   stickslip paper --out paper      the source paper, claim by claim
 """
 
@@ -44,7 +46,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, check, new, compare, analogy, export, regularise, paper):
+for command in (run, check, new, compare, analogy, export, regularise, ensemble, paper):
     app.command()(command)
 
 

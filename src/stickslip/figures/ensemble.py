@@ -1,0 +1,182 @@
+"""An ensemble: the events of every member, how the disturbance grows, and how slips are distributed."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, letter, quantity, styled, time_unit
+
+if TYPE_CHECKING:
+    from stickslip.studies.ensemble import Ensemble
+
+Floats = NDArray[np.float64]
+
+WIDE, CLOSE = 100.0, 3.0
+"""Slips, and spreads, that span more than these factors are drawn on a logarithmic axis."""
+
+
+def data(study: Ensemble) -> xr.Dataset:
+    """Events of every run (member 0: undisturbed), growth of the disturbance, what members share, and statistics; SI."""
+    load = study.problem.load_unit
+    contents = _events(study) | _growth(study) | _shared(study) | _statistics(study)
+    contents["push"] = quantity("member", study.pushes, "added to the initial load", "", load)
+    predicted = study.prediction
+    attributes = {
+        "until": study.until,
+        "size": study.size,
+        "horizon": study.horizon,
+        "predicted_horizon": math.nan if predicted is None else predicted.horizon,
+        "exponent": study.exponent,
+        "predicted_exponent": study.predicted_exponent,
+        "saturation": study.separation.saturation,
+        "found": study.text,
+        "growth_found": study.growth_text,
+        "note": study.note,
+        "stopped": study.stopped,
+    }
+    return xr.Dataset(contents, attrs=attributes)
+
+
+def _events(study: Ensemble) -> dict[str, xr.Variable]:
+    tables = study.catalogues
+    member = np.repeat(np.arange(len(tables)), [len(table) for table in tables])
+    start, slip = (np.concatenate([table[name].to_numpy(float) for table in tables]) for name in ("start", "slip"))
+    shared = [len(study.table), *study.has.sum(axis=1)]
+    same = np.concatenate([np.arange(len(table)) < first for table, first in zip(tables, shared, strict=True)])
+    return {
+        "start": quantity("event", start, "start of the event", "", "s"),
+        "slip": quantity("event", slip, "slip", "", "m"),
+        "of_member": xr.Variable("event", member, {"long_name": "member, 0 the undisturbed run"}),
+        "same": xr.Variable("event", same.astype(np.int8), {"long_name": "whether it is the event of the undisturbed run"}),
+    }
+
+
+def _growth(study: Ensemble) -> dict[str, xr.Variable]:
+    growth = study.growth
+    texts = {"growth": "median of the members", "least": "least", "most": "most", "predicted": "predicted, the largest so far"}
+    contents = {name: quantity("time", growth[name].to_numpy(float), f"growth, {text}", "", "1") for name, text in texts.items()}
+    contents["small"] = xr.Variable("time", growth.small.to_numpy(np.int8), {"long_name": "whether the separation is small"})
+    return contents | {"time": quantity("time", growth.time.to_numpy(float), "time", "t", "s")}
+
+
+def _shared(study: Ensemble) -> dict[str, xr.Variable]:
+    units = {"recurrence": "s", "start_spread": "s", "slip_spread": "m", "recurrence_spread": "s"}
+    return {
+        f"shared_{name}": quantity("shared", study.table[name].to_numpy(float), name.replace("_", " "), "", units.get(name, "1"))
+        for name in ("members", "start_spread", "slip_spread", "recurrence_spread", "amplification")
+    }
+
+
+def _statistics(study: Ensemble) -> dict[str, xr.Variable]:
+    table = study.statistics
+    contents = {f"statistics_{name}": xr.Variable("quantity", table[name].to_numpy(float)) for name in table.columns}
+    return contents | {"quantity": xr.Variable("quantity", table.index.to_numpy(str))}
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """Time lines of the members above the growth of the disturbance; distribution of slips above the spread of starts."""
+    figure = Figure(figsize=(7.6, 5.4), layout="constrained")
+    axes: Any = figure.subplot_mosaic("AAC;BBD")
+    unit, size = time_unit(float(dataset.attrs["until"]))
+    _draw_time_lines(axes["A"], dataset, size)
+    _draw_growth(axes["B"], dataset, size)
+    for panel in (axes["A"], axes["B"]):
+        panel.set_xlim(-0.02 * dataset.attrs["until"] / size, 1.02 * dataset.attrs["until"] / size)
+        panel.set_xlabel(f"time $t$ ({unit})")
+    _draw_slips(axes["C"], dataset)
+    _draw_starts(axes["D"], dataset)
+    return figure
+
+
+def _draw_time_lines(axes: Axes, dataset: xr.Dataset, size: float) -> None:
+    start, member, same = (dataset[name].values for name in ("start", "of_member", "same"))
+    style: Any = {"linestyle": "none", "marker": "|", "markersize": 7, "markeredgewidth": 0.8, "rasterized": True}
+    for of, colour in ((same == 1, BLUE), (same == 0, VERMILLION)):
+        axes.plot(start[of] / size, member[of], color=colour, **style)
+    _draw_horizons(axes, dataset, size)
+    count = dataset.sizes["member"]
+    axes.set_ylim(count + 0.6, -0.6)
+    axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
+    axes.set_ylabel("member (0: undisturbed)")
+    letter(axes, "A  slip events: " + ("the same (blue) or not" if (same == 0).any() else "all members have the same"))
+
+
+def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
+    time = np.append(0.0, dataset["time"].values) / size
+    growth, least, most, predicted = (np.append(1.0, dataset[name].values) for name in ("growth", "least", "most", "predicted"))
+    floor = np.finfo(float).tiny
+    axes.fill_between(time, np.maximum(least, floor), np.maximum(most, floor), color=SKY, alpha=0.4, linewidth=0.0)
+    axes.plot(time, np.where(growth > 0.0, growth, np.nan), color=BLUE, label="measured")
+    lost = float(dataset.attrs["saturation"]) / float(np.abs(dataset["push"].values).max())
+    if np.isfinite(predicted[1:]).any():
+        axes.plot(time, np.where(predicted < 10.0 * lost, predicted, np.nan), "--", color=VERMILLION, label="predicted")
+    if lost > 0.0:
+        at: Any = ("axes fraction", "data")
+        axes.axhline(lost, color=GREY, linewidth=0.8, linestyle=":")
+        axes.annotate("a tenth of the load's range", (0.0, lost), (4, 2), at, "offset points", color=INK)
+    _draw_horizons(axes, dataset, size)
+    axes.set_yscale("log")
+    positive = np.concatenate([values[values > 0.0] for values in (growth, least[1:])])
+    axes.set_ylim(0.3 * float(positive.min()), 10.0 * max(lost, float(growth.max())))
+    axes.set_ylabel("separation of loads\n(times the disturbance)")
+    axes.legend(loc="lower right")
+    letter(axes, "B  growth of the disturbance")
+
+
+def _draw_horizons(axes: Axes, dataset: xr.Dataset, size: float) -> None:
+    """Grey from the first event that not all share; a broken line where that is predicted."""
+    until, horizon, predicted = (float(dataset.attrs[name]) for name in ("until", "horizon", "predicted_horizon"))
+    if horizon < until:
+        axes.axvspan(horizon / size, 1.02 * until / size, color=GREY, alpha=0.15, linewidth=0.0, zorder=0)
+    if predicted < until:
+        axes.axvline(predicted / size, color=VERMILLION, linewidth=1.0, linestyle="--")
+
+
+def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
+    """How many events slip at least so much, run by run."""
+    slip, member = dataset["slip"].values, dataset["of_member"].values
+    letter(axes, "C  slips")
+    if not slip.size:
+        axes.set_axis_off()
+        return
+    for i in range(dataset.sizes["member"], -1, -1):
+        ordered = np.sort(slip[member == i])
+        colour, width = (SKY, 0.8) if i else (INK, 1.2)
+        axes.step(ordered, np.arange(len(ordered), 0, -1), where="pre", color=colour, linewidth=width)
+    smallest = slip[slip > 0.0].min(initial=slip.max())
+    axes.set_xscale("log" if slip.max() > WIDE * smallest else "linear")
+    if axes.get_xscale() == "linear":
+        axes.set_xlim(0.0, 1.1 * slip.max())
+    axes.set_yscale("log" if (member == 0).sum() > WIDE else "linear")
+    axes.set_xlabel("slip (m)")
+    axes.set_ylabel("events with at least as much")
+
+
+def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
+    """How far the starts of each event are apart, as long as a member has it."""
+    spread = dataset["shared_start_spread"].values
+    number, there = np.arange(1, len(spread) + 1), spread > 0.0
+    letter(axes, "D  spread of starts")
+    if not there.any():
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, "none above rounding", transform=axes.transAxes, ha="center", color=GREY)
+        return
+    complete = dataset["shared_members"].values == dataset.sizes["member"]
+    for of, colour in ((there & complete, BLUE), (there & ~complete, VERMILLION)):
+        axes.plot(number[of], spread[of], "o", color=colour, markersize=2.5, rasterized=True)
+    if spread[there].max() > CLOSE * spread[there].min():
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(0.0, 1.5 * spread[there].max())
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    axes.set_xlabel("event")
+    axes.set_ylabel("root mean square (s)")
