@@ -11,7 +11,7 @@ paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
 test: lint
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
