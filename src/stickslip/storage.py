@@ -22,6 +22,7 @@ from stickslip.evolution.tables import EVENT_COLUMNS
 from stickslip.evolution.window import Window
 from stickslip.files import write_atomically
 from stickslip.observables.choices import choices
+from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.scenarios import Scenario, read_scenario
 from stickslip.selection import names as rule_names
 
@@ -65,6 +66,7 @@ def provenance(solution: Solution) -> dict[str, Any]:
         "selection_note": solution.selection_note,
         "selection_regime": chosen.regime,
         "selection_decided_shocks": int(chosen.shocks.sum()),
+        **attributes_of(predictability(solution) if is_followed(solution.problem) else None),
     }
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stickslip as ss
 from stickslip.observables.predictability import predictability, predictability_of_events
@@ -59,6 +61,10 @@ def test_the_horizon() -> None:
     assert "only statistics" in found.text
     slow = ss.simulate(replace(critical, friction=WEAKENING), 1e12, events=58).catalogue(0.0)
     of_events = predictability_of_events(slow, 1e-10)
+    assert (
+        ss.catalogue(replace(critical, friction=WEAKENING), 1e12, events=58, event_rate=0.0).attrs["predictability"]
+        == of_events.text
+    )
     assert slow.start[39] <= of_events.horizon <= slow.start[57]
     assert slow.amplification[1:30].to_numpy() == pytest.approx(slow.amplification[1] ** np.arange(1, 30), rel=1e-3)
     calm = predictability(run_of(1.0, 5.0))
@@ -76,3 +82,14 @@ def test_other_problems_are_refused_in_one_line() -> None:
         run = ss.simulate(ss.Problem(body, law, initial_excess=0.0), 1.0)
         with pytest.raises(ss.InputError, match=r"^predictability: needs a slab[^\n]*$"):
             predictability(run)
+
+
+def test_files_say_it(tmp_path: Path) -> None:
+    run = run_of(1.0, 60.0)
+    run.save(tmp_path / "run.nc")
+    ss.catalogue(run.problem, run.duration, tmp_path / "events.nc", rtol=1e-12)
+    for name in ("run.nc", "events.nc"):
+        with xr.open_dataset(tmp_path / name, engine="h5netcdf", decode_times=False) as file:
+            assert file.attrs["predictability"] == predictability(run).text
+            assert file.attrs["horizon"] == math.inf
+            assert file.attrs["lyapunov_exponent"] == pytest.approx(predictability(run).exponent, rel=0.3)

@@ -22,7 +22,7 @@ from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Statu
 from stickslip.evolution.tables import creep_note, default_event_rate
 from stickslip.long_runs.resume import check_events, events_wanted, taken_up
 from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
-from stickslip.observables.predictability import is_followed, predictability_of_events
+from stickslip.observables.predictability import Predictability, attributes_of, is_followed, predictability_of_events
 from stickslip.problem import Problem
 from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution, write
 
@@ -173,6 +173,8 @@ class Catalogue:
         """The table."""
         table = self.rows.read()
         table.attrs = {"status": self.status.name, "status_message": self.status.message}
+        if self.horizon_note:
+            table.attrs["predictability"] = self.horizon_note
         if self.creep_note:
             table.attrs["creep"] = self.creep_note
         return table
@@ -185,9 +187,8 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
     keeper.rows = rows
     code = drive(run, orders.duration, keeper)
     check_started(run, code, "catalogue")
-    keeper.finish(run, code)
-    horizon = predictability_of_events(rows.read(), run.rtol).text if is_followed(run.problem) else ""
-    return Catalogue(rows, stream.told, STATUSES[code], horizon, creep_note(run.creep))
+    prediction = keeper.finish(run, code)
+    return Catalogue(rows, stream.told, STATUSES[code], prediction.text if prediction else "", creep_note(run.creep))
 
 
 @dataclass(frozen=True)
@@ -238,15 +239,18 @@ class CatalogueKeeper(Keeper):
         about = self._about(run, self.told, self.rows)
         write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
 
-    def finish(self, run: RunInProgress, code: int) -> None:
-        """Tell the rest, the event that the end leaves open too; the rows get their form."""
+    def finish(self, run: RunInProgress, code: int) -> Predictability | None:
+        """Tell the rest, the event that the end leaves open too; the rows get their form. Returns how far they are predictable."""
         if code != ENOUGH_EVENTS:
             self.count(run)
         self.rows.append(self.stream.look(run.store, run.length).table(unknown=True))
         solution = as_solution(run, self.orders, code)
-        self.rows.publish(origin(solution), run.problem.load_unit)
+        known = is_followed(run.problem)
+        prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.rtol) if known else None
+        self.rows.publish(origin(solution) | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()
+        return prediction
 
     def _remember(self, run: RunInProgress) -> None:
         if run.before_end is None:

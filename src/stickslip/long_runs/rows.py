@@ -90,6 +90,12 @@ class Rows:
         """The rows, some at a time."""
         return read_csv(self.growing)
 
+    def columns(self, *names: str) -> pd.DataFrame:
+        """Some columns of the rows so far."""
+        import pandas as pd
+
+        return pd.concat([chunk[[*names]] for chunk in self.chunks()], ignore_index=True)
+
     def read(self) -> pd.DataFrame:
         """The table, once it has its form."""
         return read_table(self.path)
@@ -124,6 +130,10 @@ class RowsInMemory:
 
     def tidy(self) -> None:
         """Nothing lies about."""
+
+    def columns(self, *names: str) -> pd.DataFrame:
+        """Some columns of the rows so far."""
+        return self.read()[[*names]]
 
     def read(self) -> pd.DataFrame:
         """The table."""

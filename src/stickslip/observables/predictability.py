@@ -96,6 +96,13 @@ def predictability_of_events(events: pd.DataFrame, rtol: float) -> Predictabilit
     return Predictability(events.start.to_numpy(float), events.amplification.to_numpy(float), error)
 
 
+def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
+    """What files say of it: the line for people, the horizon (s) and the exponent (1/s)."""
+    if prediction is None:
+        return {}
+    return {"predictability": prediction.text, "horizon": prediction.horizon, "lyapunov_exponent": prediction.exponent}
+
+
 def is_followed(problem: Problem) -> bool:
     """Whether it is known what becomes of a disturbance."""
     return isinstance(problem.body, ElasticSlab) and is_algebraic(problem) and not folds_move(problem)
