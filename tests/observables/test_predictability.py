@@ -61,10 +61,8 @@ def test_the_horizon() -> None:
     assert "only statistics" in found.text
     slow = ss.simulate(replace(critical, friction=WEAKENING), 1e12, events=58).catalogue(0.0)
     of_events = predictability_of_events(slow, 1e-10)
-    assert (
-        ss.catalogue(replace(critical, friction=WEAKENING), 1e12, events=58, event_rate=0.0).attrs["predictability"]
-        == of_events.text
-    )
+    streamed = ss.catalogue(replace(critical, friction=WEAKENING), 1e12, events=58, event_rate=0.0)
+    assert streamed.attrs["predictability"] == of_events.text
     assert slow.start[39] <= of_events.horizon <= slow.start[57]
     assert slow.amplification[1:30].to_numpy() == pytest.approx(slow.amplification[1] ** np.arange(1, 30), rel=1e-3)
     calm = predictability(run_of(1.0, 5.0))
@@ -88,8 +86,9 @@ def test_files_say_it(tmp_path: Path) -> None:
     run = run_of(1.0, 60.0)
     run.save(tmp_path / "run.nc")
     ss.catalogue(run.problem, run.duration, tmp_path / "events.nc", rtol=1e-12)
-    for name in ("run.nc", "events.nc"):
+    of_events = predictability_of_events(run.catalogue(), 1e-12)
+    for name, found in (("run.nc", predictability(run)), ("events.nc", of_events)):
         with xr.open_dataset(tmp_path / name, engine="h5netcdf", decode_times=False) as file:
-            assert file.attrs["predictability"] == predictability(run).text
+            assert file.attrs["predictability"] == found.text
             assert file.attrs["horizon"] == math.inf
-            assert file.attrs["lyapunov_exponent"] == pytest.approx(predictability(run).exponent, rel=0.3)
+            assert file.attrs["lyapunov_exponent"] == found.exponent > 0.0
