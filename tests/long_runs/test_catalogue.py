@@ -90,6 +90,8 @@ def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path
     assert list(found.columns) == list(whole.columns)
     for energy in ENERGY_COLUMNS:
         np.testing.assert_allclose(found[energy], whole[energy], rtol=0.0, atol=1e-12 * whole.released.abs().max(), err_msg=energy)
+    if isinstance(problem.body, ss.ElasticSlab):
+        assert found.attrs["trapped"] == ss.simulate(problem, duration).trapped_note
     finished = found[found.end.notna()]
     assert (finished.balance.abs() < 1e-9 * finished.released.abs().max()).all()
 

@@ -44,10 +44,11 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen = console()
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
-    _say_how(screen, scenario, found.creep_note)
+    _say_how(screen, scenario, found.notes.get("creep", ""))
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    if found.horizon_note:
-        screen.print(f"predictability: {found.horizon_note}", soft_wrap=True)
+    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy")):
+        if name in found.notes:
+            screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
     for file in found.files:
         screen.print(f"written: {file}", soft_wrap=True)
 

@@ -48,11 +48,11 @@ class EventStream:
     last_start: Place = BEFORE  # of the last event that was told
     told: int = 0
     energies: bool = False
-    """Whether rows have the energies of events too, for which waves are needed that left the contact before."""
+    """Whether rows have the energies of events too."""
 
     def needed(self, store: Store) -> int:
-        """The first piece without which new events could not be told."""
-        return int(np.searchsorted(store.row, store.row[self.first] - WAVES_OF)) if self.energies else self.first
+        """The first piece without which new events could not be told, and the energy of the waves under way."""
+        return int(np.searchsorted(store.row, store.row[self.first] - WAVES_OF))
 
     def look(self, store: Store, length: int) -> Look:
         """What is new in the first `length` pieces of a history."""

@@ -22,7 +22,8 @@ from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Statu
 from stickslip.evolution.tables import creep_note, default_event_rate
 from stickslip.long_runs.resume import check_events, events_wanted, taken_up
 from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
-from stickslip.observables.predictability import Predictability, attributes_of, is_followed, predictability_of_events
+from stickslip.observables.energy import trapped_note
+from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem import Problem
 from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution, write
 
@@ -156,13 +157,14 @@ class Paused:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """What came of a run: its rows, how many events are over, what ended it, and lines on what is predictable and on creep."""
+    """What came of a run: its rows, how many events are over, what ended it; and `notes`, lines on what is predictable, on the
+    energy that is trapped in waves, and on leaps over creep, where there is something to say.
+    """
 
     rows: Rows | RowsInMemory
     events: int
     status: Status
-    horizon_note: str
-    creep_note: str
+    notes: Mapping[str, str]
 
     @property
     def files(self) -> list[Path]:
@@ -173,10 +175,7 @@ class Catalogue:
         """The table."""
         table = self.rows.read()
         table.attrs = {"status": self.status.name, "status_message": self.status.message}
-        if self.horizon_note:
-            table.attrs["predictability"] = self.horizon_note
-        if self.creep_note:
-            table.attrs["creep"] = self.creep_note
+        table.attrs.update(self.notes)
         return table
 
 
@@ -187,8 +186,7 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
     keeper.rows = rows
     code = drive(run, orders.duration, keeper)
     check_started(run, code, "catalogue")
-    prediction = keeper.finish(run, code)
-    return Catalogue(rows, stream.told, STATUSES[code], prediction.text if prediction else "", creep_note(run.creep))
+    return Catalogue(rows, stream.told, STATUSES[code], keeper.finish(run, code))
 
 
 @dataclass(frozen=True)
@@ -239,8 +237,8 @@ class CatalogueKeeper(Keeper):
         about = self._about(run, self.told, self.rows)
         write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
 
-    def finish(self, run: RunInProgress, code: int) -> Predictability | None:
-        """Tell the rest, the event that the end leaves open too; the rows get their form. Returns how far they are predictable."""
+    def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
+        """Tell the rest, the event that the end leaves open too; the rows get their form. Returns the notes of a `Catalogue`."""
         if code != ENOUGH_EVENTS:
             self.count(run)
         self.rows.append(self.stream.look(run.store, run.length).table(unknown=True))
@@ -250,7 +248,12 @@ class CatalogueKeeper(Keeper):
         self.rows.publish(origin(solution) | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()
-        return prediction
+        notes = {
+            "predictability": prediction.text if prediction else "",
+            "trapped": trapped_note(solution),
+            "creep": creep_note(run.creep),
+        }
+        return {name: note for name, note in notes.items() if note}
 
     def _remember(self, run: RunInProgress) -> None:
         if run.before_end is None:
