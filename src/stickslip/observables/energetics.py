@@ -100,7 +100,8 @@ def _dynamic_drop(history: History, begin: Moments, pulses: Pulses) -> Floats:
     smallest = np.full(len(begin.piece), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
     before = history.problem.strength + friction_at_rest_before(history, begin)
-    return history.mode(begin) * before - smallest
+    drop: Floats = history.mode(begin) * before - smallest
+    return drop
 
 
 def friction_at_rest_before(history: History, begin: Moments) -> Floats:

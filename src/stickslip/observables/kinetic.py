@@ -34,18 +34,13 @@ class _Both:
         self.waves, self.begun = waves, waves.begun(now)
         low = max(-waves.round, -self.begun)
         rows = range(max(now.row + int((now.offset + low) // waves.round), 0), now.row + 1)
-        pieces, starts, ends, origins, leaped = ([np.empty(0)] for _ in range(5))
-        for row in rows:
-            piece, begin, end = waves.standing(row)
-            start = (row - now.row) * waves.round - now.offset
-            pieces.append(piece)
-            starts.append(start + begin)
-            ends.append(start + end)
-            origins.append(start + waves.history.store.theta_from[piece])
-            leaped.append(row - waves.history.store.row[piece])
-        inside = (np.concatenate(ends) > low) & (np.concatenate(starts) < 0.0)
-        self.start, self.origin, self.leaped = (np.concatenate(parts)[inside] for parts in (starts, origins, leaped))
-        self.piece = np.concatenate(pieces)[inside].astype(np.intp)
+        standing = [waves.standing(row) for row in rows]
+        piece, begin, end = (np.concatenate(parts) for parts in zip(*standing, strict=True))
+        row = np.repeat(rows, [len(pieces) for pieces, _, _ in standing])
+        start, store = (row - now.row) * waves.round - now.offset, waves.history.store
+        inside = (start + end > low) & (start + begin < 0.0)
+        self.piece, self.start = piece[inside], (start + begin)[inside]
+        self.origin, self.leaped = (start + store.theta_from[piece])[inside], (row - store.row[piece]).astype(float)[inside]
 
     def kinetic(self) -> float:
         """J/m^2."""
