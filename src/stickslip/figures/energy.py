@@ -72,7 +72,9 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     axes.stackplot(
         time, *areas, labels=[PARTS[name][0] for name in drawn], colors=[PARTS[name][1] for name in drawn], linewidth=0.0
     )
-    axes.plot(time, dataset.total.values / size, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=dataset.total.attrs["long_name"])
+    axes.plot(
+        time, dataset.total.values / size, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=dataset.total.attrs["long_name"]
+    )
     axes.set(xlabel=f"{dataset.attrs['clock']} ({clock})", ylabel=f"energy ({unit})", xlim=(time[0], time[-1]), ylim=(0.0, None))
     handles, names = axes.get_legend_handles_labels()
     figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)  # as they lie above each other
