@@ -188,6 +188,23 @@ def test_radiation_against_the_velocity_at_the_driver() -> None:
     assert float(run.energy(400.0).radiated[0]) == pytest.approx(by_hand, rel=1e-9, abs=0.0)
 
 
+def test_a_block_that_swings_back_drops_from_its_load() -> None:
+    """Friction so weak that the block turns round at once: there the spring pushes back, and the contact slides against that."""
+    problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.11, 0.1), initial_load=6.0)
+    run = ss.simulate(problem, 2.0, rtol=1e-12)
+    table = run.energetics(0.0)
+    assert table.dynamic_drop[:2].to_numpy() == pytest.approx([5.0, 3.0], rel=1e-11, abs=0.0)  # the load is 6, then 2 - 6 = -4
+    assert table.overshoot[:2].to_numpy() == pytest.approx([1.0, 1.0], rel=1e-11, abs=0.0)
+
+
+def test_no_overshoot_where_friction_does_not_fall() -> None:
+    problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.4, 0.4), pull_rate=0.1, initial_excess=0.0)
+    event = ss.simulate(problem, 0.5).energetics(0.0).iloc[0]
+    assert event.slip > 0.0
+    assert event.dynamic_drop == pytest.approx(0.0, rel=0.0, abs=1e-11)
+    assert math.isnan(event.overshoot)
+
+
 def test_a_run_without_events() -> None:
     run = ss.simulate(ss.Problem(SLAB, COULOMB, initial_load=1e7), 20.0)
     assert run.energetics().empty

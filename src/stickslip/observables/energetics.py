@@ -40,12 +40,16 @@ ENERGETICS_COLUMNS = {
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
     "static_drop": ("load", "stiffness (G/h, or K) times slip"),
     "dynamic_drop": ("load", "traction at rest before the slip less the smallest one while it slips"),
-    "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot"),
+    "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
 """Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+
+
+ROUNDING = 1e-12
+"""Of a stress drop, relative to the normal load."""
 
 
 def energetics_table(history: History, threshold: float) -> pd.DataFrame:
@@ -63,7 +67,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     columns["dynamic_drop"] = _dynamic_drop(history, begin, pulses)
-    table = pd.DataFrame(columns | _ratios(columns))
+    table = pd.DataFrame(columns | _ratios(history, columns))
     return table[list(ENERGETICS_COLUMNS)]
 
 
@@ -105,24 +109,25 @@ def _dynamic_drop(history: History, begin: Moments, pulses: Pulses) -> Floats:
 
 
 def friction_at_rest_before(history: History, begin: Moments) -> Floats:
-    """Traction (minus the reference) at rest before the slip in which events begin; before the event, of a law that never sticks.
+    """Traction (minus the reference) at rest before the slip in which events begin: the load, also where it only turns round.
 
-    A block, or a contact with mass, moves for a while before its slip rate counts as an event: where friction falls at once it
-    has its sliding value by then.
+    Of a law that never sticks: just before the event. A block, or a contact with mass, moves for a while before its slip rate
+    counts as an event: where friction falls at once it has its sliding value by then.
     """
     if not history.problem.friction.sticks:
         return friction_before(history, begin)
     mode = history.store.mode
     begins = np.append(True, (np.diff(mode) != 0) | history.rests[:-1])
     first = np.maximum.accumulate(np.where(begins, np.arange(len(mode)), 0))
-    return history.friction(history.just_before(first[begin.piece]))
+    return history.excess(history.just_before(first[begin.piece]))
 
 
-def _ratios(columns: dict[str, Floats]) -> dict[str, Floats]:
+def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
+    drop, rounding = columns["dynamic_drop"], ROUNDING * history.problem.normal
     with np.errstate(invalid="ignore", divide="ignore"):
         waves = columns["waves"]
         return {
-            "overshoot": columns["static_drop"] / columns["dynamic_drop"] - 1.0,
+            "overshoot": np.where(drop > rounding, columns["static_drop"] / drop - 1.0, np.nan),
             "apparent_stress": waves / columns["slip"],
             "efficiency": waves / (waves + columns["heat"]),
             "radiation_efficiency": waves / (waves + columns["fracture"]),
