@@ -231,6 +231,11 @@ def test_run_draws_the_catalogue(command, tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["events.png"]
 
 
+def test_run_draws_where_the_energy_is(command, tmp_path: Path):
+    assert "written: energy.svg" in command("run", "fig6-block-reconstructed", "--energy", "energy.svg").out
+    assert [path.name for path in tmp_path.iterdir()] == ["energy.svg"]
+
+
 def test_pictures_of_the_slabs_inside(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.figures.animation.FRAMES", 3)
     out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif", "--figure", "run.png").out

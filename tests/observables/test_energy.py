@@ -93,3 +93,77 @@ def test_energies_start_at_zero_and_have_units() -> None:
     assert energy.heat.attrs["units"] == "J m-2"
     with pytest.raises(ss.InputError):
         run.energy(100.0)
+
+
+SPLIT = {
+    "slab, slip law": (*RUNS["slab, slip law"], [0.2, 2.3, 5.0, 19.0]),
+    "slab, rate law": (*RUNS["slab, rate law"], [1.0, 3.0, 7.0]),
+    "slab, contact mass": (
+        ss.Problem(replace(SLAB, contact_mass=1e6), ss.friction.Coulomb(0.8, 0.3), pull_rate=1e-3, initial_excess=0.0),
+        30.0,
+        [0.5, 4.0, 6.0, 20.0],
+    ),
+    "slab, lossy": (
+        ss.Problem(
+            replace(SLAB, driver_impedance=3.0 * IMPEDANCE), RATE_LAW, initial_excess=1e5, far_stress=7e7, far_stress_rate=1e3
+        ),
+        400.0,
+        [0.5, 2.0, 3.5, 8.0, 390.0],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SPLIT)
+def test_elastic_and_kinetic_energy_against_the_field(name: str) -> None:
+    """Stress and velocity inside the slab, squared and added up on a fine grid."""
+    problem, duration, times = SPLIT[name]
+    run = ss.simulate(problem, duration, rtol=1e-12)
+    energy, body = run.energy(times), problem.body
+    assert isinstance(body, ss.ElasticSlab)
+    places = (np.arange(50_000) + 0.5) * THICKNESS / 50_000
+    for n, time in enumerate([0.0, *times]):
+        field = run.field(places, time)
+        elastic = float((field.stress**2).mean()) * THICKNESS / (2 * MODULUS)
+        kinetic = float((field.velocity**2).mean()) * THICKNESS * body.density / 2
+        kinetic += 0.5 * body.contact_mass * float(run.slip_rate(time)) ** 2 if n else 0.0
+        if n == 0:
+            start = elastic, kinetic
+            continue
+        assert kinetic > 0.0
+        largest = abs(float(energy.stored[n - 1])) + kinetic
+        assert float(energy.elastic[n - 1]) == pytest.approx(elastic - start[0], rel=0.0, abs=1e-4 * largest)
+        assert float(energy.kinetic[n - 1]) == pytest.approx(kinetic - start[1], rel=0.0, abs=1e-4 * largest)
+        assert float(energy.elastic[n - 1] + energy.kinetic[n - 1]) == pytest.approx(
+            float(energy.stored[n - 1]), rel=1e-12, abs=0.0
+        )
+
+
+def test_split_of_a_slab_that_slides_as_a_whole() -> None:
+    """Coulomb friction: the front of the slip is at the driver after h/c; behind it all moves at v under the sliding stress."""
+    load, sliding, travel = 8.5e7, 3e7, THICKNESS / SLAB.wave_speed
+    run = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=load), 20.0)
+    energy = run.energy(travel * np.array([0.5, 1.0, 1.5, 2.0]))
+    moving = 0.5 * SLAB.density * THICKNESS * ((load - sliding) / IMPEDANCE) ** 2
+    released = (load**2 - sliding**2) * THICKNESS / (2 * MODULUS)
+    rest = (load**2 - (2 * sliding - load) ** 2) * THICKNESS / (2 * MODULUS)
+    shares = energy.kinetic.values / moving, -energy.elastic.values
+    assert shares[0] == pytest.approx([0.5, 1.0, 0.5, 0.0], rel=1e-12, abs=1e-12)
+    assert shares[1] == pytest.approx([released / 2, released, (released + rest) / 2, rest], rel=1e-12, abs=0.0)
+
+
+def test_split_of_a_block() -> None:
+    """A block without friction to speak of swings: K (D^2 - (D - u)^2) / 2 out of the spring, m v^2 / 2 in the block."""
+    problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), ss.friction.Coulomb(0.4, 0.3), initial_load=4.5)
+    run = ss.simulate(problem, 0.5)
+    at, energy = 0.25, run.energy(0.25)
+    slip, rate = float(run.slip(at)), float(run.slip_rate(at))
+    assert float(energy.kinetic[0]) == pytest.approx(rate**2, rel=1e-12, abs=0.0)
+    assert float(energy.elastic[0]) == pytest.approx(((4.5 - 50.0 * slip) ** 2 - 4.5**2) / 100.0, rel=1e-12, abs=0.0)
+
+
+def test_split_is_as_sharp_late_as_early() -> None:
+    run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
+    local = np.array([0.5, 2.0, 3.5, 5.0])
+    early, late = (run.window(n).energy(local) for n in (0, 1))
+    assert late.kinetic.values == pytest.approx(early.kinetic.values, rel=1e-8, abs=0.0)
+    assert (early.kinetic > 1e7).all()

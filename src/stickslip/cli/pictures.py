@@ -28,6 +28,7 @@ class Pictures:
     figure: Path | None
     path: Path | None
     catalog_figure: Path | None
+    energy: Path | None
     space_time: Path | None
     animation: Path | None
 
@@ -72,6 +73,7 @@ class Pictures:
             (self.figure, lambda run: run.plot()),
             (self.path, _path),
             (self.catalog_figure, _catalogue),
+            (self.energy, lambda run: run.plot_energy()),
             (self.space_time, lambda run: run.plot_field()),
         )
         for target, figure in still:

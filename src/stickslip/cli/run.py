@@ -32,6 +32,10 @@ def run(
         Path | None,
         typer.Option("--catalog-figure", help="Save a figure of the slip events (.png, .pdf or .svg).", show_default=False),
     ] = None,
+    energy: Annotated[
+        Path | None,
+        typer.Option("--energy", help="Save a figure of where the energy is (.png, .pdf or .svg).", show_default=False),
+    ] = None,
     space_time: Annotated[
         Path | None,
         typer.Option("--space-time", help="Save a figure of the slab's inside over time (.png, .pdf or .svg).", show_default=False),
@@ -103,7 +107,7 @@ def run(
     from stickslip.cli.pictures import Pictures
     from stickslip.cli.summary import show_catalogue, show_solution
 
-    drawn = Pictures(figure, path, catalog_figure, space_time, animation)
+    drawn = Pictures(figure, path, catalog_figure, energy, space_time, animation)
     request = Request(scenario, until, events, rtol, creep_rtol, shortest_event, selection, resume, out, catalog, energies, drawn)
     request.check()
     if request.keeps_events_only:

@@ -115,6 +115,15 @@ class Readings:
 
         return snapshots.plot(self, t)
 
+    def plot_energy(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Elastic and kinetic energy, friction heat, what is radiated and damped, stacked over time (s), and the total.
+
+        By default all of it; of a long run the last of the largest slip events. See `stickslip.figures.energy`.
+        """
+        from stickslip.figures import energy
+
+        return energy.plot(self, start, end)
+
     def animate(
         self,
         path: str | Path,

@@ -62,6 +62,25 @@ class Solution(Readings):
         rate = default_event_rate(self.problem) if event_rate is None else event_rate
         return events_table(self.history, rate, energies)
 
+    def energetics(self, event_rate: float | None = None) -> pd.DataFrame:
+        """Slip events, one row each, as seismologists account for them: parts of the energy (J/m^2; block: J), static and dynamic
+        drop, overshoot, apparent stress, efficiencies.
+
+        Columns and units in `stickslip.observables.energetics.ENERGETICS_COLUMNS`; rows and event_rate (m/s) as in `catalogue`.
+        """
+        from stickslip.observables.energetics import energetics_table
+
+        return energetics_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+
+    def pulses(self, event_rate: float | None = None) -> pd.DataFrame:
+        """Pulses of the slip events, one row each: times, slip, largest slip rate, smallest traction, fracture energy.
+
+        Columns and units in `stickslip.observables.pulses.PULSE_COLUMNS`; event_rate (m/s) as in `catalogue`.
+        """
+        from stickslip.observables.pulses import pulses_table
+
+        return pulses_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+
     @cached_property
     def creep(self) -> pd.DataFrame:
         """Leaps over creep (`simulate(..., creep_rtol=...)`), one row each: start and end (s), start_row (whole round trips before

@@ -35,9 +35,9 @@ ROUNDING = 64.0
 def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
     """What is drawn, from when to when (s): what is asked for; else all, or of a long run the last of its largest events.
 
-    Raises InputError for a block, and where nothing lies between them.
+    Long counts round trips of a slab, periods of a block. Raises InputError where nothing lies between them.
     """
-    round_trip = slab_of(readings).two_way_time
+    round_trip = readings.history.row_time
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):

@@ -1,12 +1,14 @@
 """Energy of a run, as differences from its start.
 
 Per unit area of the slab (J/m^2); for the block in J. The slab's elastic and kinetic energy is that of its two travelling parts,
-[(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness. The heat is computed from the law at the slip and slip
-rate of the run, not from the load: so the balance tests the run, and is not an identity.
+[(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness; which of it is kinetic takes both at the same place. The
+heat is computed from the law at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an
+identity.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.evolution.history import Epoch, History, Moments
+from stickslip.observables.kinetic import kinetic
 from stickslip.observables.quadrature import Integrand, between, up_to
-from stickslip.observables.waves import Waves
+from stickslip.observables.waves import Radiation, Waves
 
 if TYPE_CHECKING:
     from stickslip.evolution.readings import Readings
@@ -27,18 +30,21 @@ Floats = NDArray[np.float64]
 LONG_NAMES = {
     "work": "work of the driver",
     "stored": "elastic and kinetic energy",
+    "elastic": "elastic energy",
+    "kinetic": "kinetic energy, of a contact mass too",
     "heat": "friction heat, from the law",
     "damped": "dissipated by the block's damping",
+    "radiated": "gone in waves through a driver of finite impedance: work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
     "trapped": "of the waves inside the slab, beyond a state of uniform stress",
 }
 
 
 def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
-    """Energies at times t (s) minus their values at `origin` (s; default: the start of the run): work, stored, heat, damped,
-    balance; and trapped, which is no difference (slab: J/m^2, block: J).
+    """Energies at times t (s) minus their values at `origin` (s; default: the start of the run): work, stored (elastic + kinetic),
+    elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J).
 
-    Work is what the driver puts in (net of what radiates through a driver of finite impedance); balance is
+    Work is what the driver puts in, net of radiated: what leaves through a driver of finite impedance. Balance is
     work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that bounces to and fro in
     waves. Raises InputError for times outside the run, and in a leap over creep or within a round trip behind it: the waves that
     left the contact there are not known.
@@ -69,7 +75,7 @@ def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, F
     body = history.problem.body
     assert isinstance(body, ElasticSlab)
     waves = Waves(history, body)
-    spans = list(zip(_epochs(history, first), _epochs(history, last), strict=True))
+    spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
     moving = 0.5 * body.contact_mass * (history.rate(first) ** 2 - history.rate(last) ** 2)
     return {
         "released": np.array([waves.stored(begin) - waves.stored(end) for begin, end in spans]) + moving,
@@ -99,19 +105,21 @@ def trapped_note(solution: Solution) -> str:
     history, body = solution.history, solution.problem.body
     if not isinstance(body, ElasticSlab):
         return ""
-    end = _epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
+    end = epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
     energy = Waves(history, body).trapped(end)
     holds = solution.problem.strength**2 / (2.0 * body.stiffness)
     share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
     return f"{energy:.6g} J/m2 in waves at the end{share}"
 
 
-def _epochs(history: History, at: Moments) -> list[Epoch]:
+def epochs(history: History, at: Moments) -> list[Epoch]:
+    """Moments without rounding."""
     return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
 
 
 def energies(history: History, at: Moments) -> dict[str, Floats]:
-    """Work, heat and damped since the start of the run, stored less a constant, and trapped, at moments of a history.
+    """Work, heat, damped and radiated since the start of the run, stored and elastic less a constant, kinetic and trapped, at
+    moments of a history.
 
     All of them at exactly these moments: late in a run, too, their differences balance.
     """
@@ -121,14 +129,18 @@ def energies(history: History, at: Moments) -> dict[str, Floats]:
 def _slab(history: History, at: Moments) -> dict[str, Floats]:
     body = history.problem.body
     assert isinstance(body, ElasticSlab)
-    waves = Waves(history, body)
-    epochs = _epochs(history, at)
+    waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
+    contact = 0.5 * body.contact_mass * history.rate(at) ** 2
+    stored, moving = (np.array([of(epoch) for epoch in now]) + contact for of in (waves.stored, partial(kinetic, waves)))
     return {
-        "work": np.array([waves.work(now) for now in epochs]),
-        "stored": np.array([waves.stored(now) for now in epochs]) + 0.5 * body.contact_mass * history.rate(at) ** 2,
+        "work": np.array([waves.work(epoch) for epoch in now]),
+        "stored": stored,
+        "elastic": stored - moving,
+        "kinetic": moving,
         "heat": heat(history, at),
-        "damped": np.zeros(len(epochs)),
-        "trapped": np.array([waves.trapped(now) for now in epochs]),
+        "damped": np.zeros(len(now)),
+        "radiated": np.array([radiation.work(epoch) for epoch in now]),
+        "trapped": np.array([waves.trapped(epoch) for epoch in now]),
     }
 
 
@@ -143,8 +155,11 @@ def _block(history: History, at: Moments) -> dict[str, Floats]:
     return {
         "work": problem.pull_rate * (problem.strength * (row * history.row_time + offset) + _pulling_force(history, at)),
         "stored": spring + 0.5 * body.mass * rate**2,
+        "elastic": spring,
+        "kinetic": 0.5 * body.mass * rate**2,
         "heat": heat(history, at),
         "damped": up_to(history, at, _damping(history), slipping),
+        "radiated": np.zeros(len(row)),
         "trapped": np.zeros(len(row)),
     }
 
@@ -168,17 +183,23 @@ def heat(history: History, at: Moments) -> Floats:
     return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
 
 
-def _heating(history: History) -> Integrand:
-    """Friction heat in a second, S mu(u, |v|) |v|."""
+def resistance(history: History) -> Integrand:
+    """Traction against the slip (slab: Pa, block: N) while the contact slips, from the law: S mu(u, |v|)."""
     problem, law = history.problem, history.problem.friction
 
-    def power(at: Moments) -> Floats:
-        mode, speed, grown = history.store.mode[at.piece], np.abs(history.rate(at)), history.grown(at)
+    def traction(at: Moments) -> Floats:
+        mode, grown = history.store.mode[at.piece], history.grown(at)
         walked = mode * grown if law.counts == "path" else grown
         slip = problem.law_slip + history.store.law_slip[at.piece] + walked
-        return problem.normal * law.coefficient(slip, speed, history.state(at)) * speed
+        return problem.normal * law.coefficient(slip, np.abs(history.rate(at)), history.state(at))
 
-    return power
+    return traction
+
+
+def _heating(history: History) -> Integrand:
+    """Friction heat in a second."""
+    traction = resistance(history)
+    return lambda at: traction(at) * np.abs(history.rate(at))
 
 
 def _damping(history: History) -> Integrand:

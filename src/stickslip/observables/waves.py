@@ -72,11 +72,20 @@ class Waves:
 
         return self._inside(now, down, up) / (4.0 * self.body.impedance)
 
+    def driver_rate(self, leaving: Floats, left: Floats) -> Floats:
+        """Velocity (m/s) of the slab at the driver, h/c after a wave left: (A + B) / (2 Z) of arriving A and leaving B."""
+        incoming = self.inflow + self.inflow_rate * (left + self.round)
+        return ((1.0 + self.body.reflection) * leaving + incoming) / (2.0 * self.body.impedance)
+
     def power(self, leaving: Floats, left: Floats) -> Floats:
-        """sigma v at the driver, h/c after a wave left: (A^2 - B^2) / (4 Z) of arriving A and leaving B, without cancellation."""
-        gain, incoming = 1.0 + self.body.reflection, self.inflow + self.inflow_rate * (left + self.round)
+        """sigma v at the driver, h/c after a wave left: (A^2 - B^2) / (4 Z), without cancellation."""
+        incoming = self.inflow + self.inflow_rate * (left + self.round)
         drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + incoming
-        return (gain * leaving + incoming) * drop / (4.0 * self.body.impedance)
+        return 0.5 * self.driver_rate(leaving, left) * drop
+
+    def power_growth(self, leaving: Floats, left: Floats) -> Floats:
+        """By how much that grows from an echo at rest to the next: the stress does, by the ramp."""
+        return self.history.ramp * self.driver_rate(leaving, left)
 
     def work(self, now: Epoch) -> float:
         """Work of the driver since the start of the run."""
@@ -85,7 +94,7 @@ class Waves:
             return self._before(-self.half, end.offset - self.round, self.power)
         total = self._before(-self.half, 0.0, self.power)
         total += float(self._passed[int(np.searchsorted(self.history.store.row, end.row, side="right"))])
-        piece, low, high = self._standing(end.row)
+        piece, low, high = self.standing(end.row)
         total += float(self._work_of(piece, low, high, end.row - self.history.store.row[piece]).sum())
         return total + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
 
@@ -113,11 +122,9 @@ class Waves:
     def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, rows: NDArray[np.int64]) -> Floats:
         """Work of what left between two offsets (s) of pieces, and of its echoes: so many rows each."""
         come = rows > 0
-        piece, low, high, rows, gain = piece[come], low[come], high[come], rows[come], 1.0 + self.body.reflection
-        pull = self._of(lambda w, left: gain * w + self.inflow + self.inflow_rate * (left + self.round))
+        piece, low, high, rows = piece[come], low[come], high[come], rows[come]
         part = piece, *self._places(piece, low, high)
-        once, rise = (over(self.history, *part, density) for density in (self._of(self.power), pull))
-        growth = 2.0 * self.history.ramp * rise / (4.0 * self.body.impedance)
+        once, growth = (over(self.history, *part, self._of(density)) for density in (self.power, self.power_growth))
         return rows * once + growth * rows * (rows - 1.0) / 2.0
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
@@ -126,7 +133,7 @@ class Waves:
         first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
         return first, np.where(high >= end, 1.0, last)
 
-    def _standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+    def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """As `History.standing`. Raises InputError for a row in a leap over creep: it holds averages."""
         last = int(np.searchsorted(self.history.store.row, row, side="right")) - 1
         if self.history.is_averaged(int(self.history.store.row[last])):
@@ -184,8 +191,25 @@ class Waves:
 
     def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
         """Integral over the offsets low to high (s) of a row."""
-        piece, begin, end = self._standing(row)
+        piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
         leaped = (row - self.history.store.row[piece]).astype(float)
         return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped).sum())
+
+
+class Radiation(Waves):
+    """What leaves through a driver of finite impedance Zd: `work` is that of the waves that go on behind it, Zd (v - V)^2.
+
+    The far stress and the driver's steady motion do the work of the driver and this: it is what `Waves.work` is net of.
+    """
+
+    def power(self, leaving: Floats, left: Floats) -> Floats:
+        """Of the wave behind the driver, h/c after a wave left the contact; nothing goes into a rigid one."""
+        if self.body.reflection == -1.0:
+            return np.zeros(len(leaving))
+        return self.body.driver_impedance * (self.driver_rate(leaving, left) - self.history.problem.pull_rate) ** 2
+
+    def power_growth(self, leaving: Floats, left: Floats) -> Floats:
+        """Echoes at rest move the driver alike."""
+        return np.zeros(len(leaving))

@@ -1,0 +1,59 @@
+"""The figure of where the energy is: its areas stack up to the total, in units."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.figures import energy
+from tests.figures.test_figures import BLOCK_PROBLEM, SLAB_PROBLEM
+from tests.observables.test_energy import worst
+from tests.observables.test_event_energy import RUNS
+
+mpl.use("Agg")
+
+DRAWN = {
+    "slab": (SLAB_PROBLEM, 12.0, ["elastic", "kinetic", "heat"]),
+    "slab, pulses": (*RUNS["slab, slip law"], ["elastic", "kinetic", "heat"]),
+    "slab, lossy": (*RUNS["slab, lossy"], ["elastic", "kinetic", "radiated", "heat"]),
+    "block": (BLOCK_PROBLEM, 5.0, ["elastic", "kinetic", "heat"]),
+    "block, damped": (RUNS["block, damped"][0], 3.0, ["elastic", "kinetic", "damped", "heat"]),
+}
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_areas_stack_up_to_the_total(name: str) -> None:
+    """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""
+    problem, duration, parts = DRAWN[name]
+    run = ss.simulate(problem, duration, rtol=1e-12)
+    dataset = energy.data(run)
+    axes = energy.draw(dataset).axes[0]
+    (line,) = axes.lines
+    time, total = (np.asarray(values, float) for values in (line.get_xdata(), line.get_ydata()))
+    vertices = np.asarray(axes.collections[-1].get_paths()[0].vertices)
+    top = np.array([vertices[vertices[:, 0] == at, 1].max() for at in time])
+    assert top == pytest.approx(total, rel=0.0, abs=1e-9 * total.max())
+    assert [name for name in energy.PARTS if energy.PARTS[name][0] in [area.get_label() for area in axes.collections]] == parts
+    assert all((dataset[part] >= -1e-12 * dataset.total.max()).all() for part in parts)
+    assert worst(run) < 1e-9
+
+
+def test_a_part_that_is_left_out_is_missed() -> None:
+    dataset = energy.data(ss.simulate(*RUNS["slab, lossy"]))
+    without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
+    assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
+
+
+def test_labels_and_what_is_shown_of_a_long_run() -> None:
+    run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
+    axes = run.plot_energy().axes[0]
+    assert axes.get_ylabel() == "energy (MJ/m²)"
+    assert axes.get_xlabel() == "time since the event began (s)"
+    assert axes.get_xlim()[0] < 0.0 < axes.get_xlim()[1] < 20.0
+    block = ss.simulate(BLOCK_PROBLEM, 5.0).plot_energy(0.0, 3.0).axes[0]
+    assert block.get_ylabel().endswith("J)")
+    assert block.get_xlim() == (0.0, 3.0)
+    with pytest.raises(ss.InputError, match="must end after"):
+        run.plot_energy(3.0, 3.0)

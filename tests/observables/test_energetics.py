@@ -1,0 +1,212 @@
+"""Slip events as seismologists account for them, against closed forms; every row of the table balances."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.evolution.history import History
+from stickslip.observables.energetics import ENERGETICS_COLUMNS
+from stickslip.observables.pulses import PULSE_COLUMNS
+from tests.evolution.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
+from tests.observables.test_event_energy import LOSSY, RUNS
+
+F = ss.friction
+COULOMB = F.Coulomb(0.8, 0.3)
+TRAVEL = THICKNESS / SLAB.wave_speed
+LOAD, FAR, SLIDING = 8.5e7, 2e7, 3e7
+MATCHED = replace(SLAB, driver_impedance=SLAB.impedance)
+ONE_EVENT = ss.Problem(MATCHED, COULOMB, initial_load=LOAD, far_stress=FAR)
+"""It slides for a travel time, until the far stress arrives."""
+
+
+def coulomb_block(damping: float, load: float = 4.1) -> ss.Problem:
+    return ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0, damping=damping), F.Coulomb(0.4, 0.3), initial_load=load)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_every_event_balances(name: str) -> None:
+    run = ss.simulate(*RUNS[name], rtol=1e-12)
+    table = run.energetics()
+    assert list(table) == list(ENERGETICS_COLUMNS)
+    assert len(table) == len(run.events) > 0
+    left = table.elastic + table.work - table.kinetic - table.heat - table.damped
+    assert (left.abs() < 1e-9 * table.heat).all()
+    assert (table.fracture >= 0.0).all()
+    assert (table.fracture < table.heat).all()
+
+
+def test_balance_notices_a_wrong_slip_rate() -> None:
+    run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
+    wrong = run.history.store._replace(rate=run.history.store.rate * 1.001)
+    history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration)
+    table = replace(run, history=history).energetics()
+    assert (table.balance.abs() > 1e-7 * table.heat).all()
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_block_overshoots_by_all_of_its_drop(direction: float) -> None:
+    """Coulomb friction, no damping: half an oscillation about the sliding friction, all that the spring gives becomes heat."""
+    event = ss.simulate(coulomb_block(0.0, direction * 4.1), 2.0, rtol=1e-12).energetics(0.0).iloc[0]
+    drop = 4.1 - 3.0
+    assert event.slip == pytest.approx(2 * drop / 50.0, rel=1e-11, abs=0.0)
+    assert event.elastic == pytest.approx(3.0 * event.slip, rel=1e-11, abs=0.0)
+    assert event.heat == pytest.approx(3.0 * event.slip, rel=1e-11, abs=0.0)
+    assert event.dynamic_drop == pytest.approx(drop, rel=1e-12, abs=0.0)
+    assert event.overshoot == pytest.approx(1.0, rel=1e-11, abs=0.0)
+    assert (event.kinetic, event.fracture, event.waves, event.efficiency) == (pytest.approx(0.0, abs=1e-15), 0.0, 0.0, 0.0)
+    assert math.isnan(event.radiation_efficiency)
+
+
+def test_the_drop_is_from_rest_though_the_event_begins_in_motion() -> None:
+    run = ss.simulate(coulomb_block(0.0), 2.0)
+    assert run.events.traction_before[0] == pytest.approx(3.0)  # it moves already where |v| passes the threshold
+    assert run.energetics().dynamic_drop[0] == pytest.approx(1.1, rel=1e-12, abs=0.0)
+
+
+def test_what_damping_takes_is_a_blocks_radiation() -> None:
+    """Overshoot exp(-zeta pi / sqrt(1 - zeta^2)), apparent stress half the drop times what that lacks of 1."""
+    event = ss.simulate(coulomb_block(3.0), 2.0, rtol=1e-12).energetics(0.0).iloc[0]
+    share = 3.0 / (2.0 * math.sqrt(100.0))
+    left, drop = math.exp(-share * math.pi / math.sqrt(1.0 - share**2)), 1.1
+    assert event.overshoot == pytest.approx(left, rel=1e-10, abs=0.0)
+    apparent = 0.5 * drop * (1.0 - left)
+    assert event.apparent_stress == pytest.approx(apparent, rel=1e-10, abs=0.0)
+    assert event.efficiency == pytest.approx(apparent / (apparent + 3.0), rel=1e-10, abs=0.0)
+    assert event.radiation_efficiency == 1.0
+
+
+def test_a_slab_under_coulomb_friction() -> None:
+    """Rigid driver: a round trip of sliding, an overshoot of 100 %, and no waves left."""
+    event = ss.simulate(ss.Problem(SLAB, COULOMB, initial_load=LOAD), 20.0, rtol=1e-12).energetics().iloc[0]
+    drop = LOAD - SLIDING
+    assert event.slip == pytest.approx(2 * drop * THICKNESS / MODULUS, rel=1e-12, abs=0.0)
+    assert event.elastic == pytest.approx(SLIDING * event.slip, rel=1e-12, abs=0.0)
+    assert event.dynamic_drop == pytest.approx(drop, rel=1e-12, abs=0.0)
+    assert event.overshoot == pytest.approx(1.0, rel=1e-12, abs=0.0)
+    assert [event.kinetic, event.waves] == pytest.approx([0.0, 0.0], rel=0.0, abs=1e-12 * event.heat)
+    assert event.fracture == 0.0
+
+
+def test_radiation_into_a_matched_driver() -> None:
+    """Behind the driver goes Z v^2: of the far stress' unloading wave first, then of the slip. No drop beyond the sliding one."""
+    run = ss.simulate(ONE_EVENT, 20.0, rtol=1e-12)
+    event = run.energetics().iloc[0]
+    unloading, moving = (FAR - LOAD) / (2 * IMPEDANCE), (FAR + LOAD - 2 * SLIDING) / (2 * IMPEDANCE)
+    radiated, trapped = IMPEDANCE * unloading**2 * TRAVEL, 0.5 * SLAB.density * THICKNESS * moving**2
+    assert event.radiated == pytest.approx(radiated, rel=1e-12, abs=0.0)
+    assert event.trapped == pytest.approx(trapped, rel=1e-12, abs=0.0)
+    assert event.kinetic == pytest.approx(trapped, rel=1e-12, abs=0.0)
+    assert event.waves == pytest.approx(radiated + trapped, rel=1e-12, abs=0.0)
+    assert event.apparent_stress == pytest.approx((radiated + trapped) / event.slip, rel=1e-12, abs=0.0)
+    assert event.efficiency == pytest.approx((radiated + trapped) / (radiated + trapped + event.heat), rel=1e-12, abs=0.0)
+    assert event.overshoot == pytest.approx(0.0, rel=0.0, abs=1e-12)
+    later = radiated + IMPEDANCE * moving**2 * TRAVEL
+    at = run.energy([TRAVEL / 2, TRAVEL, 2 * TRAVEL, 20.0]).radiated.values
+    assert at == pytest.approx([radiated / 2, radiated, later, later], rel=1e-12, abs=0.0)
+
+
+def test_waves_of_an_event_are_those_that_bounce_behind_it() -> None:
+    run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
+    event, row = run.energetics().iloc[0], run.events.iloc[0]
+    before, after = run.energy([row.start, row.end]).trapped.values
+    assert event.waves == pytest.approx(after - before, rel=1e-9, abs=0.0)
+    assert event.waves > 1e7
+    assert event.radiated == 0.0
+
+
+def test_waves_of_an_event_before_are_not_its_own() -> None:
+    run = ss.simulate(*RUNS["slab, just above critical"], rtol=1e-12)
+    table, rows = run.energetics(), run.events
+    assert len(table) > 1
+    before, after = (run.energy(times).trapped.values for times in (rows.start, rows.end))
+    assert (before[1:] > 0.1 * after[1:]).all()
+    assert table.waves.to_numpy() == pytest.approx(after - before, rel=0.0, abs=1e-6 * after.max())
+
+
+WEAKENING = F.LinearSlipWeakening(0.8, 0.3, 0.5)
+WEAKENED = {
+    "slab": (ss.Problem(SLAB, WEAKENING, initial_excess=1e5), 40.0, 0.5e8 * 0.25),
+    "slab with contact mass": (ss.Problem(replace(SLAB, contact_mass=1e6), WEAKENING, initial_excess=1e5), 40.0, 0.5e8 * 0.25),
+    "block": (
+        ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.4, 0.3, 0.01), initial_excess=1e-3),
+        10.0,
+        0.1 * 10.0 * 0.005,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WEAKENED)
+def test_fracture_energy_of_linear_slip_weakening(name: str) -> None:
+    """S (mu_s - mu_d) D / 2 where it slips further than D."""
+    problem, duration, expected = WEAKENED[name]
+    run = ss.simulate(problem, duration, rtol=1e-12)
+    first, law = run.pulses(0.0).iloc[0], problem.friction
+    assert isinstance(law, F.LinearSlipWeakening)
+    assert first.slip > law.distance
+    assert first.fracture == pytest.approx(expected, rel=1e-11, abs=0.0)
+    assert first.weakening_slip == pytest.approx(law.distance, rel=1e-12, abs=0.0)
+    assert first.smallest_traction == pytest.approx(law.dynamic * problem.normal, rel=1e-15, abs=0.0)
+    assert run.energetics(0.0).fracture[0] == pytest.approx(run.pulses(0.0).query("event == 0").fracture.sum(), rel=1e-14, abs=0.0)
+
+
+def test_fracture_energy_of_pulses_that_walk_over_a_wave_of_friction() -> None:
+    """From a maximum of friction, where slip is slowest, down to the next minimum: S a pi / omega, over a slip of pi / omega."""
+    run = ss.simulate(slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0, rtol=1e-12)
+    pulses = run.pulses()
+    assert list(pulses) == list(PULSE_COLUMNS)
+    assert pulses.event.tolist() == [0, 0, 0]
+    assert pulses.fracture[1:].to_numpy() == pytest.approx(np.full(2, 5e7 * math.pi / 50.0), rel=1e-8, abs=0.0)
+    assert pulses.weakening_slip[1:].to_numpy() == pytest.approx(np.full(2, math.pi / 50.0), rel=1e-5, abs=0.0)
+    assert pulses.smallest_traction.to_numpy() == pytest.approx(np.full(3, 5e7), rel=1e-14, abs=0.0)
+    assert pulses.peak_rate.max() == run.events.peak_rate[0]
+    assert pulses.slip.sum() == pytest.approx(run.events.slip[0], rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("name", ["slab, slip law", "slab, lossy", "block, damped", "slab, rate law, maximal"])
+def test_pulses_are_those_that_the_catalogue_counts(name: str) -> None:
+    run = ss.simulate(*RUNS[name])
+    counted = np.bincount(run.pulses().event, minlength=len(run.events))
+    assert counted.tolist() == run.events.pulses.tolist()
+
+
+def test_radiation_against_the_velocity_at_the_driver() -> None:
+    """Across rests that were leaped over, too; the driver moves."""
+    problem = ss.Problem(LOSSY, COULOMB, 0.01, initial_excess=1e5, far_stress=7e7, far_stress_rate=1e3)
+    run = ss.simulate(problem, 400.0, rtol=1e-12)
+    assert run.history.rests.any()
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    edges = np.unique(np.concatenate([run.breaks + TRAVEL, np.arange(0.0, 400.0, TRAVEL), [400.0]]))
+    edges = edges[edges <= 400.0]
+    times = edges[:-1, None] + np.diff(edges)[:, None] * 0.5 * (1.0 + nodes)
+    beyond = run.field(THICKNESS, times.ravel()).velocity.reshape(times.shape) - 0.01
+    by_hand = LOSSY.driver_impedance * (beyond**2 @ (0.5 * weights)) @ np.diff(edges)
+    assert float(run.energy(400.0).radiated[0]) == pytest.approx(by_hand, rel=1e-9, abs=0.0)
+
+
+def test_a_block_that_swings_back_drops_from_its_load() -> None:
+    """Friction so weak that the block turns round at once: there the spring pushes back, and the contact slides against that."""
+    problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.11, 0.1), initial_load=6.0)
+    run = ss.simulate(problem, 2.0, rtol=1e-12)
+    table = run.energetics(0.0)
+    assert table.dynamic_drop[:2].to_numpy() == pytest.approx([5.0, 3.0], rel=1e-11, abs=0.0)  # the load is 6, then 2 - 6 = -4
+    assert table.overshoot[:2].to_numpy() == pytest.approx([1.0, 1.0], rel=1e-11, abs=0.0)
+
+
+def test_no_overshoot_where_friction_does_not_fall() -> None:
+    problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.4, 0.4), pull_rate=0.1, initial_excess=0.0)
+    event = ss.simulate(problem, 0.5).energetics(0.0).iloc[0]
+    assert event.slip > 0.0
+    assert event.dynamic_drop == pytest.approx(0.0, rel=0.0, abs=1e-11)
+    assert math.isnan(event.overshoot)
+
+
+def test_a_run_without_events() -> None:
+    run = ss.simulate(ss.Problem(SLAB, COULOMB, initial_load=1e7), 20.0)
+    assert run.energetics().empty
+    assert list(run.energetics()) == list(ENERGETICS_COLUMNS)
+    assert run.pulses().empty
