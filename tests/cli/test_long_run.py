@@ -113,6 +113,15 @@ def test_a_bad_number_of_events_in_a_scenario(command, tmp_path: Path, events: s
     assert re.match(r"stickslip: mine\.toml: \[run\] events must be a whole number above 0, got ", shown.err)
 
 
+@pytest.fixture
+def heeds_ctrl_c() -> Iterator[None]:
+    """As a command on a terminal: what runs the tests may ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heeds_ctrl_c")
 @pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalog", "run.csv"]])
 def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
     @contextmanager

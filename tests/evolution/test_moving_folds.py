@@ -205,7 +205,7 @@ def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang(selection: str, e
 
 
 def test_a_storm_from_the_very_start_is_said_in_one_line() -> None:
-    with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another selection rule$"):
+    with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another law$"):
         ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=0.0, selection="minimal"), 20.0)
 
 

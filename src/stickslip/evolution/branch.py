@@ -13,6 +13,8 @@ from stickslip.evolution.workspace import DEGREE, EXIT, Run
 
 TIE = 1e-13
 """Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
+SAME_LEVEL = 1e-14
+"""Of the normal load: rounding of two levels of the load that are one."""
 NEAR_KNOT = 1e-12
 """Relative distance within which a slip rate stands at a knot."""
 
@@ -221,5 +223,7 @@ def end_branch(run: Run) -> None:
     if run.counts[at.MODE] == 0:
         note_jump(run, 0.0, at.FOLD)
         run.state[at.RATE_NOW] = 0.0
+        if abs(level - rest_limit(run)) <= SAME_LEVEL * run.par[at.NORMAL]:
+            run.counts[at.EDGE] = direction  # rest ends where the branch does: the load goes away from there
     else:
         run.counts[at.EDGE] = direction
