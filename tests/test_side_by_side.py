@@ -149,3 +149,9 @@ def test_an_unchanged_friction_is_drawn_as_its_change() -> None:
     assert figure.axes[1].get_yscale() == "linear"
     wide = compare("fig7-block-critical", "fig7-slab-critical").plot()
     assert wide.axes[1].get_yscale() == "log"
+
+
+def test_the_dynamic_drop_is_exact_where_a_pulse_lasts_no_time() -> None:
+    """Fig. 5, slab: from 3430 Pa above S (muS + a) down to S (muS - a), 1e8 Pa apart; relative 1e-9."""
+    row = ss.compare("fig5-slab-reconstructed", "fig5-block-reconstructed-omega").table.iloc[0]
+    assert row.dynamic_drop == pytest.approx(1e8 + 3430.0, rel=1e-9)

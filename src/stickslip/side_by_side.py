@@ -12,10 +12,14 @@ import pandas as pd
 
 import stickslip
 from stickslip.errors import InputError
+from stickslip.evolution.events import SlipEvents
 from stickslip.evolution.report import Progress
 from stickslip.evolution.solution import Solution
+from stickslip.evolution.tables import default_event_rate
 from stickslip.files import write_table
 from stickslip.observables.choices import choices
+from stickslip.observables.energetics import extreme_tractions
+from stickslip.observables.pulses import Pulses
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.schema import check_rtol
 from stickslip.storage import PAPER, load
@@ -170,7 +174,6 @@ def distinct(names: Sequence[str]) -> list[str]:
 
 def _row(name: str, solution: Solution) -> dict[str, Any]:
     problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
-    slips = solution.catalogue(0.0)
     row = {
         "name": name,
         "body": problem.body.kind,
@@ -181,32 +184,22 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "pulses": 0,
         "shocks": shocks,
         "slip_rate": "jumps" if shocks else "smooth",
-        "peak_rate": slips.peak_rate.max(),
+        "peak_rate": solution.catalogue(0.0).peak_rate.max(),
         "load_unit": problem.load_unit,
         "status": solution.status.name,
     }
     if events.empty:
         return row
-    largest = events.iloc[int(events.slip.to_numpy().argmax())]
-    before = _rest_before(largest, slips) if problem.friction.sticks else float(largest.traction_before)
+    n = int(events.slip.to_numpy().argmax())
+    largest, history, event_rate = events.iloc[n], solution.history, default_event_rate(problem)
+    found = SlipEvents.of(history, event_rate)
+    begin, pulses = found.begin, Pulses.of(history, found, event_rate)
+    before, smallest = extreme_tractions(history, begin, pulses)
     return row | {
         "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "traction_drop": before - largest.traction_after,
-        "dynamic_drop": before - _smallest_traction(solution, largest),
+        "traction_drop": before[n] - history.mode(begin)[n] * largest.traction_after,
+        "dynamic_drop": before[n] - smallest[n],
         "duration": events.duration.iloc[0],
     }
-
-
-def _rest_before(event: pd.Series, slips: pd.DataFrame) -> float:
-    """Traction before the slip in which the event is: a block moves for a while before its rate counts as an event."""
-    return float(slips[slips.start <= event.start].traction_before.iloc[-1])
-
-
-def _smallest_traction(solution: Solution, event: pd.Series) -> float:
-    """Of the 2000 times and the limits at shocks of `curve`: its error is of second order in their distance."""
-    window = solution.window(event, before=0.0)
-    last = window.shown[1] if pd.isna(event.duration) else float(event.duration)
-    (_, traction), (_, rate) = (window.curve(name, 0.0, last) for name in ("traction", "slip_rate"))
-    return float(traction[rate != 0.0].min())  # a jump into rest leaves another traction behind

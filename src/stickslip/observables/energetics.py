@@ -66,7 +66,8 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     pulses = Pulses.of(history, events, threshold)
     columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
-    columns["dynamic_drop"] = _dynamic_drop(history, begin, pulses)
+    before, smallest = extreme_tractions(history, begin, pulses)
+    columns["dynamic_drop"] = before - smallest
     table = pd.DataFrame(columns | _ratios(history, columns))
     return table[list(ENERGETICS_COLUMNS)]
 
@@ -100,12 +101,11 @@ def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Float
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
-def _dynamic_drop(history: History, begin: Moments, pulses: Pulses) -> Floats:
+def extreme_tractions(history: History, begin: Moments, pulses: Pulses) -> tuple[Floats, Floats]:
+    """Tractions against the slip of events: at rest before each, and the smallest of its pulses (Pa, block: N)."""
     smallest = np.full(len(begin.piece), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
-    before = history.problem.strength + friction_at_rest_before(history, begin)
-    drop: Floats = history.mode(begin) * before - smallest
-    return drop
+    return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
 
 
 def friction_at_rest_before(history: History, begin: Moments) -> Floats:
