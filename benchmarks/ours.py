@@ -14,7 +14,8 @@ from stickslip.evolution.drive import split_time
 from stickslip.evolution.echoes import new_echoes
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
-from stickslip.evolution.setup import prepare, row_time
+from stickslip.evolution.inflow import row_time
+from stickslip.evolution.setup import prepare
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import STATUSES
 from stickslip.evolution.workspace import WORK_ROWS, lend

@@ -18,7 +18,7 @@ LAYERS = (
     ("errors", "files"),
     ("quantities", "selection", "units"),
     ("friction",),
-    ("bodies",),
+    ("bodies", "loading"),
     ("problem",),
     ("parameters",),
     ("contact", "reference"),

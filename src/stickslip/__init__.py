@@ -14,7 +14,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from stickslip import friction, parameters, selection
+from stickslip import friction, loading, parameters, selection
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.errors import InputError
 from stickslip.problem import Problem
@@ -83,6 +83,7 @@ __all__ = [
     "friction",
     "load",
     "load_scenario",
+    "loading",
     "parameters",
     "predictability",
     "regularise",

@@ -7,12 +7,17 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import Body, ElasticSlab
 from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
+from stickslip.loading import LoadingHistory
 from stickslip.quantities import Quantity, check_quantities, quantity
 from stickslip.selection import SelectionRule, checked, name_of
+
+MAY_VARY = ("pull_rate", "far_stress")
+"""What may be a loading history instead of a number."""
 
 
 def normal_load(body: Body) -> float:
@@ -34,18 +39,19 @@ class Problem:
     one, in the law's own unit; a law that sticks starts healed (0) by default.
 
     far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
+    One of pull_rate and far_stress may vary in time (`stickslip.loading`). A slab begins sheared evenly by the pull rate at 0 s.
     `selection` names the rule that picks one slip rate where several solve the contact equation, or is that rule
     (`stickslip.selection`).
     """
 
     body: Body
     friction: FrictionLaw
-    pull_rate: float = quantity("m/s", "rate V at which the driver is pulled", default=0.0)
+    pull_rate: float | LoadingHistory = quantity("m/s", "rate V at which the driver is pulled", default=0.0)
     initial_slip: float = quantity("m", "slip u0 at the start", default=0.0)
     initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
     initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
     initial_state: float | None = field(default=None)  # its unit is the law's business
-    far_stress: float | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
+    far_stress: float | LoadingHistory | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
     far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
     selection: str | SelectionRule = "perfect-delay"
 
@@ -54,7 +60,9 @@ class Problem:
             raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
         if not isinstance(self.friction, FrictionLaw):
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
-        check_quantities(self)
+        check_quantities(self, but=self._varying)
+        if len(self._varying) > 1:
+            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
@@ -80,6 +88,25 @@ class Problem:
         free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
         if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
+
+    @property
+    def _varying(self) -> tuple[str, ...]:
+        return tuple(name for name in MAY_VARY if isinstance(getattr(self, name), LoadingHistory))
+
+    @property
+    def varies(self) -> bool:
+        """Whether the loading varies in time, but for a far stress that grows steadily."""
+        return len(self._varying) > 0
+
+    @property
+    def first_pull_rate(self) -> float:
+        """V (m/s) at the start, and before: by it a slab is sheared then."""
+        return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
+
+    def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
+        """V (m/s) at times t (s since the start of the run)."""
+        rate = self.pull_rate
+        return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 
     @property
     def rule(self) -> str:

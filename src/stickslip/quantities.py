@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import numbers
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,11 +72,11 @@ def quantities_of(kind: type) -> dict[str, Quantity]:
     return {f.name: f.metadata["quantity"] for f in dataclasses.fields(kind) if "quantity" in f.metadata}
 
 
-def check_quantities(owner: Any) -> None:
-    """Check every declared quantity of a frozen dataclass and store it as a float; None stays where it is the default."""
+def check_quantities(owner: Any, but: Collection[str] = ()) -> None:
+    """Check every declared quantity of a frozen dataclass (but some) and store it as a float; None stays where it is the default."""
     optional = {f.name for f in dataclasses.fields(owner) if f.default is None}
     for name, declared in quantities_of(type(owner)).items():
         value = getattr(owner, name)
-        if value is None and name in optional:
+        if name in but or (value is None and name in optional):
             continue
         object.__setattr__(owner, name, declared.check(type(owner).__name__, name, value))

@@ -10,8 +10,8 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.drive import split_time
 from stickslip.evolution.echoes import NOTHING
 from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.phases import Phases
-from stickslip.evolution.setup import row_time
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 FRAGMENTS = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=0.1234, initial_excess=0.0)

@@ -17,10 +17,10 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.drive import split_time
 from stickslip.evolution.history import Epoch
 from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.keeper import Orders, as_solution
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.report import Report
-from stickslip.evolution.setup import row_time
 from stickslip.evolution.simulate import go_on
 from stickslip.evolution.status import UNDER_WAY
 from stickslip.evolution.window import Window

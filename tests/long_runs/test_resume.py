@@ -18,10 +18,10 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.drive import split_time
 from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.keeper import Orders, as_solution
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.report import Report
-from stickslip.evolution.setup import row_time
 from stickslip.evolution.status import UNDER_WAY
 from stickslip.storage import save_checkpoint
 from tests.long_runs.problems import RUNS, SLOW, differences

@@ -99,7 +99,7 @@ def first_rate(problem: Problem) -> float:
     if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0 or problem.friction.state is not None:
         return 0.0
     stable, table = selection_table(problem)
-    grows = problem.excess == 0.0 and problem.pull_rate > 0.0
+    grows = problem.excess == 0.0 and problem.first_pull_rate > 0.0
     excess = sys.float_info.min if grows else problem.excess
     if excess <= table.stick_to:
         return 0.0

@@ -15,8 +15,8 @@ from typing import Protocol, Self
 from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
-from stickslip.evolution.setup import row_time
 from stickslip.evolution.status import FULL_HISTORY, INTERRUPTED
 
 MOMENT = 0.1

@@ -286,7 +286,7 @@ def pays(run: Run) -> bool:
     """Whether to meet only what breaks from here on: the round trip was at rest, or, if it had many pieces, almost."""
     if run.par[at.REFLECTION] != -1.0 or run.counts[at.IS_BLOCK] == 1 or run.counts[at.HAS_STATE] == 1:
         return False
-    if run.counts[at.STICKS] == 0 or run.counts[at.PAUSE_AT] != at.NEVER:
+    if run.counts[at.STICKS] == 0 or run.counts[at.VARIES] == 1 or run.counts[at.PAUSE_AT] != at.NEVER:
         return False
     slipping, pieces = 0, run.counts[at.LENGTH] - run.counts[at.ROW_FROM]
     for n in range(run.counts[at.ROW_FROM], run.counts[at.LENGTH]):

@@ -15,6 +15,7 @@ from stickslip.evolution.echoes import FOREVER, NOTHING, end_trip, next_echo, pa
 from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
+from stickslip.evolution.loading import rows_withstood, take_part
 from stickslip.evolution.polynomial import fill, maximum, mean_of, total
 from stickslip.evolution.record import note_degree
 from stickslip.evolution.slip import slip, slip_implicitly
@@ -49,7 +50,13 @@ def first_piece(run: Run) -> bool:
         run.load[0] = run.state[at.LOAD_NOW] + rows_leaped(run, run.counts[at.LENGTH] - 1) * run.par[at.RAMP]
     run.counts[at.ECHO_OF] = -1
     # in the first round trip of a slab the start itself comes back from the driver, from half of it on
-    run.state[at.AMPLIFIED] = math.nan if run.counts[at.IS_BLOCK] == 1 else 1.0 if source == 0 else abs(run.par[at.REFLECTION])
+    run.state[at.AMPLIFIED] = (
+        math.nan
+        if run.counts[at.IS_BLOCK] == 1
+        else 1.0
+        if run.state[at.THETA_FROM] < 0.5 * run.par[at.ROW_TIME]
+        else abs(run.par[at.REFLECTION])
+    )
     run.counts[at.ARRIVING] = at.NO_CAUSE
     if run.counts[at.ROW] == 0 and source == 0:
         run.counts[at.ARRIVING] = at.START
@@ -107,7 +114,10 @@ def next_piece(run: Run) -> bool:
     first = run.counts[at.IS_BLOCK] == 1 or run.counts[at.ROW] == 0
     if not (first_piece(run) if first else echo_piece(run)):
         return False
-    run.counts[at.SOURCE] += 1
+    if run.counts[at.VARIES] == 1:
+        take_part(run, run.state[at.THETA_FROM])
+    else:
+        run.counts[at.SOURCE] += 1
     run.state[at.XI], run.state[EXIT] = 0.0, math.nan
     note_degree(run)
     run.counts[at.JUMP] = 1 if run.counts[at.ARRIVING] != at.NO_CAUSE else run.counts[at.JUMP]
@@ -120,6 +130,8 @@ def rows_at_rest(run: Run, limit: float) -> int:
     """Whole round trips that a contact at rest stays there for certain, judged from the one just past."""
     par = run.par
     ramp = par[at.RAMP]
+    if run.counts[at.VARIES] == 1:
+        return rows_withstood(run, limit)
     if not is_ramp(run):
         return 0
     top, bottom = -math.inf, -math.inf
@@ -149,7 +161,9 @@ def is_ramp(run: Run) -> bool:
 @kernel
 def swings_for_ever(run: Run) -> bool:
     """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
-    return run.par[at.REFLECTION] == 1.0 and run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
+    return (
+        run.counts[at.VARIES] == 0 and run.par[at.REFLECTION] == 1.0 and run.par[at.RAMP] == 0.0 and run.counts[at.STUCK_ROWS] >= 2
+    )
 
 
 @kernel
@@ -168,7 +182,7 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     if run.counts[at.MOVED] == 0:
         run.counts[at.STUCK_ROWS] += 1
         leap = rows_at_rest(run, limit)
-        locked = leap == FOREVER or swings_for_ever(run)
+        locked = leap >= FOREVER or swings_for_ever(run)
         room = last_row - run.counts[at.ROW] - 1
         if leap > room and run.counts[at.TO_THE_END] == 0:
             run.counts[at.STUCK_ROWS] -= 1
@@ -183,6 +197,7 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     run.counts[at.PREVIOUS_FROM], run.counts[at.PREVIOUS_TO] = run.counts[at.ROW_FROM], run.counts[at.LENGTH]
     run.counts[at.ROW_FROM] = run.counts[at.LENGTH]
     run.counts[at.SOURCE] = run.counts[at.MOVED] = 0
+    run.counts[at.ROW_SEGMENT] = run.counts[at.SEGMENT]
     return True
 
 

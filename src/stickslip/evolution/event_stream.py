@@ -14,8 +14,8 @@ import numpy as np
 from stickslip.evolution import layout as at
 from stickslip.evolution.events import NOT_YET, SlipEvents
 from stickslip.evolution.history import History
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.layout import Integers, Store
-from stickslip.evolution.setup import row_time
 from stickslip.evolution.tables import with_energies
 from stickslip.problem import Problem
 

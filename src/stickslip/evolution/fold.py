@@ -61,7 +61,7 @@ def square_variable(c: Floats, out: Floats) -> None:
 def set_aside(run: Run, width: float) -> None:
     """Keep the present piece of load, to be taken up again `width` further."""
     copy(run.load, run.kept_load, at.TERMS)
-    copy(run.state, run.kept, at.STATES)
+    copy(run.state, run.kept, at.KEPT)
     run.kept[at.XI] = run.state[at.XI] + width
     if run.state[at.XI] > 0.0:
         run.counts[at.ARRIVING] = at.NO_CAUSE
@@ -168,7 +168,7 @@ def leave_fold_piece(run: Run) -> None:
     if run.counts[at.AT_FOLD] == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
         state[at.LAST_STEP] = way
     rate, slipped, law_slip, last = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP]
-    copy(run.kept, run.state, at.STATES)
+    copy(run.kept, run.state, at.KEPT)
     state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP] = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
     note_degree(run)

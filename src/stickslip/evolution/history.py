@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.evolution.compiled import kernel
+from stickslip.evolution.inflow import inflow_of
 from stickslip.evolution.layout import Integers, Store
 from stickslip.evolution.phases import Phases
 from stickslip.problem import Problem
@@ -246,7 +247,14 @@ class History:
         if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
             left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
             value = np.where(at.at_rest, value - left, value)
-        return np.where(at.before, self.problem.excess, value + at.leaped * self.ramp)
+        return np.where(at.before, self.problem.excess, value + self._gained(at))
+
+    def _gained(self, at: Moments) -> Floats:
+        """By how much the load has grown in rows at rest since it was recorded."""
+        if not self.problem.varies or not at.at_rest.any():
+            return at.leaped * self.ramp
+        offset = self.store.theta_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
+        return inflow_of(self.problem).gathered(self.store.row[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Moments) -> Floats:
         """Slip rate, m/s."""

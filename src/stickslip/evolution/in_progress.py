@@ -13,10 +13,11 @@ from stickslip.evolution.creep.leap import CreepLeaps
 from stickslip.evolution.echoes import Echoes, new_echoes, replant
 from stickslip.evolution.echoes import resized as with_room
 from stickslip.evolution.history import NO_LEAPS, History
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.phases import standing_behind
-from stickslip.evolution.setup import prepare, row_time
+from stickslip.evolution.setup import prepare
 from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 

@@ -12,8 +12,8 @@ from stickslip.evolution.drive import NowAndThen, repeat
 from stickslip.evolution.event_stream import EventStream, Look
 from stickslip.evolution.history import History
 from stickslip.evolution.in_progress import RunInProgress
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.report import Progress, Reporter
-from stickslip.evolution.setup import row_time
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY
 from stickslip.evolution.tables import default_event_rate

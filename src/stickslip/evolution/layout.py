@@ -24,7 +24,8 @@ REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, S
 STATE_SCALE, RATE_FLOOR = 17, 18
 SHORTEST = 20  # pieces of load that are shorter, s, are lumped
 HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
-PARAMETERS = 21
+TONE, TONE_FREQUENCY, TONE_PHASE = range(21, 24)  # of a loading that varies: F has TONE sin(TONE_FREQUENCY t + TONE_PHASE)
+PARAMETERS = 24
 
 # ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
 XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
@@ -34,7 +35,10 @@ STATE_NOW = 12  # of the friction law, as its formulas see it
 NEW_SINCE, TAKEN_TO = 13, 14  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees
 AMPLIFIED, GAIN = 15, 16  # what has become of an error of the load in the present piece; by how much slip multiplies it
 SLIP_SINCE = 17  # offset at which slip began
-STATES = 18
+KEPT = 18  # of these, what is set aside where another piece comes in between
+TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brought, in its xi and as an offset
+STATES = 20
+assert KEPT <= TERMS  # it is set aside in a row of scratch space
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
 ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
@@ -44,7 +48,8 @@ IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece
 SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
 LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip began; slips beyond resolution, less others
 PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
-COUNTS = 41
+VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now, and at the end of the row before
+COUNTS = 44
 
 NEVER = 2**62
 """No row."""
@@ -65,6 +70,7 @@ VALUE_AT, JET_AT, STATE_AT = range(3)
 SLIP_SHIFT, OFFSET, KNOT = range(3)
 RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
 FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
+FROM_ROW, FROM_OFFSET, FROM_VALUE, FROM_SLOPE, FROM_JUMP = range(5)
 
 # ---- columns of Store's tables ----------------------------------------------------------------------------------------------
 S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE, S_ECHO_OF = range(6)
@@ -80,6 +86,7 @@ class Setup(NamedTuple):
     law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end
     branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
     first: Floats  # (4, pieces + 1): the load of the first round trip, linear between the thetas
+    loading: Floats  # (5, segments): row and offset from which each segment of the inflow has arrived, value there, slope, jump
 
 
 class Store(NamedTuple):

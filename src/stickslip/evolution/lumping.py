@@ -22,6 +22,8 @@ def check_shortest_event(problem: Problem, shortest: float, where: str, name: st
     body = problem.body
     if not isinstance(body, ElasticSlab) or body.reflection != -1.0:
         raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
+    if problem.varies:
+        raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull only")
     largest = LARGEST_SHARE * body.two_way_time
     if not 0.0 < shortest <= largest:
         raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")

@@ -10,24 +10,15 @@ import numpy as np
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.selection import rule_of
+from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
+from stickslip.evolution.inflow import inflow_of, row_time
 from stickslip.evolution.layout import Setup
 from stickslip.evolution.moving_branches import branch_rows, folds_move, has_inertia, is_algebraic
 from stickslip.evolution.workspace import COUNTS, STATES
 from stickslip.problem import Problem
 from stickslip.selection import SelectionRule
-
-
-def row_time(problem: Problem) -> float:
-    """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation.
-
-    A day, if that is longer, for a block that never sticks: it creeps for years, over which no row can leap.
-    """
-    body = problem.body
-    if isinstance(body, ElasticSlab):
-        return body.two_way_time
-    return body.period if problem.friction.sticks else max(body.period, DAY)
 
 
 def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup, at.Floats, at.Integers]:
@@ -46,7 +37,7 @@ def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
     par = _parameters(problem)
     branches, par[at.STICK_TO] = branch_rows(problem, 0.0)
-    setup = Setup(par, *_formulas(problem), branches, _first_load(problem))
+    setup = Setup(par, *_formulas(problem), branches, _first_load(problem), _loading(problem))
     for shared in setup:
         shared.flags.writeable = False
     return setup, *_start(problem)
@@ -68,15 +59,24 @@ def _parameters(problem: Problem) -> at.Floats:
     if isinstance(body, ElasticSlab):
         par[at.IMPEDANCE], par[at.INERTIA], par[at.REFLECTION] = body.impedance, body.contact_mass, body.reflection
         par[at.SMALLEST_JUMP] = 1e-14 * problem.normal / body.impedance
-        par[at.INFLOW], par[at.INFLOW_RATE] = inflow(problem)
-        par[at.RAMP] = par[at.INFLOW] if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
     else:
         par[at.IMPEDANCE], par[at.INERTIA], par[at.STIFFNESS] = body.damping, body.mass, body.stiffness
-        par[at.RAMP] = body.stiffness * problem.pull_rate * row_time(problem)
+    if problem.varies:
+        par[at.TONE], par[at.TONE_FREQUENCY], par[at.TONE_PHASE] = inflow_of(problem).tone
+    else:
+        par[at.INFLOW], par[at.INFLOW_RATE], par[at.RAMP] = _steady(problem)
     return par
 
 
-DAY = 86_400.0
+def _steady(problem: Problem) -> tuple[float, float, float]:
+    """Loading that does not vary: inflow at 0 s, in a second, and what a load at rest gains in a row; 0 for what there is not."""
+    body, inflow = problem.body, inflow_of(problem)
+    if not isinstance(body, ElasticSlab):
+        return 0.0, 0.0, body.stiffness * problem.first_pull_rate * row_time(problem)
+    value, slope = float(inflow.value[0]), float(inflow.slope[0])
+    return value, slope, value if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
+
+
 SMALLEST, SLOWEST = 1e-300, 1e-12
 """Slip rates that are resolved to the last digit: down to nothing where slip begins from rest, to a share of the law's own scale
 where friction has no rest."""
@@ -84,39 +84,59 @@ SAFETY = 0.1
 """Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
 
-def inflow(problem: Problem) -> tuple[float, float]:
-    """What the driver adds to the load, minus (1 + r) times the reference strength: value at t = 0 (Pa) and rate (Pa/s).
-
-    beta(t) = r w(t - R) + 2 Z [Zd V + s(t - h/c)] / (Z + Zd), which for a rigid driver is -w(t - R) + 2 Z V.
-    """
-    body = problem.body
-    assert isinstance(body, ElasticSlab)
-    if body.reflection == -1.0:
-        return 2.0 * body.impedance * problem.pull_rate, 0.0
-    gain = 1.0 + body.reflection
-    far = problem.excess if problem.far_stress is None else problem.far_stress - problem.strength
-    delay = 0.5 * body.two_way_time
-    steady = gain * body.driver_impedance * problem.pull_rate + gain * (far - problem.far_stress_rate * delay)
-    return steady, gain * problem.far_stress_rate
-
-
 def _first_load(problem: Problem) -> at.Floats:
-    """The load of the first round trip (minus the reference), linear between its breaking points."""
-    body, excess, pull = problem.body, problem.excess, problem.pull_rate
+    """The load of the first round trip (minus the reference), linear between its breaking points.
+
+    Where the loading varies, without what it adds; in parts so short that a tone in it is a polynomial to rounding.
+    """
+    body, excess, varies = problem.body, problem.excess, problem.varies
     if not isinstance(body, ElasticSlab):
-        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
-    slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
-    if body.reflection == -1.0:
+        slope = 0.0 if varies else body.stiffness * problem.first_pull_rate
+        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [slope]))
+    slope = body.impedance * problem.first_pull_rate / (0.5 * body.two_way_time)  # G V / h
+    if body.reflection == -1.0 and not varies:
         return _pieces([0.0, body.two_way_time], [excess], [slope])
-    r, half = body.reflection, 0.5 * body.two_way_time
-    steady, rate = inflow(problem)
+    r, half, inflow = body.reflection, 0.5 * body.two_way_time, inflow_of(problem)
     # for h/c <= t < R the start comes back: w(t - R) = G V (R - t) / h - tau0
-    reflected = steady + rate * half + r * (slope * half - excess)
+    back, comes = r * (slope * half - excess), float(inflow.at(np.array(half)))
     before = excess + slope * half
-    jump = abs(reflected - before) > 1e-12 * max(abs(problem.strength), abs(before))
-    if not jump:
-        reflected = before
-    return _pieces([0.0, half, 2.0 * half], [excess, reflected], [slope, rate - r * slope], [0, int(jump)])
+    jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
+    rate = 0.0
+    if not varies:
+        back, rate = back + comes if jump else before, float(inflow.slope[0])
+    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, rate - r * slope], [0, int(jump)]))
+
+
+def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
+    """The same in shorter pieces, in which a tone turns by at most LARGEST_TURN."""
+    theta, tone = pieces[0], inflow_of(problem).tone
+    if tone.amplitude == 0.0:
+        return pieces
+    counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
+    if counts.sum() > MOST_PARTS:
+        period = 2.0 * math.pi / tone.frequency
+        raise InputError(
+            f"the loading's period of {period:g} s is too short: at least {theta[-1] / MOST_PARTS * 16:.3g} s is needed"
+        )
+    edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(theta[:-1], theta[1:], counts, strict=True)]
+    of = np.repeat(np.arange(len(counts)), counts)
+    begin = np.concatenate(edges)
+    load = pieces[1][of] + pieces[2][of] * (begin - theta[of])
+    jump = np.where(begin == theta[of], pieces[3][of], 0.0)
+    return np.array([[*begin, theta[-1]], [*load, 0.0], [*pieces[2][of], 0.0], [*jump, 0.0]])
+
+
+LARGEST_TURN, MOST_PARTS = 1.0, 100_000
+"""Phase (rad) in which a sine's Taylor series is right to rounding; parts of a round trip."""
+
+
+def _loading(problem: Problem) -> at.Floats:
+    """Rows of `Setup.loading`: the segments of the inflow by where they arrive."""
+    inflow = inflow_of(problem)
+    row, offset = zip(*inflow.breaks(), strict=True)
+    ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)
+    jump = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))
+    return np.array([row, offset, inflow.value, inflow.slope, [0.0, *jump]])
 
 
 def _pieces(theta: list[float], load: list[float], slope: list[float], jump: list[int] | None = None) -> at.Floats:
@@ -160,6 +180,7 @@ def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
     state, count = np.zeros(STATES), np.zeros(COUNTS, np.int64)
     state[at.LAST_STEP] = math.inf
     count[at.PIECE] = int(problem.friction.piece_at(problem.law_slip))
+    count[at.VARIES] = problem.varies
     count[at.IS_BLOCK] = not isinstance(problem.body, ElasticSlab)
     count[at.HAS_INERTIA] = has_inertia(problem)
     count[at.IS_ALGEBRAIC] = is_algebraic(problem)

@@ -49,6 +49,11 @@ class Run(NamedTuple):
     first_load: Floats
     first_slope: Floats
     first_jump: Floats
+    from_row: Floats  # by segment of the loading
+    from_offset: Floats
+    from_value: Floats
+    from_slope: Floats
+    from_jump: Floats
 
     state: Floats
     counts: Integers
@@ -82,6 +87,7 @@ class Run(NamedTuple):
     size: int  # of the constants of a piece
     branches: int
     loads: int
+    segments: int
     capacity: int
 
 
@@ -90,15 +96,23 @@ def lend(setup: Setup, state: Floats, count: Integers, scratch: Floats, store: S
     arrays = (*setup, state, count, scratch, *store)
     assert all(array.flags.c_contiguous for array in (*arrays, *trees))
     assert scratch.shape == (WORK_ROWS, TERMS)
-    lengths = (setup.constants.shape[0], setup.constants.shape[1], setup.branch.shape[1], setup.first.shape[1], len(store.whole))
+    tables = setup.branch, setup.first, setup.loading
+    lengths = (*setup.constants.shape, *(table.shape[1] for table in tables), len(store.whole))
     return np.array([*(array.ctypes.data for array in arrays), *lengths, *(tree.ctypes.data for tree in trees)], np.int64)
 
 
 @inlined
 def borrow(table: Integers) -> Run:
     """The run in a table of `lend`."""
-    address, law, branch, first, work = integers(table[1]), floats(table[3]), floats(table[4]), floats(table[5]), floats(table[8])
-    pieces, size, branches, loads, capacity = table[14], table[15], table[16], table[17], table[18]
+    address, law, branch, first, loading = (
+        integers(table[1]),
+        floats(table[3]),
+        floats(table[4]),
+        floats(table[5]),
+        floats(table[6]),
+    )
+    work = floats(table[9])
+    pieces, size, branches, loads, segments, capacity = table[15], table[16], table[17], table[18], table[19], table[20]
     return Run(
         floats(table[0]),
         address,
@@ -118,13 +132,18 @@ def borrow(table: Integers) -> Run:
         ahead(first, loads),
         ahead(first, 2 * loads),
         ahead(first, 3 * loads),
-        floats(table[6]),
-        integers(table[7]),
-        integers(table[9]),
-        floats(table[10]),
+        loading,
+        ahead(loading, segments),
+        ahead(loading, 2 * segments),
+        ahead(loading, 3 * segments),
+        ahead(loading, 4 * segments),
+        floats(table[7]),
+        integers(table[8]),
+        integers(table[10]),
         floats(table[11]),
         floats(table[12]),
         floats(table[13]),
+        floats(table[14]),
         work,
         ahead(work, TERMS),
         ahead(work, 2 * TERMS),
@@ -140,11 +159,12 @@ def borrow(table: Integers) -> Run:
         ahead(work, 12 * TERMS),
         ahead(work, 13 * TERMS),
         ahead(work, 14 * TERMS),
-        integers(table[19]),
-        floats(table[20]),
+        integers(table[21]),
+        floats(table[22]),
         pieces,
         size,
         branches,
         loads,
+        segments,
         capacity,
     )

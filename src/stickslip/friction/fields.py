@@ -31,10 +31,12 @@ class Named(NamedTuple):
 
 @dataclass(frozen=True)
 class Series:
-    """Two or more numbers of one kind, ascending where they are places."""
+    """Numbers of one kind, ascending where they are places."""
 
     item: Quantity
     ascending: bool = False
+    least: int = 2
+    """Numbers in the shortest series."""
 
     @property
     def meaning(self) -> str:
@@ -46,8 +48,8 @@ class Series:
         if isinstance(value, str | Mapping) or not isinstance(value, Iterable) or np.ndim(np.asarray(value, object)) != 1:
             raise InputError(f"{owner}: {name} must be a list of numbers in {self.item.label}, got {type(value).__name__}")
         numbers = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
-        if not 2 <= len(numbers) <= LARGEST_SERIES:
-            raise InputError(f"{owner}: {name} must have 2 to {LARGEST_SERIES} numbers, got {len(numbers)}")
+        if not self.least <= len(numbers) <= LARGEST_SERIES:
+            raise InputError(f"{owner}: {name} must have {self.least} to {LARGEST_SERIES} numbers, got {len(numbers)}")
         if self.ascending:
             for i, (one, following) in enumerate(pairwise(numbers)):
                 if not one < following:

@@ -90,8 +90,8 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
     body = problem.body
     assert isinstance(body, SpringBlock)
     force, left = history.excess(first), history.excess(last)
-    spring = (force - left) * (force + left + 2.0 * problem.strength) / (2.0 * body.stiffness)
-    pulling = between(history, first, last, lambda at: problem.pull_rate * (problem.strength + history.excess(at)))
+    spring = _stretching(history, left, force)
+    pulling = between(history, first, last, _pulling(history))
     return {
         "released": spring + 0.5 * body.mass * (history.rate(first) ** 2 - history.rate(last) ** 2),
         "work": pulling,
@@ -149,33 +149,48 @@ def _block(history: History, at: Moments) -> dict[str, Floats]:
     body = problem.body
     assert isinstance(body, SpringBlock)
     force, rate = history.excess(at), history.rate(at)
-    spring = (force - problem.excess) * (force + problem.excess + 2.0 * problem.strength) / (2.0 * body.stiffness)
+    spring = _stretching(history, np.full(len(force), problem.excess), force)
     slipping = np.flatnonzero(history.store.mode)
-    row, offset = history.placed(at)
     return {
-        "work": problem.pull_rate * (problem.strength * (row * history.row_time + offset) + _pulling_force(history, at)),
+        "work": up_to(history, at, _pulling(history)) + _at_rest(history, at),
         "stored": spring + 0.5 * body.mass * rate**2,
         "elastic": spring,
         "kinetic": 0.5 * body.mass * rate**2,
         "heat": heat(history, at),
         "damped": up_to(history, at, _damping(history), slipping),
-        "radiated": np.zeros(len(row)),
-        "trapped": np.zeros(len(row)),
+        "radiated": np.zeros(len(force)),
+        "trapped": np.zeros(len(force)),
     }
 
 
-def _pulling_force(history: History, at: Moments) -> Floats:
-    """Integral of the spring's force minus the reference up to each moment; rests that were leaped over are trapezoids."""
+def _pulling(history: History) -> Integrand:
+    """Work of the block's driver in a second."""
+    problem = history.problem
+
+    def power(at: Moments) -> Floats:
+        row, offset = history.placed(at)
+        rate = problem.pull_rate_at(row * history.row_time + offset)
+        return np.asarray(rate * (problem.strength + history.excess(at)))
+
+    return power
+
+
+def _at_rest(history: History, at: Moments) -> Floats:
+    """Work of the block's driver up to each moment in rests that were not recorded: it is in the spring."""
     row = history.store.row
     before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
-    lasting = (row[before + 1] - row[before] - 1) * history.row_time
-    force, rise = history.excess(Moments.inside(before, 1.0)), history.ramp / history.row_time
-    whole = np.append(0.0, np.cumsum(lasting * (force + 0.5 * rise * lasting)))
-    leap = np.searchsorted(before, at.last)
-    inside = np.where(at.at_rest, (at.leaped - 1.0) * history.row_time + history.placed(at)[1], 0.0)
-    part = inside * (np.append(force, 0.0)[leap] + 0.5 * rise * inside)
-    pulling: Floats = up_to(history, at, history.excess) + whole[leap] + part
-    return pulling
+    force, left = (history.excess(Moments.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
+    whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
+    last = history.excess(Moments.inside(at.last, 1.0))
+    part = np.where(at.at_rest, _stretching(history, last, history.excess(at)), 0.0)
+    return np.asarray(whole[np.searchsorted(before, at.last)] + part)
+
+
+def _stretching(history: History, force: Floats, later: Floats) -> Floats:
+    """Energy (J) that the block's spring gains from one force minus the reference to another."""
+    body = history.problem.body
+    assert isinstance(body, SpringBlock)
+    return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
 def heat(history: History, at: Moments) -> Floats:

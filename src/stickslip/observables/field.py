@@ -99,9 +99,8 @@ class _Inside:
         until = np.minimum(self.time - first + away, waves.half)
         of_start = (until - since) * (waves.excess + 0.5 * waves.slope * (since + until))
         low, high = (np.maximum(time, first + waves.half) - waves.round for time in (self.time, self.time + away))
-        middle = 0.5 * (low + high) + waves.round - first
-        inflow = (high - low) * (waves.inflow + waves.inflow_rate * middle)
-        return of_start + waves.body.reflection * self._left(low, high) + inflow
+        inflow = waves.inflow.total(low + waves.round - first, high + waves.round - first)
+        return np.asarray(of_start + waves.body.reflection * self._left(low, high) + inflow)
 
     def _left(self, low: Floats, high: Floats) -> Floats:
         """Integral of the leaving wave plus the reference between times, Pa s."""

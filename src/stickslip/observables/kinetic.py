@@ -45,7 +45,8 @@ class _Both:
     def kinetic(self) -> float:
         """J/m^2."""
         half = self.waves.half
-        fronts = np.concatenate([-self.start, self.start + self.waves.round, [self.begun, half - self.begun]])
+        comes = self.waves.inflow.edges(self.begun, self.begun + half) - self.begun
+        fronts = np.concatenate([-self.start, self.start + self.waves.round, [self.begun, half - self.begun], comes])
         edges = np.unique(np.concatenate([[0.0, half], fronts[(fronts > 0.0) & (fronts < half)]]))
         lengths = np.diff(edges)[:, None]
         away = edges[:-1, None] + lengths * PLACES

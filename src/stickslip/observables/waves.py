@@ -8,7 +8,8 @@ Before t = 0, w(-y) = G V y / h - tau0 for 0 < y < h/c; the load is tau0 + G V t
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.evolution.history import START, Epoch, History, Moments
-from stickslip.evolution.setup import inflow
+from stickslip.evolution.inflow import inflow_of
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
 
 Floats = NDArray[np.float64]
@@ -31,8 +32,8 @@ class Waves:
         self.history, self.body = history, body
         self.reference, self.excess = history.problem.strength, history.problem.excess
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
-        self.slope = body.impedance * history.problem.pull_rate / self.half  # G V / h
-        self.inflow, self.inflow_rate = inflow(history.problem)
+        self.slope = body.impedance * history.problem.first_pull_rate / self.half  # G V / h
+        self.inflow = inflow_of(history.problem)
 
     def leaving(self, at: Moments) -> Floats:
         """w plus the reference, Pa."""
@@ -40,7 +41,7 @@ class Waves:
 
     def arriving(self, leaving: Floats, left: Floats) -> Floats:
         """Load minus the reference one round trip after a wave left the contact, at a time (s) since the start of the run."""
-        return self.body.reflection * leaving + self.inflow + self.inflow_rate * (left + self.round)
+        return np.asarray(self.body.reflection * leaving + self.inflow.at(left + self.round))
 
     def begun(self, now: Epoch) -> float:
         """Time since the start of the run, s: only where its rounding does not matter."""
@@ -62,7 +63,8 @@ class Waves:
     def trapped(self, now: Epoch) -> float:
         """Energy of the waves inside the slab: what it stores beyond the same mean stress at rest (rigid driver: sheared at V)."""
         mean = self._inside(now, lambda load, _: load, lambda leaving, _: -leaving) / (2.0 * self.half)
-        drift = self.body.impedance * self.history.problem.pull_rate / self.half if self.body.reflection == -1.0 else 0.0
+        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.reflection == -1.0 else 0.0
+        drift = self.body.impedance * rate / self.half
 
         def down(load: Floats, away: Floats) -> Floats:
             return (load - mean - drift * away) ** 2
@@ -74,13 +76,12 @@ class Waves:
 
     def driver_rate(self, leaving: Floats, left: Floats) -> Floats:
         """Velocity (m/s) of the slab at the driver, h/c after a wave left: (A + B) / (2 Z) of arriving A and leaving B."""
-        incoming = self.inflow + self.inflow_rate * (left + self.round)
-        return ((1.0 + self.body.reflection) * leaving + incoming) / (2.0 * self.body.impedance)
+        incoming = self.inflow.at(left + self.round)
+        return np.asarray(((1.0 + self.body.reflection) * leaving + incoming) / (2.0 * self.body.impedance))
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """sigma v at the driver, h/c after a wave left: (A^2 - B^2) / (4 Z), without cancellation."""
-        incoming = self.inflow + self.inflow_rate * (left + self.round)
-        drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + incoming
+        drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + self.inflow.at(left + self.round)
         return 0.5 * self.driver_rate(leaving, left) * drop
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
@@ -93,10 +94,36 @@ class Waves:
         if end.row < 0:
             return self._before(-self.half, end.offset - self.round, self.power)
         total = self._before(-self.half, 0.0, self.power)
+        if self.history.problem.varies:
+            return total + self._row_by_row(end.row) + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
         total += float(self._passed[int(np.searchsorted(self.history.store.row, end.row, side="right"))])
         piece, low, high = self.standing(end.row)
         total += float(self._work_of(piece, low, high, end.row - self.history.store.row[piece]).sum())
         return total + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
+
+    def _row_by_row(self, past: int) -> float:
+        """Work of all that left the contact before a row, where the loading varies: no sum over echoes stands for rows at rest."""
+        rows = np.unique(self.history.store.row)
+        rows, of_rows = rows[rows < past], self._of_rows
+        last = int(rows[-1]) if len(rows) else -1
+        return float(of_rows[len(rows)]) + self._at_rest(last + 1, past)
+
+    @cached_property
+    def _of_rows(self) -> Floats:
+        """Work of all that left before the end of each stored row; 0 at the start."""
+        rows = np.unique(self.history.store.row)
+        own = [self._in_row(int(row), 0.0, self.round, self._of(self.power)) for row in rows]
+        rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
+        return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
+
+    def _at_rest(self, first: int, past: int) -> float:
+        """Work of what left in whole rows that were leaped over. Nothing is lost in them: a rigid driver's work is in the slab."""
+        if past <= first:
+            return 0.0
+        row = partial(self._in_row, past - 1, high=self.round, integrand=self._of(self.power))
+        if self.body.reflection != -1.0:
+            return (past - first) * row(low=0.0)  # nothing changes, or no row is leaped over
+        return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + row(low=self.half)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
@@ -172,8 +199,10 @@ class Waves:
         """Integral over waves that left at times (s) before the run began; the density's time counts from `begun` after that."""
         if end <= start:
             return 0.0
-        left = start + (end - start) * NODES
-        return (end - start) * float(density(-self.slope * left - self.excess, left - begun) @ WEIGHTS)
+        edges = np.concatenate([[start], self.inflow.edges(start + self.round, end + self.round) - self.round, [end]])
+        left, lasting = edges[:-1, None] + np.diff(edges)[:, None] * NODES, np.diff(edges)
+        values = density(-self.slope * left.ravel() - self.excess, left.ravel() - begun)
+        return float(lasting @ (values.reshape(left.shape) @ WEIGHTS))
 
     def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
         """Integral of a density over the waves that left between two times since now (s, not positive)."""
@@ -194,8 +223,17 @@ class Waves:
         piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
+        if self.history.problem.varies:
+            piece, begin, end = self._cut(piece, begin, end, row)
         leaped = (row - self.history.store.row[piece]).astype(float)
         return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped).sum())
+
+    def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """Parts of pieces (offsets in a row, s) whose echo meets the same segment of the loading throughout."""
+        breaks = np.array([offset for other, offset in self.inflow.breaks() if other == row + 1])
+        edges = np.unique(np.concatenate([begin, breaks[(breaks > begin[:1]) & (breaks < end[-1:])] if len(piece) else breaks[:0]]))
+        which = np.searchsorted(begin, edges, side="right") - 1
+        return piece[which], edges, np.minimum(np.append(edges[1:], end[-1:]), end[which])
 
 
 class Radiation(Waves):
@@ -208,7 +246,8 @@ class Radiation(Waves):
         """Of the wave behind the driver, h/c after a wave left the contact; nothing goes into a rigid one."""
         if self.body.reflection == -1.0:
             return np.zeros(len(leaving))
-        return self.body.driver_impedance * (self.driver_rate(leaving, left) - self.history.problem.pull_rate) ** 2
+        behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
+        return np.asarray(self.body.driver_impedance * behind**2)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Echoes at rest move the driver alike."""

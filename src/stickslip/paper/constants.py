@@ -38,7 +38,7 @@ def _slab() -> list[Constant]:
         Constant("c", "shear wave speed", slab.wave_speed, None, "m/s"),
         Constant("h", "thickness of the slab", slab.thickness, None, "m"),
         Constant("S", "normal stress of the slab", slab.normal_stress, None, "Pa"),
-        Constant("V", "pull rate", case.pull_rate * YEAR, None, "m/year", "a year is 31 557 600 s"),
+        Constant("V", "pull rate", case.first_pull_rate * YEAR, None, "m/year", "a year is 31 557 600 s"),
     ]
 
 

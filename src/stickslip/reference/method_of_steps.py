@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.errors import InputError
 from stickslip.friction.difference import difference
+from stickslip.loading import LoadingHistory
 from stickslip.problem import Problem
 from stickslip.reference.quadratic import fast_rate, fast_room
 
@@ -146,18 +147,21 @@ class _Stepper:
         """The load minus initial strength as a function of time and slip, on the stretch between breaking points around `time`."""
         p, body, start = self.problem, self.problem.body, self.problem.excess
         if self.slab is None:
-            return lambda t, slip: start + body.stiffness * (p.pull_rate * t - slip)
-        ramp, trip = self.slab.stiffness * p.pull_rate, self.slab.two_way_time
+            pulled = _pulled(p.pull_rate, time)
+            return lambda t, slip: start + body.stiffness * (pulled(t) - slip)
+        ramp, trip = self.slab.stiffness * p.first_pull_rate, self.slab.two_way_time
         if time < 0.5 * trip:
             return lambda t, slip: start + ramp * t
-        r, far = self.slab.reflection, p.load if p.far_stress is None else p.far_stress
-        steady = 2.0 * self.drag * p.pull_rate * (1.0 if math.isinf(self.slab.driver_impedance) else 0.5 * (1.0 - r))
+        r, delay = self.slab.reflection, 0.5 * trip
+        rate, far = _near(p.pull_rate, time - delay), _near(p.load if p.far_stress is None else p.far_stress, time - delay)
+        share = 2.0 * self.drag * (1.0 if math.isinf(self.slab.driver_impedance) else 0.5 * (1.0 - r))
         source = next((piece for piece in self.pieces if piece.start <= time - trip < piece.end), None)
 
         def load(t: float, slip: float) -> float:
             x = t - trip
             outgoing = 2.0 * self.drag * source.rate(x) - source.load(x) if source else -ramp * x - start
-            return r * outgoing + steady + (1.0 + r) * (far + p.far_stress_rate * (t - 0.5 * trip) - self.strength)
+            sent = t - delay
+            return r * outgoing + share * rate(sent) + (1.0 + r) * (far(sent) + p.far_stress_rate * sent - self.strength)
 
         return load
 
@@ -165,7 +169,7 @@ class _Stepper:
 
     def run(self, duration: float) -> StepsSolution:
         trip = self.slab.two_way_time if self.slab else math.inf
-        breaks = {0.5 * trip, trip}
+        breaks = {0.5 * trip, trip, *self._breaks_of_loading()}
         t, state, sense = 0.0, np.zeros(3), self._sense_at_start()
         while t < duration:
             if len(self.pieces) > _MAX_PIECES:
@@ -177,17 +181,22 @@ class _Stepper:
                 state[1], self.part = 0.0, self.home
                 sense = next((s for s in (1, -1) if self.beyond(s, load(t, float(state[0])), 0.0) > 0.0), 0)
             end, state, after = self._rest(t, stop, state, load) if sense == 0 else self._slide(t, stop, state, load, sense)
-            breaks |= {end + trip}
+            breaks |= {end + trip}  # its echo
             t, sense = (
                 end,
                 self._sense(end, min([duration, *(b for b in breaks if b > end)]), state, sense) if after is None else after,
             )
         return StepsSolution(self.problem, self.pieces)
 
+    def _breaks_of_loading(self) -> set[float]:
+        histories = [h for h in (self.problem.pull_rate, self.problem.far_stress) if isinstance(h, LoadingHistory)]
+        delay = 0.5 * self.slab.two_way_time if self.slab else 0.0
+        return {segment.start + delay for history in histories for segment in history.segments}
+
     def _sense_at_start(self) -> int:
         excess = self.problem.excess
         if excess == 0.0:
-            return 1 if self.problem.pull_rate > 0.0 else 0
+            return 1 if self.problem.first_pull_rate > 0.0 else 0
         return next((s for s in (1, -1) if self.beyond(s, excess, 0.0) > 0.0), 0)
 
     def _sense(self, t: float, stop: float, state: NDArray[np.float64], before: int) -> int:
@@ -228,9 +237,10 @@ class _Stepper:
         ahead = self.part if self.path or sense > 0 else self.part - 1
         if 0 <= ahead < len(self.knots):
             events.append(_terminal(lambda x, y: y[1] - (self.knots[ahead] - self.problem.law_slip), 0.0))
-        run = self.solve_ivp(
-            motion[0], (t, stop), state, method="DOP853", rtol=self.rtol, atol=1e-22, events=events, dense_output=True
-        )
+        # from rest, under a load that swings, the first steps would go far beyond what the error estimate sees
+        longest = (stop - t) / 50.0 if self.problem.varies else math.inf
+        accuracy = {"rtol": self.rtol, "atol": 1e-22, "max_step": longest}
+        run = self.solve_ivp(motion[0], (t, stop), state, method="DOP853", events=events, dense_output=True, **accuracy)
         end, dense, part = float(run.t[-1]), run.sol, self.part
 
         def rate(x: float) -> float:
@@ -268,6 +278,29 @@ class _Stepper:
     def _keep(self, piece: Piece) -> None:
         if piece.end > piece.start:
             self.pieces.append(piece)
+
+
+def _near(history: float | LoadingHistory, time: float) -> Callable[[float], float]:
+    """A pull rate or far stress as a function of time, as it is on the segment around a time (s)."""
+    if not isinstance(history, LoadingHistory):
+        return lambda t: history
+    segment, tone = [s for s in history.segments if s.start <= max(time, 0.0)][-1], history.tone
+    return lambda t: segment.at(t) + tone.amplitude * math.sin(tone.frequency * t + tone.phase)
+
+
+def _pulled(history: float | LoadingHistory, time: float) -> Callable[[float], float]:
+    """How far (m) a pull rate has pulled since 0 s, as a function of time, on the segment around a time (s)."""
+    if not isinstance(history, LoadingHistory):
+        return lambda t: history * t
+    past, tone = [s for s in history.segments if s.start <= max(time, 0.0)], history.tone
+    ends, now = [s.start for s in past[1:]], past[-1]
+    before = math.fsum((end - s.start) * s.at(0.5 * (s.start + end)) for s, end in zip(past, ends, strict=False))
+
+    def pulled(t: float) -> float:
+        swung = tone.amplitude / tone.frequency * (math.cos(tone.phase) - math.cos(tone.frequency * t + tone.phase))
+        return before + (t - now.start) * now.at(0.5 * (now.start + t)) + swung
+
+    return pulled
 
 
 def _terminal(event: Callable[[float, NDArray[np.float64]], float], direction: float) -> Any:

@@ -117,7 +117,7 @@ def _derived(problem: Problem) -> list[Fact]:
         return [
             Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
             Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "what a slip rate costs: plays Z's part"),
-            Fact("K V", body.stiffness * problem.pull_rate, "N/s", "rate of loading while stuck"),
+            Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", "rate of loading while stuck"),
             *start,
         ]
     return [
@@ -126,7 +126,7 @@ def _derived(problem: Problem) -> list[Fact]:
         Fact("R", body.two_way_time, "s", "two-way travel time 2 h/c"),
         Fact("G/h", body.stiffness, "Pa/m", "load lost per metre of slow slip"),
         Fact("r", body.reflection, "1", "reflection at the driver: -1 rigid, 0 matched, +1 dead load"),
-        Fact("G V/h", body.stiffness * problem.pull_rate, "Pa/s", "rate of loading at first"),
+        Fact("G V/h", body.stiffness * problem.first_pull_rate, "Pa/s", "rate of loading at first"),
         *start,
         *_pulses(problem),
     ]
@@ -134,7 +134,7 @@ def _derived(problem: Problem) -> list[Fact]:
 
 def _steady(problem: Problem) -> list[Fact]:
     """Steady sliding at the pull rate under rate-and-state friction."""
-    law, rate = problem.friction, problem.pull_rate
+    law, rate = problem.friction, problem.first_pull_rate
     if not isinstance(law, RateAndState) or rate <= 0.0:
         return []
     friction, state = problem.normal * float(law.steady_coefficient(rate)), float(law.steady_state(rate))

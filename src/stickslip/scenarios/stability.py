@@ -15,18 +15,18 @@ from stickslip.reference.rate_and_state import block_growth, critical_stiffness,
 
 
 def loading_rate(problem: Problem) -> float:
-    """How fast the load of a stuck contact grows (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
+    """How fast the load of a stuck contact grows at first (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
     body = problem.body
     if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
         return problem.far_stress_rate
-    return body.stiffness * problem.pull_rate
+    return body.stiffness * problem.first_pull_rate
 
 
 def start_of(problem: Problem) -> str:
     """What the contact does at t = 0+, and when it will slip if it does not."""
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
-    excess, unit, pulled = problem.excess, problem.load_unit, problem.pull_rate > 0
+    excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
     jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
     if problem.load < -problem.strength:
@@ -45,7 +45,9 @@ def start_of(problem: Problem) -> str:
 
 
 def wait_of(problem: Problem) -> float:
-    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab."""
+    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab; inf where the loading varies."""
+    if problem.varies:
+        return math.inf
     rate = loading_rate(problem)
     return max(-problem.excess, 0.0) / rate if rate > 0 else math.inf
 
@@ -83,7 +85,7 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 def _steady_sliding(problem: Problem, law: RateAndState) -> str:
     """Whether sliding at the pull rate is stable: the stiffness against the critical one, and how a disturbance grows."""
-    body, rate = problem.body, problem.pull_rate
+    body, rate = problem.body, problem.first_pull_rate
     if rate <= 0.0:
         return "not pulled: it creeps to a halt, ever more slowly"
     numbers = (problem.normal, law.a, law.b, law.distance, rate)

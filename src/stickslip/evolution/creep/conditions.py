@@ -32,4 +32,6 @@ def _missing(problem: Problem) -> str:
         return f"a friction law of slip alone, {type(law).__name__} is not"
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"
+    if problem.varies:
+        return "a constant pull rate"
     return "" if problem.pull_rate != 0.0 else "a pull rate that is not 0"

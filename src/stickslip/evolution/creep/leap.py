@@ -15,9 +15,9 @@ from stickslip.evolution.creep.pattern import Pattern, monotone_parts
 from stickslip.evolution.creep.plan import Plan, Planner
 from stickslip.evolution.creep.scribe import Scribe, seen
 from stickslip.evolution.history import NO_LEAPS
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
-from stickslip.evolution.setup import row_time
 from stickslip.problem import Problem
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ class CreepLeaps:
     def __post_init__(self) -> None:
         body = self.problem.body
         assert isinstance(body, ElasticSlab)
-        self.impedance, self.speed = body.impedance, abs(self.problem.pull_rate)
-        self.direction = 1 if self.problem.pull_rate > 0.0 else -1
+        self.impedance, self.speed = body.impedance, abs(self.problem.first_pull_rate)
+        self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
 
     def begin(self, count: Integers) -> None:
         """Have the engine pause after the first round trip."""

@@ -133,4 +133,4 @@ def reloading_time(solution: Solution, at: float) -> float:
     case = solution.problem
     assert isinstance(case.body, SpringBlock)
     strength = case.normal * float(case.friction.static_coefficient(float(solution.slip(at))))
-    return float(strength - solution.load(at)) / (case.body.stiffness * case.pull_rate)
+    return float(strength - solution.load(at)) / (case.body.stiffness * case.first_pull_rate)

@@ -194,4 +194,4 @@ def load_before_the_echo(runs: Runs) -> Verdict:
 
 def _formula(case: Problem, body: ElasticSlab, time: np.ndarray) -> np.ndarray:
     """G (V t + D0 - u0) / h."""
-    return case.load + body.stiffness * case.pull_rate * time
+    return case.load + body.stiffness * case.first_pull_rate * time

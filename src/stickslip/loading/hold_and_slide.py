@@ -1,0 +1,35 @@
+"""Slides between holds, as in the laboratory's slide-hold-slide tests of how friction heals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.friction.fields import Series, declare
+from stickslip.loading.contract import VARYING, LoadingHistory, Segment
+from stickslip.quantities import Quantity, quantity
+
+
+@dataclass(frozen=True)
+class HoldAndSlide(LoadingHistory):
+    """Slides of one length at one value, with holds of given lengths between them; the last slide goes on for ever.
+
+    Source: Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests).
+    """
+
+    kind: ClassVar[str] = "hold-and-slide"
+    example: ClassVar[dict[str, Any]] = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
+
+    slide: float = quantity(VARYING, "value while it slides")
+    slide_time: float = quantity("s", "how long it slides before each hold", above=0)
+    hold_times: tuple[float, ...] = declare(Series(Quantity("s", "how long each hold lasts", above=0), least=1))
+    hold: float = quantity(VARYING, "value while it holds", default=0.0)
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        time, found = 0.0, [Segment(0.0, self.slide, 0.0)]
+        for lasting in self.hold_times:
+            begin = time + self.slide_time
+            time = begin + lasting
+            found += [Segment(begin, self.hold, 0.0), Segment(time, self.slide, 0.0)]
+        return tuple(found)

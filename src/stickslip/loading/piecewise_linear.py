@@ -1,0 +1,36 @@
+"""Straight from point to point: ramps, and whatever was measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from stickslip.errors import InputError
+from stickslip.friction.fields import Series, declare
+from stickslip.loading.contract import VARYING, LoadingHistory, Segment
+from stickslip.quantities import Quantity
+
+
+@dataclass(frozen=True)
+class PiecewiseLinear(LoadingHistory):
+    """Straight from point to point, constant before the first and after the last."""
+
+    kind: ClassVar[str] = "piecewise-linear"
+    example: ClassVar[dict[str, Any]] = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
+    columns: ClassVar[dict[str, str]] = {"time": "times", "value": "values"}
+
+    times: tuple[float, ...] = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
+    values: tuple[float, ...] = declare(Series(Quantity(VARYING, "values at these times")))
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if len(self.times) != len(self.values):
+            raise InputError(f"PiecewiseLinear: {len(self.times)} times but {len(self.values)} values")
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        points = list(zip(self.times, self.values, strict=True))
+        straight = [Segment(t, v, (later - v) / (end - t)) for (t, v), (end, later) in pairwise(points)]
+        before = [Segment(0.0, self.values[0], 0.0)] if self.times[0] > 0.0 else []
+        return (*before, *straight, Segment(self.times[-1], self.values[-1], 0.0))

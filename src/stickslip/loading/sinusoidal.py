@@ -1,0 +1,31 @@
+"""A tone: tides, pressure cycles, dynamic triggering."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
+from stickslip.quantities import quantity
+
+
+@dataclass(frozen=True)
+class Sinusoidal(LoadingHistory):
+    """mean + amplitude sin(2 pi t / period + phase)."""
+
+    kind: ClassVar[str] = "sinusoidal"
+    example: ClassVar[dict[str, Any]] = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}
+
+    mean: float = quantity(VARYING, "mean value")
+    amplitude: float = quantity(VARYING, "amplitude of the oscillation")
+    period: float = quantity("s", "its period", above=0)
+    phase: float = quantity("rad", "its phase at the start", default=0.0)
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        return (Segment(0.0, self.mean, 0.0),)
+
+    @property
+    def tone(self) -> Tone:
+        return Tone(self.amplitude, 2.0 * math.pi / self.period, self.phase)
