@@ -103,6 +103,12 @@ class Problem:
         """V (m/s) at the start, and before: by it a slab is sheared then."""
         return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
 
+    @property
+    def pull_rate_text(self) -> str:
+        """The pull rate in a word or two."""
+        rate = self.pull_rate
+        return f"{rate.kind}, {rate.first:.6g} m/s at first" if isinstance(rate, LoadingHistory) else f"{rate:.6g} m/s"
+
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """V (m/s) at times t (s since the start of the run)."""
         rate = self.pull_rate

@@ -47,6 +47,13 @@ def complete_law(incomplete: str) -> list[str]:
     return [kind for kind in LAWS if kind.startswith(incomplete)]
 
 
+def complete_pull(incomplete: str) -> list[str]:
+    """Loading histories."""
+    from stickslip.loading import HISTORIES
+
+    return [kind for kind in HISTORIES if kind.startswith(incomplete)]
+
+
 def complete_rule(incomplete: str) -> list[str]:
     """Selection rules."""
     from stickslip.selection import SELECTION_RULES

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.names import complete_law, complete_template
+from stickslip.cli.names import complete_law, complete_pull, complete_template
 from stickslip.errors import InputError
 
 
@@ -21,6 +21,10 @@ def new(
         str | None,
         typer.Option(help="A friction law to put into a starter.", autocompletion=complete_law, show_default=False),
     ] = None,
+    pull: Annotated[
+        str | None,
+        typer.Option(help="A pull rate that varies in time, for a starter.", autocompletion=complete_pull, show_default=False),
+    ] = None,
     show_list: Annotated[bool, typer.Option("--list", "-l", help="List the names, with what each shows.")] = False,
 ) -> None:
     """Print a commented scenario to start from.
@@ -32,6 +36,7 @@ def new(
     \b
       stickslip new slab > mine.toml
       stickslip new block --friction exponential-stribeck
+      stickslip new slab --pull hold-and-slide
       stickslip new fig6-slab
       stickslip new --list
     """
@@ -42,7 +47,7 @@ def new(
     else:
         from stickslip.scenarios.templates import template
 
-        typer.echo(template(name, friction), nl=False)
+        typer.echo(template(name, friction, pull), nl=False)
 
 
 def _print_list() -> None:
@@ -50,6 +55,7 @@ def _print_list() -> None:
 
     from stickslip.cli.show import console, table
     from stickslip.friction import LAWS
+    from stickslip.loading import HISTORIES
     from stickslip.scenarios import library
 
     listing = table("name", "what it shows")
@@ -63,3 +69,7 @@ def _print_list() -> None:
     for kind, law in LAWS.items():
         laws.add_row(kind, (law.__doc__ or "").strip().splitlines()[0])
     console().print(laws)
+    pulls = table("--pull", "pull rate")
+    for kind, history in HISTORIES.items():
+        pulls.add_row(kind, (history.__doc__ or "").strip().splitlines()[0])
+    console().print(pulls)

@@ -147,7 +147,7 @@ class Solution(Readings):
         return [
             ("body", repr(problem.body)),
             ("friction", repr(problem.friction)),
-            ("loading", f"pull rate {problem.pull_rate:.6g} m/s, initial load {problem.load:.9g} {problem.load_unit}"),
+            ("loading", f"pull rate {problem.pull_rate_text}, initial load {problem.load:.9g} {problem.load_unit}"),
             ("run", f"{self.duration:.6g} s, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),
             ("events", f"{len(events)}{largest}"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from typing import Any
 
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.along_slip import regimes_along_slip
@@ -11,13 +12,14 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.loading import LoadingHistory
 from stickslip.parameters import parameter
 from stickslip.problem import Problem
 from stickslip.quantities import Quantity
 from stickslip.reference.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.schema import quantities_in
+from stickslip.scenarios.schema import in_unit, quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
 LARGE_STRAIN = 0.01
@@ -78,25 +80,38 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     }
     facts = {
         table: [
-            Fact(name, values[name], declared.unit, declared.meaning)
+            fact
             for name, (declared, _) in quantities_in(table, kind, problem.friction.state).items()
             if values[name] is not None
+            for fact in _facts(name, values[name], declared)
         ]
         for table, (kind, values) in holders.items()
     }
     return {"body": facts.pop("body"), "friction": _of_law(problem.friction)} | facts
 
 
-def _of_law(law: FrictionLaw, prefix: str = "") -> list[Fact]:
-    """Everything that a law was given; of a series of points how many there are, and between which ends."""
+def _facts(name: str, value: Any, declared: Quantity) -> list[Fact]:
+    """What was given for a quantity: a number, or all that a loading history is made of."""
+    if not isinstance(value, LoadingHistory):
+        return [Fact(name, value, declared.unit, declared.meaning)]
+    return [Fact(name, value.kind, "", declared.meaning), *_of_law(value, f"{name}.", declared.unit)]
+
+
+def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = "") -> list[Fact]:
+    """Everything that a law was given, or a history of something in a unit.
+
+    Of a series of points how many there are, and between which ends.
+    """
     facts: list[Fact] = []
-    for name, (declared, _) in fields_of(type(law)).items():
+    for name, (entry, _) in fields_of(type(law)).items():
+        declared = in_unit(entry, varying)
         value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
         if isinstance(declared, Quantity) and value is not None:
             facts.append(Fact(place, value, declared.unit, declared.meaning))
         elif isinstance(declared, Series) and value:
             unit = "" if declared.item.unit == "1" else f" {declared.item.unit}"
-            facts.append(Fact(place, f"{len(value)} points", "", f"{declared.meaning}, from {value[0]:g} to {value[-1]:g}{unit}"))
+            ends = min(value), max(value)
+            facts.append(Fact(place, f"{len(value)} points", "", f"{declared.meaning}, from {ends[0]:g} to {ends[1]:g}{unit}"))
         elif isinstance(declared, NamedNumbers):
             facts += [Fact(f"{place}.{one.name}", one.value, one.unit or "1", "") for one in value]
         elif isinstance(declared, Part):

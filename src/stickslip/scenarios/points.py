@@ -1,4 +1,4 @@
-"""A data file of a friction law: CSV with a header, read line by line, so that a mistake has a place."""
+"""A data file of a friction law or a loading history: CSV with a header, read line by line, so that a mistake has a place."""
 
 from __future__ import annotations
 
@@ -9,14 +9,18 @@ from pathlib import Path
 
 from stickslip.errors import InputError, nearest
 from stickslip.friction.fields import LARGEST_SERIES
+from stickslip.problem import MAY_VARY
 from stickslip.scenarios.values import show
 
 LARGEST = 5_000_000
 """Bytes of the largest data file that is read."""
+SIGNED = ("slip", *MAY_VARY)
+"""Columns whose numbers may be negative."""
 
 
-def read_points(name: str, folder: Path | None, columns: Mapping[str, str], where: str) -> dict[str, list[float]]:
-    """Numbers (SI) of a law's fields from the CSV file `name` in the scenario's folder; `columns` maps headings to fields.
+def read_points(name: str, folder: Path | None, columns: Mapping[str, str], value: str, where: str) -> dict[str, list[float]]:
+    """Numbers (SI) of fields from the CSV file `name` in the scenario's folder; `columns` maps headings to fields, and
+    `value` is the heading of what another one says the places of.
 
     Blank lines and lines that begin with # are left out; other columns are ignored. Raises InputError: one line with file and
     line.
@@ -24,15 +28,15 @@ def read_points(name: str, folder: Path | None, columns: Mapping[str, str], wher
     lines = _rows(_text(name, folder, where), f"{where}: {show(name)}")
     number, header = next(lines, (1, []))
     place = f"{where}: {show(name)}, line {number}"
-    heading = _wanted([cell.strip() for cell in header], columns, place)
+    heading = _wanted([cell.strip() for cell in header], columns, value, place)
     found: dict[str, list[float]] = {column: [] for column in heading}
     for number, row in lines:
         place = f"{where}: {show(name)}, line {number}"
         for column, i in heading.items():
             found[column].append(_number(row, i, column, place))
-        _check_row(found, place)
-    if len(found["friction"]) < 2:
-        raise InputError(f"{place}: at least two rows of numbers are needed, got {len(found['friction'])}")
+        _check_row(found, value, place)
+    if len(found[value]) < 2:
+        raise InputError(f"{place}: at least two rows of numbers are needed, got {len(found[value])}")
     return {columns[column]: numbers for column, numbers in found.items()}
 
 
@@ -64,12 +68,12 @@ def _rows(text: str, place: str) -> Iterator[tuple[int, list[str]]]:
         raise InputError(f"{place}, line {lines.line_num}: {error}") from None
 
 
-def _wanted(header: list[str], columns: Mapping[str, str], place: str) -> dict[str, int]:
-    """Index of each wanted column. There must be friction and exactly one other."""
+def _wanted(header: list[str], columns: Mapping[str, str], value: str, place: str) -> dict[str, int]:
+    """Index of each wanted column. There must be the value and exactly one other."""
     heading = {column: header.index(column) for column in columns if column in header}
-    others = [column for column in columns if column != "friction"]
-    if "friction" not in heading:
-        raise InputError(f"{place}: no column 'friction' in the header {show(','.join(header))}; {_close('friction', header)}")
+    others = [column for column in columns if column != value]
+    if value not in heading:
+        raise InputError(f"{place}: no column '{value}' in the header {show(','.join(header))}; {_close(value, header)}")
     if len(heading) != 2:
         found = "both" if len(heading) > 2 else "none"
         raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {found}; {_close(others[0], header)}")
@@ -89,14 +93,14 @@ def _number(row: list[str], i: int, column: str, place: str) -> float:
         raise InputError(f"{place}: {column} must be a number, got {show(text)}") from None
     if not math.isfinite(value):
         raise InputError(f"{place}: {column} must be finite, got {show(text)}")
-    if value < 0.0 and column != "slip":
+    if value < 0.0 and column not in SIGNED:
         raise InputError(f"{place}: {column} must not be negative, got {value:g}")
     return value
 
 
-def _check_row(found: Mapping[str, list[float]], place: str) -> None:
+def _check_row(found: Mapping[str, list[float]], value: str, place: str) -> None:
     for column, numbers in found.items():
         if len(numbers) > LARGEST_SERIES:
             raise InputError(f"{place}: more than {LARGEST_SERIES} rows")
-        if column != "friction" and len(numbers) > 1 and not numbers[-2] < numbers[-1]:
+        if column != value and len(numbers) > 1 and not numbers[-2] < numbers[-1]:
             raise InputError(f"{place}: {column} must ascend, but {numbers[-1]:g} follows {numbers[-2]:g}")

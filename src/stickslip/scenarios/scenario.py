@@ -13,6 +13,7 @@ import tomli_w
 from stickslip.errors import InputError, nearest
 from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.lumping import check_shortest_event
+from stickslip.loading import LoadingHistory
 from stickslip.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
@@ -74,7 +75,8 @@ class Scenario:
             tables[table] = to_table(owner)
         given = _without_none({f.name: getattr(problem, f.name) for f in fields(problem) if f.name not in ("body", "friction")})
         given.pop("selection")
-        tables["loading"] = {name: value for name, value in given.items() if not name.startswith("initial_")}
+        loading = {name: value for name, value in given.items() if not name.startswith("initial_")}
+        tables["loading"] = {n: to_table(value) if isinstance(value, LoadingHistory) else value for n, value in loading.items()}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
         run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol or None}
         run["shortest_event"] = self.shortest_event or None
@@ -135,7 +137,11 @@ def _problem(content: dict[str, Any], file: str) -> Problem:
 
 def _in_tables(message: str) -> str:
     """A message of `Problem` with its names as they stand in the file."""
-    return f"[loading] {message}" if message.startswith("far_stress") else message.replace("initial_", "[initial] ")
+    return (
+        f"[loading] {message}"
+        if message.startswith(("far_stress", "only one of pull_rate"))
+        else message.replace("initial_", "[initial] ")
+    )
 
 
 def _read_file(path: Path, file: str) -> str:

@@ -17,8 +17,10 @@ from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS
 from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import Field as LawField
-from stickslip.friction.fields import Part, fields_of
-from stickslip.problem import Problem
+from stickslip.friction.fields import Part, Series, fields_of
+from stickslip.loading import HISTORIES
+from stickslip.loading.contract import VARYING
+from stickslip.problem import MAY_VARY, Problem
 from stickslip.quantities import Quantity, quantities_of
 from stickslip.scenarios.entries import Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
@@ -26,6 +28,8 @@ from stickslip.scenarios.values import read_quantity, show
 from stickslip.selection import SELECTION_RULES, names, unknown
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
+REGISTERED = KINDS | {"loading": HISTORIES}
+"""What a `kind` may name, by the table it stands in, or in a table of which it stands: [loading.pull_rate]."""
 TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
@@ -67,10 +71,24 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
 
 
 def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity | LawField, Any]]:
-    """Everything of a table by its key, with its default: the quantities, and what else a friction law is made of."""
-    if table not in KINDS:
+    """Everything of a table by its key, with its default: the quantities, and what else a law or a loading history is made of."""
+    if not has_kind(table):
         return dict(quantities_in(table, kind, state))
-    return {key_of(name, entry): (entry, default) for name, (entry, default) in fields_of(kind).items()}
+    of = table.partition(".")[2]
+    unit = _declared(Problem)[of][0].unit if of in MAY_VARY else ""
+    return {key_of(name, entry): (in_unit(entry, unit), default) for name, (entry, default) in fields_of(kind).items()}
+
+
+def has_kind(table: str) -> bool:
+    """Whether a table says by its `kind` what it is of."""
+    return table in KINDS or "." in table
+
+
+def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
+    """A value of a loading history in the unit of what varies."""
+    if isinstance(entry, Series) and entry.item.unit == VARYING:
+        return replace(entry, item=replace(entry.item, unit=unit))
+    return replace(entry, unit=unit) if isinstance(entry, Quantity) and entry.unit == VARYING else entry
 
 
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
@@ -87,9 +105,8 @@ def _of_body(declared: Quantity, body: type) -> Quantity:
 @cache
 def table_model(table: str, kind: type, state: StateVariable | None = None) -> type[BaseModel]:
     """The pydantic model of one table."""
-    root = table.partition(".")[0]
-    entries: dict[str, Any] = {"kind": (str, ...)} if root in KINDS else {}
-    for name, (declared, default) in entries_in(root, kind, state).items():
+    entries: dict[str, Any] = {"kind": (str, ...)} if has_kind(table) else {}
+    for name, (declared, default) in entries_in(table, kind, state).items():
         read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
         entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
@@ -101,7 +118,10 @@ def table_model(table: str, kind: type, state: StateVariable | None = None) -> t
 
 def _reader(table: str, name: str, declared: Quantity | LawField) -> Any:
     def read(value: Any, info: ValidationInfo) -> Any:
-        return read_entry(value, declared, info.context["source"], table, name, _nested)  # type: ignore[index] # always given, in _validate
+        source: Source = info.context["source"]  # type: ignore[index] # always given, in _validate
+        if table == "loading" and name in MAY_VARY and isinstance(value, dict):
+            return _history(value, source, f"{table}.{name}")
+        return read_entry(value, declared, source, table, name, _nested)
 
     return read
 
@@ -114,6 +134,11 @@ def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
             f"{source.file}: [{table}] kind {show(raw['kind'])} is made of laws itself: it cannot be a part of another"
         )
     return build(table, read_table(table, kind, raw, source), source.file)
+
+
+def _history(raw: dict[str, Any], source: Source, table: str) -> Any:
+    """The loading history in a table such as [loading.pull_rate]."""
+    return build(table, read_table(table, kind_of(table, raw, source.file), raw, source), source.file)
 
 
 def build(table: str, content: dict[str, Any], file: str) -> Any:
@@ -181,21 +206,33 @@ def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
 
 def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
     """One table, checked; the points of a law come from the file that it names, if it does. Raises InputError."""
-    columns: Mapping[str, str] = getattr(kind, "columns", {}) if table.partition(".")[0] in KINDS else {}
+    columns = columns_of(table, kind)
     if columns and "file" in raw:
         name = raw["file"]
         both = next((key for key in columns.values() if key in raw), None)
         if both or not isinstance(name, str):
             got = f"and {both} exclude each other" if both else f"must be text in quotes, got {show(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
-        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file")
+        points = read_points(name, source.folder, columns, value_column(columns), f"{source.file}: [{table}] file")
         raw = {key: value for key, value in raw.items() if key != "file"} | points
     return _validate(table_model(table, kind, state), raw, source, table)
 
 
+def columns_of(table: str, kind: type) -> dict[str, str]:
+    """Columns of a data file that may stand instead of lists, each with the list it is for."""
+    columns: dict[str, str] = getattr(kind, "columns", {}) if has_kind(table) else {}
+    varies = table.partition(".")[2]
+    return {varies if column == "value" else column: of for column, of in columns.items()}
+
+
+def value_column(columns: Mapping[str, str]) -> str:
+    """The column that the others say where to find: the last one."""
+    return list(columns)[-1]
+
+
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
-    """The class that `kind` names in a [body] or [friction] table."""
-    kind, registered = content.get("kind"), KINDS[table.partition(".")[0]]
+    """The class that `kind` names in a table."""
+    kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
     if "kind" not in content:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
     if not isinstance(kind, str) or kind not in registered:

@@ -15,7 +15,7 @@ from stickslip.reference.rate_and_state import block_growth, critical_stiffness,
 
 
 def loading_rate(problem: Problem) -> float:
-    """How fast the load of a stuck contact grows at first (Pa/s or N/s): exact for a block, the mean over round trips for a slab."""
+    """How fast the load of a stuck contact grows at first (Pa/s or N/s): exact for a block, a mean over round trips for a slab."""
     body = problem.body
     if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
         return problem.far_stress_rate

@@ -11,10 +11,11 @@ from stickslip.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import StateVariable
 from stickslip.friction.fields import NamedNumbers, Part, fields_of
+from stickslip.loading import HISTORIES
 from stickslip.problem import normal_load
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of
-from stickslip.scenarios.schema import KINDS, TABLES, build, entries_in, kind_of, read_table
+from stickslip.scenarios.schema import KINDS, TABLES, build, columns_of, entries_in, has_kind, kind_of, read_table
 from stickslip.selection import SELECTION_RULES
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
@@ -42,26 +43,31 @@ def template_names() -> list[str]:
     return [*STARTERS, *library.names()]
 
 
-def template(name: str, friction: str | None = None) -> str:
-    """A commented scenario as TOML text; `friction` puts another law, with plausible values, into a starter.
+def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
+    """A commented scenario as TOML text; `friction` puts another law, with plausible values, into a starter, and `pull` a pull rate
+    that varies in time.
 
-    Raises InputError for a name that is not among `template_names()` and for an unknown law.
+    Raises InputError for a name that is not among `template_names()` and for an unknown law or loading history.
     """
     if name in STARTERS:
-        return _starter(tomllib.loads(library.text(STARTERS[name])), friction)
+        return _starter(tomllib.loads(library.text(STARTERS[name])), friction, pull)
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
-    if friction is not None:
-        raise InputError(f"new: a friction law is chosen for {' or '.join(STARTERS)}; {name} has its own")
+    if friction is not None or pull is not None:
+        chosen = "pull rate" if friction is None else "friction law"
+        raise InputError(f"new: a {chosen} is chosen for {' or '.join(STARTERS)}; {name} has its own")
     return library.text(name)
 
 
-def _starter(example: dict[str, Any], friction: str | None) -> str:
+def _starter(example: dict[str, Any], friction: str | None, pull: str | None) -> str:
     if friction is not None:
         law: type[FrictionLaw] = kind_of("friction", {"kind": friction}, "new")
         example["friction"] = {"kind": friction} | _keyed(law)
         if not law.sticks:
             example["initial"] = _start_of(law, example["body"])
+    if pull is not None:
+        kind_of("loading", {"kind": pull}, "new")
+        example["loading"] = {"pull_rate": {"kind": pull, **HISTORIES[pull].example}}
     kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
     parts = [_HEADER, 'title = ""\n']
     for table in TABLES:
@@ -70,6 +76,8 @@ def _starter(example: dict[str, Any], friction: str | None) -> str:
         if table == "friction":
             lines += ["# Other laws, shown in full by `stickslip new slab --friction KIND`:", "#"]
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
+        if table == "loading":
+            lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
         lines += _table(table, kind, example[table], kinds["friction"].state)  # type: ignore[attr-defined] # registered
         if table == "run":
             lines.append(f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}')
@@ -92,11 +100,13 @@ def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
 def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable | None = None) -> list[str]:
     """A table with its keys, and the tables in it."""
     lines, inner = [f"[{table}]"], []
-    if table.partition(".")[0] in KINDS:
+    if has_kind(table):
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
-    for name, (entry, default) in entries_in(table.partition(".")[0], kind, state).items():
+    for name, (entry, default) in entries_in(table, kind, state).items():
         value = example.get(name)
-        if isinstance(entry, Part) and value:
+        if table == "loading" and isinstance(value, dict):
+            inner += ["", f"# {describe(entry)}, as it varies in time", *_table(f"{table}.{name}", HISTORIES[value["kind"]], value)]
+        elif isinstance(entry, Part) and value:
             inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value)]
         elif isinstance(entry, NamedNumbers):
             inner += ["", f"# {describe(entry)}", f"[{table}.{name}]"]
@@ -106,7 +116,7 @@ def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable
         else:
             shown = "" if default is None or default is MISSING else _toml(default)
             lines.append(f"# {name} = {shown}  # {describe(entry)}".replace("=   #", "=  #"))
-    columns: dict[str, str] = getattr(kind, "columns", {})
+    columns = columns_of(table, kind)
     if columns:
         lines.append(f'# file = "points.csv"  # instead of lists: a header line, then columns {", ".join(columns)} in SI')
     return lines + inner
