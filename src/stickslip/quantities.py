@@ -73,7 +73,7 @@ def quantities_of(kind: type) -> dict[str, Quantity]:
 
 
 def check_quantities(owner: Any, but: Collection[str] = ()) -> None:
-    """Check the declared quantities of a frozen dataclass, but some, and store them as floats; None stays where it is the default."""
+    """Check the declared quantities of a frozen dataclass, but some, and store them as floats; None stays where it is default."""
     optional = {f.name for f in dataclasses.fields(owner) if f.default is None}
     for name, declared in quantities_of(type(owner)).items():
         value = getattr(owner, name)
