@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.observables.field import Field
 from tests.evolution import problems
 from tests.evolution.test_properties import few, ran
@@ -22,11 +23,23 @@ from tests.evolution.test_properties import problems as random_problems
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
 DRIVERS = {"rigid": math.inf, "dead load": 0.0, "matched": 1.0, "softer": 0.3, "stiffer": 3.0}
 LAWS = {"slip law": problems.slip_law, "rate law": problems.rate_law}
 
 
-def random_run(driver: str, law: str, mass: float, seed: int) -> ss.Solution:
+LOADINGS = ("constant", "steps", "ramps", "tone")
+
+
+def varying(kind: str, around: float, spread: float, round_trip: float) -> float | LoadingHistory:
+    """A loading that does much in three round trips."""
+    times = tuple(share * round_trip for share in (0.0, 0.3, 0.9, 1.7))
+    values = tuple(around + share * spread for share in (1.0, -0.5, 0.7, 0.2))
+    histories = {"constant": around, "steps": Steps(times, values), "ramps": PiecewiseLinear(times, values)}
+    return histories.get(kind, Sinusoidal(around, spread, 0.37 * round_trip, 0.5))
+
+
+def random_run(driver: str, law: str, mass: float, seed: int, loading: str = "constant") -> ss.Solution:
     """Three round trips of a slab that slips at once; under a driver that gives way also with a far stress of its own."""
     rng = np.random.default_rng([seed, 5, *driver.encode(), *law.encode()])
     slab = problems.slab(rng)
@@ -34,17 +47,36 @@ def random_run(driver: str, law: str, mass: float, seed: int) -> ss.Solution:
     problem = problems.problem(rng, slab, LAWS[law](rng, slab))
     if driver != "rigid":
         stress = rng.uniform(0.2, 1.0) * slab.normal_stress
-        problem = replace(problem, far_stress=stress, far_stress_rate=rng.uniform(0.0, 0.1) * stress / slab.two_way_time)
+        growth = rng.uniform(0.0, 0.1) * stress / slab.two_way_time
+        far = varying(loading, stress, 0.05 * stress, slab.two_way_time)
+        problem = replace(problem, far_stress=far, far_stress_rate=growth)
+    elif loading != "constant":
+        spread = 0.03 * slab.normal_stress / slab.impedance
+        problem = replace(problem, pull_rate=varying(loading, problem.first_pull_rate, spread, slab.two_way_time))
     return ss.simulate(problem, 3.3 * slab.two_way_time, rtol=1e-12)
 
 
 @pytest.fixture(
     scope="module",
-    params=[(driver, law, mass) for driver in DRIVERS for law in LAWS for mass in (0.0, 0.03)],
-    ids=lambda of: f"{of[0]}, {of[1]}, {'with' if of[2] else 'no'} contact mass",
+    params=[
+        *((driver, law, mass, "constant") for driver in DRIVERS for law in LAWS for mass in (0.0, 0.03)),
+        *((driver, "slip law", 0.0, loading) for driver in ("rigid", "dead load", "softer") for loading in LOADINGS[1:]),
+    ],
+    ids=lambda of: f"{of[0]}, {of[1]}, {'with' if of[2] else 'no'} contact mass, {of[3]}",
 )
 def run(request: pytest.FixtureRequest) -> ss.Solution:
-    return random_run(*request.param, seed=1)
+    driver, law, mass, loading = request.param
+    return random_run(driver, law, mass, seed=1, loading=loading)
+
+
+def pulled(problem: ss.Problem, time: Floats) -> Floats:
+    """How far (m) the driver has come: Gauss's rule between the times and the breaks of the loading."""
+    history = problem.pull_rate
+    breaks = [segment.start for segment in history.segments] if isinstance(history, LoadingHistory) else []
+    edges = np.unique(np.concatenate([[0.0], time, breaks]))
+    half, middle = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
+    parts = half[:, 0] * (problem.pull_rate_at(middle + half * NODES) @ WEIGHTS)
+    return np.asarray(np.append(0.0, np.cumsum(parts))[np.searchsorted(edges, time)])
 
 
 def slab_of(run: ss.Solution) -> ss.ElasticSlab:
@@ -118,19 +150,20 @@ def driver_error(run: ss.Solution, wrong: float = 1.0) -> float:
     slab, problem, time = slab_of(run), run.problem, moments(run)
     size, at = scales(slab), run.field(slab.thickness, time)
     if math.isinf(slab.driver_impedance):
-        pulled = problem.initial_slip + problem.load / slab.stiffness + problem.pull_rate * time
-        moved = np.abs(at.displacement - pulled) / size.displacement
-        return float(np.maximum(moved, np.abs(at.velocity - problem.pull_rate) / size.velocity).max())
-    far = (problem.load if problem.far_stress is None else problem.far_stress) + problem.far_stress_rate * time
-    by_driver = far + wrong * slab.driver_impedance * (problem.pull_rate - at.velocity)
+        position = problem.initial_slip + problem.load / slab.stiffness + pulled(problem, time)
+        moved = np.abs(at.displacement - position) / size.displacement
+        return float(np.maximum(moved, np.abs(at.velocity - problem.pull_rate_at(time)) / size.velocity).max())
+    stress = problem.load if problem.far_stress is None else problem.far_stress
+    far = (stress.at(time) if isinstance(stress, LoadingHistory) else stress) + problem.far_stress_rate * time
+    by_driver = far + wrong * slab.driver_impedance * (problem.pull_rate_at(time) - at.velocity)
     return float(np.abs(at.stress - by_driver).max() / size.stress)
 
 
 def test_the_driver(run: ss.Solution) -> None:
     """It does so, and its stress (rigid) or rate (else) is not just what it was at the start."""
     assert driver_error(run) < ROUNDING
-    at, size = run.field(run.problem.body.thickness, moments(run)), scales(slab_of(run))
-    moves = np.abs(at.velocity - run.problem.pull_rate).max() > 1e-2 * size.velocity
+    at, size = run.field(slab_of(run).thickness, moments(run)), scales(slab_of(run))
+    moves = np.abs(at.velocity - run.problem.first_pull_rate).max() > 1e-2 * size.velocity
     assert moves or np.ptp(at.stress) > 1e-3 * size.stress
     if 0.0 < slab_of(run).driver_impedance < math.inf:
         assert driver_error(run, wrong=1.01) > 1e-5
@@ -156,7 +189,7 @@ def test_the_start(run: ss.Solution) -> None:
     size = scales(slab)
     start = run.field(x, 0.0, side="left")
     assert np.abs(start.stress - problem.load).max() < 1e-15 * size.stress
-    assert np.abs(start.velocity - problem.pull_rate * x / slab.thickness).max() < 1e-15 * size.velocity
+    assert np.abs(start.velocity - problem.first_pull_rate * x / slab.thickness).max() < 1e-15 * size.velocity
     sheared = problem.initial_slip + problem.load * x / slab.shear_modulus
     assert np.abs(start.displacement - sheared).max() < 1e-14 * size.displacement
     for name in ("velocity", "stress"):
