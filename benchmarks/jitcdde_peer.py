@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.inflow import inflow_of
+from stickslip.evolution.inflow import steady_inflow
 from stickslip.evolution.simulate import simulate
 from stickslip.friction import SinusoidalSlip
 
@@ -76,7 +76,7 @@ def _slip_rate(case: Case):  # type: ignore[no-untyped-def]
     """u'(t) as an expression in u(t), u(t-R) and u'(t-R)."""
     problem, body, law = case.problem, case.problem.body, case.problem.friction
     Z, S, r, delay = body.impedance, body.normal_stress, body.reflection, body.two_way_time
-    steady = float(inflow_of(problem).value[0]) + (1.0 + r) * problem.strength
+    steady = steady_inflow(problem)[0] + (1.0 + r) * problem.strength
 
     def friction(u):  # type: ignore[no-untyped-def]
         return law.mean + law.amplitude * symengine.sin(law.wavenumber * u)

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.inflow import inflow_of
+from stickslip.evolution.inflow import steady_inflow
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 
 Function = Callable[[float], float]
@@ -31,7 +31,7 @@ class Slab:
         assert isinstance(self.body, ElasticSlab)
         self.Z, self.S, self.R, self.r = self.body.impedance, self.body.normal_stress, self.body.two_way_time, self.body.reflection
         self.tolerance, self.duration = tolerance, case.duration
-        self.steady = float(inflow_of(case.problem).value[0]) + (1.0 + self.r) * case.problem.strength
+        self.steady = steady_inflow(case.problem)[0] + (1.0 + self.r) * case.problem.strength
         self.pieces: list[Piece] = []
         self.evaluations = 0
 

@@ -459,16 +459,17 @@ static void end_row(Run *r) {
 
 int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64_t budget) {
     Run run, *r = &run;
-    int64_t pieces = table[14], branches = table[16], loads = table[17];
-    const double *law = (const double *)table[3], *branch = (const double *)table[4], *first = (const double *)table[5];
-    run.par = (const double *)table[0], run.c = (const double *)table[2];
+    int64_t pieces = table[PIECES], branches = table[BRANCHES], loads = table[LOADS];
+    const double *law = (const double *)table[LAW_AT], *branch = (const double *)table[BRANCH_AT];
+    const double *first = (const double *)table[FIRST_AT];
+    run.par = (const double *)table[PAR_AT], run.c = (const double *)table[CONSTANTS_AT];
     run.shift = law, run.offset = law + pieces;
     run.rate_from = branch, run.rate_to = branch + branches, run.keep_from = branch + 2 * branches;
     run.keep_to = branch + 3 * branches, run.excess_from = branch + 4 * branches, run.excess_to = branch + 5 * branches;
     run.first_theta = first, run.first_load = first + loads, run.first_slope = first + 2 * loads, run.first_jump = first + 3 * loads;
-    run.state = (double *)table[6], run.count = (int64_t *)table[7], run.whole = (int64_t *)table[9];
-    run.real = (double *)table[10], run.all_load = (double *)table[11], run.all_rate = (double *)table[12];
-    run.branches = branches, run.loads = loads, run.capacity = table[18];
+    run.state = (double *)table[STATES_AT], run.count = (int64_t *)table[COUNTS_AT], run.whole = (int64_t *)table[WHOLE_AT];
+    run.real = (double *)table[REAL_AT], run.all_load = (double *)table[LOAD_AT], run.all_rate = (double *)table[RATE_AT];
+    run.branches = branches, run.loads = loads, run.capacity = table[CAPACITY];
     while (1) {
         if (run.count[LENGTH] + 8 > run.capacity) return FULL;
         if (run.count[STALLED] > 200) return STORM;

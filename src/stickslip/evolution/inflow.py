@@ -124,13 +124,29 @@ def dirichlet(count: Floats, step: float) -> Floats:
     return np.asarray(kernel * np.where((turns * (count - 1.0)) % 2.0 == 1.0, -1.0, 1.0))
 
 
+def steady_inflow(problem: Problem) -> tuple[float, float]:
+    """The inflow of a loading that does not vary: value at 0 s and what it gains in a second. Slab: Pa; block: N/s."""
+    body = problem.body
+    if not isinstance(body, ElasticSlab):
+        return body.stiffness * problem.first_pull_rate, 0.0
+    if body.reflection == -1.0:
+        return 2.0 * body.impedance * problem.first_pull_rate, 0.0
+    gain, far = 1.0 + body.reflection, problem.far_stress
+    assert not isinstance(far, LoadingHistory)
+    excess = problem.excess if far is None else far - problem.strength
+    growth, delay = problem.far_stress_rate, 0.5 * body.two_way_time
+    return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
+
+
 @lru_cache(maxsize=64)
 def inflow_of(problem: Problem) -> Inflow:
     """The inflow of a problem."""
     body = problem.body
+    if not problem.varies:
+        value, slope = steady_inflow(problem)
+        return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
     if not isinstance(body, ElasticSlab):
-        segments, tone = _scaled(problem.pull_rate, body.stiffness)
-        return _inflow(segments, tone, 0.0, problem)
+        return _inflow(*_scaled(problem.pull_rate, body.stiffness), 0.0, problem)
     delay = 0.5 * body.two_way_time
     if body.reflection == -1.0:
         return _inflow(*_scaled(problem.pull_rate, 2.0 * body.impedance), delay, problem)
@@ -138,7 +154,7 @@ def inflow_of(problem: Problem) -> Inflow:
 
 
 def _lossy(problem: Problem, body: ElasticSlab) -> tuple[list[Segment], Tone]:
-    """Far stress and pull rate together, as they leave a driver of finite impedance."""
+    """Far stress and pull rate together, one of which varies, as they leave a driver of finite impedance."""
     gain, far = 1.0 + body.reflection, problem.far_stress
     if isinstance(far, LoadingHistory):
         segments, tone = _scaled(far, gain)
@@ -150,9 +166,8 @@ def _lossy(problem: Problem, body: ElasticSlab) -> tuple[list[Segment], Tone]:
     return [Segment(s.start, s.value + steady + growth * s.start, s.slope + growth) for s in segments], tone
 
 
-def _scaled(history: float | LoadingHistory | None, gain: float) -> tuple[list[Segment], Tone]:
-    if not isinstance(history, LoadingHistory):
-        return [Segment(0.0, gain * (history or 0.0), 0.0)], SILENT
+def _scaled(history: float | LoadingHistory, gain: float) -> tuple[list[Segment], Tone]:
+    assert isinstance(history, LoadingHistory)
     amplitude, frequency, phase = history.tone
     tone = Tone(gain * amplitude, frequency, phase) if amplitude != 0.0 else SILENT
     return [Segment(s.start, gain * s.value, gain * s.slope) for s in history.segments], tone

@@ -13,7 +13,7 @@ from stickslip.contact.selection import rule_of
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
-from stickslip.evolution.inflow import inflow_of, row_time
+from stickslip.evolution.inflow import inflow_of, row_time, steady_inflow
 from stickslip.evolution.layout import Setup
 from stickslip.evolution.moving_branches import branch_rows, folds_move, has_inertia, is_algebraic
 from stickslip.evolution.workspace import COUNTS, STATES
@@ -37,7 +37,8 @@ def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
     par = _parameters(problem)
     branches, par[at.STICK_TO] = branch_rows(problem, 0.0)
-    setup = Setup(par, *_formulas(problem), branches, _first_load(problem), _loading(problem))
+    first = _first_load_varying(problem) if problem.varies else _first_load(problem)
+    setup = Setup(par, *_formulas(problem), branches, first, _loading(problem))
     for shared in setup:
         shared.flags.writeable = False
     return setup, *_start(problem)
@@ -63,18 +64,12 @@ def _parameters(problem: Problem) -> at.Floats:
         par[at.IMPEDANCE], par[at.INERTIA], par[at.STIFFNESS] = body.damping, body.mass, body.stiffness
     if problem.varies:
         par[at.TONE], par[at.TONE_FREQUENCY], par[at.TONE_PHASE] = inflow_of(problem).tone
+    elif not isinstance(body, ElasticSlab):
+        par[at.RAMP] = body.stiffness * problem.first_pull_rate * row_time(problem)
     else:
-        par[at.INFLOW], par[at.INFLOW_RATE], par[at.RAMP] = _steady(problem)
+        par[at.INFLOW], par[at.INFLOW_RATE] = steady_inflow(problem)
+        par[at.RAMP] = par[at.INFLOW] if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
     return par
-
-
-def _steady(problem: Problem) -> tuple[float, float, float]:
-    """Loading that does not vary: inflow at 0 s, in a second, and what a load at rest gains in a row; 0 for what there is not."""
-    body, inflow = problem.body, inflow_of(problem)
-    if not isinstance(body, ElasticSlab):
-        return 0.0, 0.0, body.stiffness * problem.first_pull_rate * row_time(problem)
-    value, slope = float(inflow.value[0]), float(inflow.slope[0])
-    return value, slope, value if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
 
 
 SMALLEST, SLOWEST = 1e-300, 1e-12
@@ -85,26 +80,34 @@ SAFETY = 0.1
 
 
 def _first_load(problem: Problem) -> at.Floats:
-    """The load of the first round trip (minus the reference), linear between its breaking points.
-
-    Where the loading varies, without what it adds; in parts so short that a tone in it is a polynomial to rounding.
-    """
-    body, excess, varies = problem.body, problem.excess, problem.varies
+    """The load of the first round trip (minus the reference), linear between its breaking points."""
+    body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
     if not isinstance(body, ElasticSlab):
-        slope = 0.0 if varies else body.stiffness * problem.first_pull_rate
-        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [slope]))
-    slope = body.impedance * problem.first_pull_rate / (0.5 * body.two_way_time)  # G V / h
-    if body.reflection == -1.0 and not varies:
+        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
+    slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
+    if body.reflection == -1.0:
         return _pieces([0.0, body.two_way_time], [excess], [slope])
-    r, half, inflow = body.reflection, 0.5 * body.two_way_time, inflow_of(problem)
+    r, half = body.reflection, 0.5 * body.two_way_time
+    steady, rate = steady_inflow(problem)
     # for h/c <= t < R the start comes back: w(t - R) = G V (R - t) / h - tau0
-    back, comes = r * (slope * half - excess), float(inflow.at(np.array(half)))
+    reflected = steady + rate * half + r * (slope * half - excess)
     before = excess + slope * half
+    jump = abs(reflected - before) > 1e-12 * max(abs(problem.strength), abs(before))
+    if not jump:
+        reflected = before
+    return _pieces([0.0, half, 2.0 * half], [excess, reflected], [slope, rate - r * slope], [0, int(jump)])
+
+
+def _first_load_varying(problem: Problem) -> at.Floats:
+    """The same without what a loading that varies adds to it, in parts so short that a tone in it is a polynomial to rounding."""
+    body, excess = problem.body, problem.excess
+    if not isinstance(body, ElasticSlab):
+        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [0.0]))
+    r, half = body.reflection, 0.5 * body.two_way_time
+    slope = body.impedance * problem.first_pull_rate / half
+    before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
-    rate = 0.0
-    if not varies:
-        back, rate = back + comes if jump else before, float(inflow.slope[0])
-    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, rate - r * slope], [0, int(jump)]))
+    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0, int(jump)]))
 
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
@@ -126,12 +129,15 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     return np.array([[*begin, theta[-1]], [*load, 0.0], [*pieces[2][of], 0.0], [*jump, 0.0]])
 
 
+NOT_VARYING = np.zeros((5, 1))
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 """Phase (rad) in which a sine's Taylor series is right to rounding; parts of a round trip."""
 
 
 def _loading(problem: Problem) -> at.Floats:
-    """Rows of `Setup.loading`: the segments of the inflow by where they arrive."""
+    """Rows of `Setup.loading`: the segments of the inflow by where they arrive; none of a loading that does not vary."""
+    if not problem.varies:
+        return NOT_VARYING
     inflow = inflow_of(problem)
     row, offset = zip(*inflow.breaks(), strict=True)
     ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)

@@ -23,6 +23,11 @@ COUNTS = at.COUNTS + 1
 WHOLE, REAL = 6, 8
 """Columns of the history's tables."""
 
+# ---- places in the table of `lend`: addresses of arrays, and lengths ----------------------------------------------------------
+PAR_AT, ADDRESS_AT, CONSTANTS_AT, LAW_AT, BRANCH_AT, FIRST_AT, LOADING_AT, STATES_AT, COUNTS_AT, SCRATCH_AT = range(10)
+WHOLE_AT, REAL_AT, LOAD_AT, RATE_AT, STORED_STATE_AT = range(10, 15)
+PIECES, SIZE, BRANCHES, LOADS, SEGMENTS, CAPACITY, NODE_AT, HEIGHTS_AT = range(15, 23)
+
 MATRIX_ROWS = 18
 """Equations of an implicit step: their matrix and right-hand side fill so many rows of TERMS numbers."""
 WORK_ROWS = 14 + MATRIX_ROWS
@@ -104,21 +109,15 @@ def lend(setup: Setup, state: Floats, count: Integers, scratch: Floats, store: S
 @inlined
 def borrow(table: Integers) -> Run:
     """The run in a table of `lend`."""
-    address, law, branch, first, loading = (
-        integers(table[1]),
-        floats(table[3]),
-        floats(table[4]),
-        floats(table[5]),
-        floats(table[6]),
-    )
-    work = floats(table[9])
-    pieces, size, branches, loads, segments, capacity = table[15], table[16], table[17], table[18], table[19], table[20]
+    address, law, branch = integers(table[ADDRESS_AT]), floats(table[LAW_AT]), floats(table[BRANCH_AT])
+    first, loading, work = floats(table[FIRST_AT]), floats(table[LOADING_AT]), floats(table[SCRATCH_AT])
+    pieces, branches, loads, segments = table[PIECES], table[BRANCHES], table[LOADS], table[SEGMENTS]
     return Run(
-        floats(table[0]),
+        floats(table[PAR_AT]),
         address,
         ahead(address, pieces),
         ahead(address, 2 * pieces),
-        floats(table[2]),
+        floats(table[CONSTANTS_AT]),
         law,
         ahead(law, pieces),
         ahead(law, 2 * pieces),
@@ -137,13 +136,13 @@ def borrow(table: Integers) -> Run:
         ahead(loading, 2 * segments),
         ahead(loading, 3 * segments),
         ahead(loading, 4 * segments),
-        floats(table[7]),
-        integers(table[8]),
-        integers(table[10]),
-        floats(table[11]),
-        floats(table[12]),
-        floats(table[13]),
-        floats(table[14]),
+        floats(table[STATES_AT]),
+        integers(table[COUNTS_AT]),
+        integers(table[WHOLE_AT]),
+        floats(table[REAL_AT]),
+        floats(table[LOAD_AT]),
+        floats(table[RATE_AT]),
+        floats(table[STORED_STATE_AT]),
         work,
         ahead(work, TERMS),
         ahead(work, 2 * TERMS),
@@ -159,12 +158,12 @@ def borrow(table: Integers) -> Run:
         ahead(work, 12 * TERMS),
         ahead(work, 13 * TERMS),
         ahead(work, 14 * TERMS),
-        integers(table[21]),
-        floats(table[22]),
+        integers(table[NODE_AT]),
+        floats(table[HEIGHTS_AT]),
         pieces,
-        size,
+        table[SIZE],
         branches,
         loads,
         segments,
-        capacity,
+        table[CAPACITY],
     )
