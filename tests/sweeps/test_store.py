@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -146,6 +147,37 @@ def test_killed_while_it_writes_and_taken_up(tmp_path: Path, whole: dict[str, by
     sweep(path, progress=again)
     assert again.reports[0].done == there.sum()
     assert files(path) == whole
+
+
+COMMAND = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+from stickslip.cli.main import main
+main(sys.argv[1:])
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
+def test_the_command_is_stopped_at_any_moment_and_goes_on(tmp_path: Path, sent: signal.Signals) -> None:
+    arguments = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.2..2:150", "-q", "heat", "--chunk", "5", "--out", "map.zarr"]
+    command, path = [sys.executable, "-c", COMMAND, *arguments], tmp_path / "map.zarr"
+    running = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while len(list(path.glob("status/c*"))) < 3 and running.poll() is None:
+        time.sleep(0.01)
+    running.send_signal(sent)
+    out, err = running.communicate(timeout=60)
+    assert running.returncode == (130 if sent == signal.SIGINT else -signal.SIGKILL), err
+    if sent == signal.SIGINT:
+        assert err == "stickslip: interrupted\n"
+        assert "not run" in out
+    with xr.open_zarr(path) as found:
+        there = int((found.status != NOT_RUN).sum())
+    assert 15 <= there < 150
+    again = Stop(151)
+    asked = {"vary": {"friction.alpha": "0.2..2:150"}, "quantities": ["heat"], "series": []}
+    assert (sweep(path, progress=again, **asked).status.values == 0).all()
+    assert again.reports[0].done == there
 
 
 def test_a_full_disk_is_one_line_and_leaves_a_store_that_goes_on(
