@@ -73,7 +73,7 @@ def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None
 def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     """Each member as a run of its own. Raises KeyboardInterrupt on Ctrl-C."""
     count = len(next(iter(values.values())))
-    result = _nothing(work, count)
+    result = nothing(work, count)
     for i in range(count):
         try:
             _run_one(work, {name: column[i : i + 1].tolist()[0] for name, column in values.items()}, result, i)
@@ -82,7 +82,8 @@ def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     return result
 
 
-def _nothing(work: Work, count: int) -> ChunkResult:
+def nothing(work: Work, count: int) -> ChunkResult:
+    """Room for the results of so many members: NaN, finished."""
     results = {one.name: np.full(count, np.nan) for one in work.quantities}
     if work.series:
         results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
