@@ -1,0 +1,152 @@
+"""Many runs one after the other in compiled code: the engine on each member, and what is kept of it.
+
+One thread has one workspace, which serves all its members. No Python comes in between, so threads run side by side.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.batch.reduction import POINTS_PER_PIECE, Points, find_events, fold_events, fold_first, fold_whole, new_points
+from stickslip.batch.setups import Setups
+from stickslip.evolution import layout as at
+from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.echoes import Echoes, new_echoes
+from stickslip.evolution.echoes import resized as with_room
+from stickslip.evolution.engine import advance
+from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.status import BAD_PARAMETERS
+from stickslip.evolution.workspace import COUNTS, STATES, WORK_ROWS, borrow, lend
+
+FIRST_CAPACITY = 512
+BUDGET = 200_000
+"""Steps between two looks at whether the batch is to stop."""
+AT_START, UNDER_WAY, AT_END = range(3)
+"""How far the member is at which `run_group` goes on."""
+BRANCHES_AT = 16
+"""Place of the number of branches in the engine's table."""
+
+
+class Workspace(NamedTuple):
+    """What one thread needs, whatever members come."""
+
+    state: Floats
+    count: Integers
+    scratch: Floats
+    store: Store
+    echoes: Echoes
+    points: Points
+
+    @property
+    def capacity(self) -> int:
+        """Pieces of history for which there is room."""
+        return len(self.store.whole)
+
+    def larger(self) -> Workspace:
+        """With room for four times as many pieces; the history so far is kept."""
+        length, capacity = int(self.count[at.LENGTH]), 4 * self.capacity
+        store, echoes = at.resized(self.store, length, capacity), with_room(self.echoes, length, capacity)
+        return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
+
+    def with_more_points(self) -> Workspace:
+        """With twice the room for turning points."""
+        return self._replace(points=new_points(2 * len(self.points.xi)))
+
+
+def new_workspace() -> Workspace:
+    """For one thread."""
+    store, points = at.new_store(FIRST_CAPACITY), new_points(POINTS_PER_PIECE * FIRST_CAPACITY)
+    scratch = np.zeros((WORK_ROWS, at.TERMS))
+    return Workspace(np.zeros(STATES), np.zeros(COUNTS, np.int64), scratch, store, new_echoes(FIRST_CAPACITY), points)
+
+
+def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
+    """The engine's table for the first member, and what to add to it from one member to the next."""
+    own = Setup(setups.par[0], setups.address, setups.constants[0], setups.law[0], setups.branch[:1], setups.first[0])
+    table = lend(own, work.state, work.count, work.scratch, work.store, work.echoes)
+    stride = np.zeros(len(table), np.int64)
+    for place, rows in ((0, setups.par), (2, setups.constants), (3, setups.law), (4, setups.branch), (5, setups.first)):
+        stride[place] = rows.strides[0]
+    return table, stride
+
+
+@inlined
+def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats) -> None:
+    """As at t = 0."""
+    state[:], count[:] = setups.state, setups.count
+    scratch[:] = 0.0
+
+
+@inlined
+def reached(run_end: float, code: int, row_time: float, store: Store, length: int) -> float:
+    """Up to where (s) a run that ended with a code has come."""
+    if code in (at.FINISHED, at.LOCKED):
+        return run_end
+    return store.whole[length - 1, at.S_ROW] * row_time + store.real[length - 1, at.S_THETA_TO]
+
+
+@kernel
+def run_group(
+    setups: Setups,
+    base: Integers,
+    stride: Integers,
+    work: Workspace,
+    where: Integers,
+    wants_events: bool,
+    stop: Integers,
+    codes: Integers,
+    out: Floats,
+) -> int:
+    """Run members from where[0] on, of which the first is as far as where[1] says; where[2] keeps its code.
+
+    Returns the number of members when all are done, else that at which there is no room (where says how to go on); less when
+    `stop` is set.
+    """
+    state, count, scratch, store, points = work.state, work.count, work.scratch, work.store, work.points
+    table = base.copy()
+    for n in range(where[0], len(codes)):
+        for k in range(len(base)):
+            table[k] = base[k] + n * stride[k]
+        table[BRANCHES_AT] = setups.branches[n]
+        if where[1] == AT_START:
+            if setups.branches[n] <= 0:
+                codes[n] = BAD_PARAMETERS
+                continue
+            start_member(setups, state, count, scratch)
+        if where[1] != AT_END:
+            where[2] = to_the_end(table, count, setups.last_row[n], setups.last_theta[n], stop)
+            if where[2] == at.FULL or where[2] == OUT_OF_BUDGET:
+                where[0], where[1] = n, UNDER_WAY
+                return n
+        codes[n] = where[2]
+        length = count[at.LENGTH]
+        if length > 0:
+            run = borrow(table)
+            if wants_events:
+                events = find_events(store, length, setups.threshold[n], points)
+                if events < 0:
+                    where[0], where[1] = n, AT_END
+                    return n
+                fold_events(run, store, length, points, events, out[n])
+                if events > 0:
+                    fold_first(run, store, length, points, setups.excess[n], setups.stiffness[n], out[n])
+            end = reached(setups.duration[n], codes[n], setups.par[n, at.ROW_TIME], store, length)
+            fold_whole(run, store, length, end, out[n])
+        else:
+            codes[n] = BAD_PARAMETERS
+        where[1] = AT_START
+    return len(codes)
+
+
+@kernel
+def to_the_end(table: Integers, count: Integers, last_row: int, last_theta: float, stop: Integers) -> int:
+    """Run one member until it ends, its history is full, or the batch is stopped; says which, as `engine.advance`."""
+    while True:
+        code = advance(table, last_row, last_theta, BUDGET)
+        if code == at.END_AHEAD:
+            count[at.TO_THE_END] = 1
+        elif code != OUT_OF_BUDGET or stop[0] != 0:
+            return code
