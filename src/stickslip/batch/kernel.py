@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.batch.reduction import POINTS_PER_PIECE, Points, find_events, fold_events, fold_first, fold_whole, new_points
+from stickslip.batch.reduction import POINTS_PER_PIECE, Points, find_events, fold_events, fold_first, fold_whole, new_points, reached
 from stickslip.batch.setups import Setups
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import inlined, kernel
@@ -21,7 +21,8 @@ from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.status import BAD_PARAMETERS
 from stickslip.evolution.workspace import COUNTS, STATES, WORK_ROWS, borrow, lend
 
-FIRST_CAPACITY = 512
+FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
+"""Pieces of history for which a thread has room; a member that needs more is run by itself."""
 BUDGET = 200_000
 """Steps between two looks at whether the batch is to stop."""
 AT_START, UNDER_WAY, AT_END = range(3)
@@ -47,7 +48,7 @@ class Workspace(NamedTuple):
 
     def larger(self) -> Workspace:
         """With room for four times as many pieces; the history so far is kept."""
-        length, capacity = int(self.count[at.LENGTH]), 4 * self.capacity
+        length, capacity = int(self.count[at.LENGTH]), min(4 * self.capacity, LARGEST_CAPACITY)
         store, echoes = at.resized(self.store, length, capacity), with_room(self.echoes, length, capacity)
         return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
 
@@ -78,14 +79,6 @@ def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats
     """As at t = 0."""
     state[:], count[:] = setups.state, setups.count
     scratch[:] = 0.0
-
-
-@inlined
-def reached(run_end: float, code: int, row_time: float, store: Store, length: int) -> float:
-    """Up to where (s) a run that ended with a code has come."""
-    if code in (at.FINISHED, at.LOCKED):
-        return run_end
-    return store.whole[length - 1, at.S_ROW] * row_time + store.real[length - 1, at.S_THETA_TO]
 
 
 @kernel

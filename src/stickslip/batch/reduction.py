@@ -129,6 +129,19 @@ def grown(store: Store, piece: int, xi: float) -> float:
 
 
 @kernel
+def reached(run_end: float, code: int, row_time: float, store: Store, length: int) -> float:
+    """Up to where (s) a run that ended with a code has come."""
+    return run_end if code in (at.FINISHED, at.LOCKED) else time_at(store, row_time, length - 1, 1.0)
+
+
+@kernel
+def rests_at(store: Store, length: int, row_time: float, end: float) -> bool:
+    """Whether the contact is at rest at the end of the run."""
+    recorded = time_at(store, row_time, length - 1, 1.0)
+    return store.whole[length - 1, at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
+
+
+@kernel
 def slipped(store: Store, length: int, row_time: float, end: float) -> float:
     """Slip from the start of the run to its end, m."""
     last = length - 1
@@ -301,5 +314,5 @@ def fold_whole(run: Run, store: Store, length: int, end: float, out: Floats) -> 
     for n in range(length):
         shocks += 1 if store.whole[n, at.S_CAUSE] > 0 else 0
     out[SHOCKS], out[END_TIME] = shocks, end
-    out[ARRESTED] = 1.0 if run.counts[at.MODE] == 0 else 0.0
+    out[ARRESTED] = 1.0 if rests_at(store, length, run.par[at.ROW_TIME], end) else 0.0
     out[SLIP] = slipped(store, length, run.par[at.ROW_TIME], end)

@@ -10,18 +10,18 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.batch.conditions import why_not
-from stickslip.batch.kernel import AT_START, Workspace, new_workspace, run_group, table_of
+from stickslip.batch.kernel import AT_START, LARGEST_CAPACITY, Workspace, new_workspace, run_group, table_of
+from stickslip.batch.long_member import run_alone
 from stickslip.batch.many import Values, are_fine, groups, member
 from stickslip.batch.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
 from stickslip.batch.setups import set_up
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
-from stickslip.evolution.keeper import MAX_PIECES
 from stickslip.evolution.layout import Floats, Integers
-from stickslip.evolution.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED
+from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
 from stickslip.scenarios.scenario import Scenario
 
-CHUNK = 1024
+CHUNK = 4096
 """Members that are set up together: enough for numpy, few enough for the cache and for threads to share evenly."""
 CHUNKS_PER_THREAD = 4
 NO_BRANCH = "friction falls at least as fast as Z v rises at all slip rates, or the contact equation has more branches than a batch holds"
@@ -132,7 +132,13 @@ class _Batch:
             done = run_group(setups, base, stride, work, where, self.wants_events, self.stop, codes, out)
             if done == len(places) or self.stop[0] != 0:
                 break
-            work = self.make_room(work, where)
+            if where[2] != at.FULL:
+                work = work.with_more_points()
+            elif work.capacity < LARGEST_CAPACITY:
+                work = work.larger()
+            else:
+                codes[done] = run_alone(self.member(places[done]), LARGEST_CAPACITY, self.stop, out[done])
+                where[:] = done + 1, AT_START, 0
         out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
         out[codes == BAD_PARAMETERS] = np.nan
         self.out[places], self.status[places] = out, codes
@@ -140,20 +146,15 @@ class _Batch:
             self.reason[int(places[n])] = NO_START if setups.branches[n] > 0 else NO_BRANCH
         return work
 
-    def make_room(self, work: Workspace, where: Integers) -> Workspace:
-        """For the history of the member at which the group has stopped, or for its turning points."""
-        if where[2] != at.FULL:
-            return work.with_more_points()
-        if work.capacity >= MAX_PIECES:
-            where[1], where[2] = 2, FULL_HISTORY
-            return work
-        return work.larger()
+    def member(self, n: int) -> Scenario:
+        """One member by itself. Raises InputError where its numbers make no problem."""
+        return member(self.scenario, {key: float(value[n]) for key, value in self.values.items()})
 
     def refuse(self, n: int) -> None:
         """Note why a member is no problem."""
         self.status[n] = BAD_PARAMETERS
         try:
-            member(self.scenario, {key: float(value[n]) for key, value in self.values.items()})
+            self.member(n)
             self.reason[n] = "its numbers make no problem"
         except InputError as error:
             self.reason[n] = str(error)

@@ -1,7 +1,7 @@
 """Branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and the rules of `contact.selection`, compiled.
 
-Where mu is convex or concave g turns once at most, and the fold is found by halving an interval of floating-point numbers: 62 looks
-at g' make it exact. Any other law is searched over the grid of slip rates of `contact.branches`.
+Where mu is convex or concave g turns once at most, and the fold is found between two floating-point numbers that are neighbours: by
+false position, and by halving what is left. Any other law is searched over the grid of slip rates of `contact.branches`.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ BELOW, ABOVE = 1e-8, 1e4
 ROUNDS, BETWEEN = 3, 17
 """The grid is refined so often where g' nearly touches zero, with so many rates between two neighbours."""
 NEVER_RISES, TOO_MANY = 0, -1
+OCTAVE, NEAR, STEPS = 2**52, 8, 10
+"""Steps of false position within a factor of two of the slip rate, and how far from what they find the turn may be: in last bits."""
 
 
 @inlined
@@ -45,14 +47,52 @@ def excess_at(address: int, c: Any, impedance: float, normal: float, start: floa
 def turn_between(address: int, c: Any, impedance: float, normal: float, low: float, high: float, out: Any) -> float:
     """The rate between two at which g' changes sign: the last one at which it still rises, or the first one at which it does."""
     rises = slope_at(address, c, impedance, normal, low, out) > 0.0
-    before, behind = bits_of(low), bits_of(high)
-    while behind - before > 1:
+    before, behind = halved(address, c, impedance, normal, bits_of(low), bits_of(high), rises, OCTAVE, out)
+    near = bits_of(crossing(address, c, impedance, normal, float_of(before), float_of(behind), rises, out))
+    for probe in (near - NEAR, near + NEAR):
+        if before < probe < behind:
+            if (slope_at(address, c, impedance, normal, float_of(probe), out) > 0.0) == rises:
+                before = probe
+            else:
+                behind = probe
+    before, behind = halved(address, c, impedance, normal, before, behind, rises, 1, out)
+    return float_of(before) if rises else float_of(behind)
+
+
+@inlined
+def halved(
+    address: int, c: Any, impedance: float, normal: float, before: int, behind: int, rises: bool, width: int, out: Any
+) -> tuple[int, int]:
+    """Two rates with the turn between them, by their bits, halved until they are so near."""
+    while behind - before > width:
         middle = before + (behind - before) // 2
         if (slope_at(address, c, impedance, normal, float_of(middle), out) > 0.0) == rises:
             before = middle
         else:
             behind = middle
-    return float_of(before) if rises else float_of(behind)
+    return before, behind
+
+
+@inlined
+def crossing(address: int, c: Any, impedance: float, normal: float, low: float, high: float, rises: bool, out: Any) -> float:
+    """About where g' is zero between two rates: false position, kept from standing still (Illinois: Dowell & Jarratt 1971)."""
+    before = slope_at(address, c, impedance, normal, low, out)
+    behind = slope_at(address, c, impedance, normal, high, out)
+    side, x = 0, high
+    for _ in range(STEPS):
+        last, x = x, (low * behind - high * before) / (behind - before)
+        if not low < x < high or abs(x - last) <= 1e-16 * x:
+            break
+        value = slope_at(address, c, impedance, normal, x, out)
+        if (value > 0.0) == rises:
+            low, before = x, value
+            behind *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, behind = x, value
+            before *= 0.5 if side < 0 else 1.0
+            side = -1
+    return x
 
 
 @inlined
