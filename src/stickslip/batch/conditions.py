@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from stickslip.batch.kernels.reduction import COLUMNS
+from stickslip.batch.kernels.turns import RULES
 from stickslip.batch.many import declared_at
-from stickslip.batch.reduction import COLUMNS
-from stickslip.batch.turns import RULES
 from stickslip.errors import nearest
 from stickslip.evolution.moving_branches import folds_move, is_algebraic
 from stickslip.scenarios.scenario import Scenario
@@ -23,7 +23,9 @@ def why_not(scenario: Scenario, keys: Sequence[str], quantities: Sequence[str]) 
 def of_quantities(quantities: Sequence[str]) -> str:
     """A quantity that only a whole solution has."""
     unknown = next((name for name in quantities if name not in QUANTITIES), None)
-    return "" if unknown is None else f"quantity {ascii(unknown)[:60]} is not one that a batch folds; {nearest(str(unknown), QUANTITIES)}"
+    if unknown is None:
+        return ""
+    return f"quantity {ascii(unknown)[:60]} is not one that a batch folds; {nearest(str(unknown), QUANTITIES)}"
 
 
 def of_scenario(scenario: Scenario) -> str:

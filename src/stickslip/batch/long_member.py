@@ -1,4 +1,4 @@
-"""A member whose history is too long to be kept: run by itself, events folded as they become known, the history behind forgotten."""
+"""A member whose history is too long to be kept: run by itself, its events folded as they become known, the rest forgotten."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.batch import reduction as of
+from stickslip.batch.kernels import reduction as of
 from stickslip.evolution import layout as at
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream
@@ -93,7 +93,7 @@ class Folding:
 
 
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
-    """Run a member in bounded memory and fill in its numbers, but for those of the contact equation. Returns the code of its end."""
+    """Run a member in bounded memory and fill in its numbers, but for the contact equation's. Returns the code of its end."""
     problem = scenario.problem
     run = RunInProgress.begin(problem, scenario.rtol, shortest_event=scenario.shortest_event)
     run.reserve(capacity)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import Empty, SimpleQueue
 from typing import NamedTuple
@@ -10,11 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.batch.conditions import why_not
-from stickslip.batch.kernel import AT_START, LARGEST_CAPACITY, Workspace, new_workspace, run_group, table_of
+from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
+from stickslip.batch.kernels.runs import AT_START, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.many import Values, are_fine, groups, member
-from stickslip.batch.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
 from stickslip.batch.setups import set_up
+from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.layout import Floats, Integers
@@ -24,7 +25,7 @@ from stickslip.scenarios.scenario import Scenario
 CHUNK = 4096
 """Members that are set up together: enough for numpy, few enough for the cache and for threads to share evenly."""
 CHUNKS_PER_THREAD = 4
-NO_BRANCH = "friction falls at least as fast as Z v rises at all slip rates, or the contact equation has more branches than a batch holds"
+NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
 NO_START = "the run ends where it starts"
 
 

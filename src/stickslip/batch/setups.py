@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip.batch.kernels.constants import fill_constants
+from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.many import Values, many, member
-from stickslip.batch.turns import MOST_BRANCHES, RULES, branch_tables
+from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, call_prepare, compile_formula, floats, kernel
+from stickslip.evolution.compiled import compile_formula
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import branch_rows, is_algebraic
 from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of
@@ -19,6 +22,8 @@ from stickslip.problem import Problem
 from stickslip.quantities import quantities_of
 from stickslip.scenarios.scenario import Scenario
 
+LOADING = Lock()
+"""Threads must not load a formula twice: the code of which the other has the address would go."""
 FASTEST = 1e9
 """Rates beyond so many times the contact's own scale do not matter: as `contact.resistance`."""
 
@@ -35,7 +40,7 @@ class Setups(NamedTuple):
     branches: Integers  # (members,); 0 where friction falls for ever, -1 where there are more than MOST_BRANCHES
     irregular: Floats
     state: Floats  # at t = 0, the same for all
-    count: Integers
+    counts: Integers
     last_row: Integers  # where each run ends
     last_theta: Floats
     duration: Floats
@@ -66,7 +71,7 @@ def set_up(scenario: Scenario, values: Values) -> Setups:
         branches=branches,
         irregular=irregular,
         state=state,
-        count=counts,
+        counts=counts,
         last_row=last_row,
         last_theta=last_theta,
         duration=np.ascontiguousarray(duration, float),
@@ -101,8 +106,11 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Floats, Floats]:
     """Addresses of the law's functions, their constants, and shifts, offsets and knots: as in `evolution.setup`."""
     law, start = problem.friction, problem.law_slip
-    compiled = [compile_formula(tree, first.friction.parameters()) for tree in first.friction.trees()]
     home = int(first.friction.piece_at(first.law_slip))
+    with LOADING:
+        compiled = [compile_formula(tree, first.friction.parameters(), None) for tree in first.friction.trees()]
+        address = np.array([addresses_of(formula, first) for formula in compiled], np.int64).T.copy()
+        prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(compiled))]
     references = near if law.knot_variable == "slip" else [start] * len(compiled)
     static = law.pieces[home](law, start, 0.0) + law.static_excess
@@ -110,23 +118,10 @@ def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Fl
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
     knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
     table = [spread(number, count) for number in (*(start - reference for reference in references), *offsets, *knots)]
-    address = np.array([addresses_of(formula, first) for formula in compiled], np.int64).T.copy()
     numbers = np.stack([spread(getattr(law, name), count) for name in law.parameters()], axis=1)
     constants = np.zeros((count, len(compiled), max(formula.size for formula in compiled)))
-    prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
     fill_constants(prepare, numbers, np.stack([spread(x, count) for x in references], axis=1), constants)
     return address, constants, rows(np.stack(table).reshape(3, len(compiled), count))
-
-
-@kernel
-def fill_constants(prepare: Integers, numbers: Floats, references: Floats, constants: Floats) -> None:
-    """What `prepare` of each piece of the law says for each member."""
-    members, pieces, size = constants.shape
-    source, target = floats(numbers.ctypes.data), floats(constants.ctypes.data)
-    for n in range(members):
-        for i in range(pieces):
-            c = ahead(target, (n * pieces + i) * size)
-            call_prepare(prepare[i], ahead(source, n * numbers.shape[1]), references[n, i], c)
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
@@ -141,13 +136,14 @@ def branches_of(
         table[:, :6] = branch_rows(first, 0.0)[0][:, 0]
         return table, branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
+    assert isinstance(body, ElasticSlab)
     own = problem.normal * law.variation / body.impedance
     slowest, fastest = scales(law, spread(own, count), count)
-    level = [spread(number, count) for number in (body.impedance, problem.normal, -problem.normal * law.static_excess)]
+    impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
     irregular, stick_to = np.empty(count), np.empty(count)
-    rule = RULES.index(first.rule)
-    one_way = first.friction.bends_one_way
-    branch_tables(address[0, 0], constants, *level, slowest, fastest, one_way, rule, table, branches, irregular, stick_to)
+    kind = (first.friction.bends_one_way, RULES.index(first.rule))
+    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest)
+    branch_tables(*contact, *kind, table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 
 

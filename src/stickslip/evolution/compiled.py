@@ -33,7 +33,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 def _sources_hash() -> str:
     package = Path(__file__).parents[1]
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    folders = [path for folder in ("evolution", "batch") for path in (package / folder).glob("*.py")]
+    folders = [path for folder in ("evolution", "batch/kernels") for path in (package / folder).glob("*.py")]
     for path in sorted([*folders, package / "friction" / "expression.py"]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -121,8 +121,7 @@ def first_load(problem: Problem) -> at.Floats:
     reflected = steady + rate * half + r * (slope * half - excess)
     before = excess + slope * half
     jump = abs(reflected - before) > 1e-12 * np.maximum(abs(problem.strength), abs(before))
-    reflected = np.where(jump, reflected, before)
-    return _pieces([0.0, half, 2.0 * half], [excess, reflected], [slope, rate - r * slope], [0.0, jump])
+    return _pieces([0.0, half, 2.0 * half], [excess, np.where(jump, reflected, before)], [slope, rate - r * slope], [0.0, jump])
 
 
 def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -76,7 +75,7 @@ class FrictionLaw(ABC):
     sticks: ClassVar[bool] = True
     """Whether there is a static strength below which the contact rests; else friction passes smoothly through v = 0."""
     many: ClassVar[bool] = False
-    """Whether fields may be arrays, one number a member of a batch: formulas, `range`, `knots` and `static_excess` then are, too."""
+    """Whether fields may be arrays, one number a member of a batch: formulas, `range`, `knots`, `static_excess` then are too."""
     start: ClassVar[Mapping[str, Any]] = {}
     """Of a law that never sticks: `coefficient` (load per normal load) and `state` from which its example may start."""
     example: ClassVar[Mapping[str, Any]] = {}

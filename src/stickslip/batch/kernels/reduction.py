@@ -16,8 +16,8 @@ from stickslip.evolution.branch import friction_of
 from stickslip.evolution.compiled import inlined, kernel
 from stickslip.evolution.events import NOT_YET, count_pulses, highest, rises_over, turning_points
 from stickslip.evolution.history import ROUNDING
-from stickslip.evolution.layout import TERMS, Floats, Integers, Store
-from stickslip.evolution.polynomial import evaluate
+from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.polynomial import evaluate, integral
 from stickslip.evolution.workspace import Run
 
 COLUMNS = (
@@ -120,12 +120,9 @@ def place_of(store: Store, piece: int, local: float) -> float:
 @kernel
 def grown(store: Store, piece: int, xi: float) -> float:
     """Slip since the start of the piece, m: as `History.grown`."""
-    speed, bend = store.real[piece, at.S_SPEED], store.real[piece, at.S_BEND]
-    straight = bent = 0.0
-    for k in range(TERMS - 1, -1, -1):
-        straight = straight * xi + speed * store.rate[piece, k] / (k + 1)
-        bent = bent * xi + 2.0 * bend * store.rate[piece, k] / (k + 2)
-    return xi * straight + xi * xi * bent
+    rate, bend = store.rate[piece], store.real[piece, at.S_BEND]
+    straight = store.real[piece, at.S_SPEED] * integral(rate, xi, 1)
+    return straight if bend == 0.0 else straight + 2.0 * bend * integral(rate, xi, 2)
 
 
 @kernel

@@ -5,24 +5,21 @@ One thread has one workspace, which serves all its members. No Python comes in b
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from stickslip.batch.reduction import POINTS_PER_PIECE, Points, find_events, fold_events, fold_first, fold_whole, new_points, reached
-from stickslip.batch.setups import Setups
+from stickslip.batch.kernels.reduction import find_events, fold_events, fold_first, fold_whole, reached
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import inlined, kernel
-from stickslip.evolution.echoes import Echoes, new_echoes
-from stickslip.evolution.echoes import resized as with_room
 from stickslip.evolution.engine import advance
-from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.status import BAD_PARAMETERS
-from stickslip.evolution.workspace import COUNTS, STATES, WORK_ROWS, borrow, lend
+from stickslip.evolution.workspace import borrow
 
-FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
-"""Pieces of history for which a thread has room; a member that needs more is run by itself."""
+if TYPE_CHECKING:
+    from stickslip.batch.setups import Setups
+    from stickslip.batch.workspace import Workspace
+
 BUDGET = 200_000
 """Steps between two looks at whether the batch is to stop."""
 AT_START, UNDER_WAY, AT_END = range(3)
@@ -31,53 +28,10 @@ BRANCHES_AT = 16
 """Place of the number of branches in the engine's table."""
 
 
-class Workspace(NamedTuple):
-    """What one thread needs, whatever members come."""
-
-    state: Floats
-    count: Integers
-    scratch: Floats
-    store: Store
-    echoes: Echoes
-    points: Points
-
-    @property
-    def capacity(self) -> int:
-        """Pieces of history for which there is room."""
-        return len(self.store.whole)
-
-    def larger(self) -> Workspace:
-        """With room for four times as many pieces; the history so far is kept."""
-        length, capacity = int(self.count[at.LENGTH]), min(4 * self.capacity, LARGEST_CAPACITY)
-        store, echoes = at.resized(self.store, length, capacity), with_room(self.echoes, length, capacity)
-        return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
-
-    def with_more_points(self) -> Workspace:
-        """With twice the room for turning points."""
-        return self._replace(points=new_points(2 * len(self.points.xi)))
-
-
-def new_workspace() -> Workspace:
-    """For one thread."""
-    store, points = at.new_store(FIRST_CAPACITY), new_points(POINTS_PER_PIECE * FIRST_CAPACITY)
-    scratch = np.zeros((WORK_ROWS, at.TERMS))
-    return Workspace(np.zeros(STATES), np.zeros(COUNTS, np.int64), scratch, store, new_echoes(FIRST_CAPACITY), points)
-
-
-def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
-    """The engine's table for the first member, and what to add to it from one member to the next."""
-    own = Setup(setups.par[0], setups.address, setups.constants[0], setups.law[0], setups.branch[:1], setups.first[0])
-    table = lend(own, work.state, work.count, work.scratch, work.store, work.echoes)
-    stride = np.zeros(len(table), np.int64)
-    for place, rows in ((0, setups.par), (2, setups.constants), (3, setups.law), (4, setups.branch), (5, setups.first)):
-        stride[place] = rows.strides[0]
-    return table, stride
-
-
 @inlined
 def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats) -> None:
     """As at t = 0."""
-    state[:], count[:] = setups.state, setups.count
+    state[:], count[:] = setups.state, setups.counts
     scratch[:] = 0.0
 
 
@@ -98,7 +52,7 @@ def run_group(
     Returns the number of members when all are done, else that at which there is no room (where says how to go on); less when
     `stop` is set.
     """
-    state, count, scratch, store, points = work.state, work.count, work.scratch, work.store, work.points
+    state, count, scratch, store, points = work.state, work.counts, work.scratch, work.store, work.points
     table = base.copy()
     for n in range(where[0], len(codes)):
         for k in range(len(base)):

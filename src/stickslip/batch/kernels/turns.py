@@ -26,7 +26,7 @@ ROUNDS, BETWEEN = 3, 17
 """The grid is refined so often where g' nearly touches zero, with so many rates between two neighbours."""
 NEVER_RISES, TOO_MANY = 0, -1
 OCTAVE, NEAR, STEPS = 2**52, 8, 10
-"""Steps of false position within a factor of two of the slip rate, and how far from what they find the turn may be: in last bits."""
+"""Steps of false position within a factor of two of the slip rate, and how far in last bits the turn may be from where they end."""
 
 
 @inlined
@@ -132,8 +132,7 @@ def refined(rates: Floats, slope: Floats) -> Floats:
         left, middle, right = slope[n - 1], slope[n], slope[n + 1]
         bends = 4.0 * abs(middle) < np.sign(middle) * (left - 2.0 * middle + right)
         if bends and left * middle > 0.0 and middle * right > 0.0:
-            for rate in np.linspace(rates[n - 1], rates[n + 1], BETWEEN):
-                extra.append(rate)
+            extra.extend(np.linspace(rates[n - 1], rates[n + 1], BETWEEN))
     return np.unique(np.concatenate((rates, np.array(extra)))) if len(extra) > 1 else rates
 
 
@@ -147,9 +146,7 @@ def slopes_at(address: int, c: Any, impedance: float, normal: float, rates: Floa
 
 
 @kernel
-def turns(
-    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any
-) -> int:
+def turns(address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any) -> int:
     """Ends of the branches of any resistance. Returns how many branches there are; NEVER_RISES or TOO_MANY."""
     rates = search_grid(slowest, fastest)
     for _ in range(ROUNDS):
