@@ -19,7 +19,7 @@ from stickslip.evolution.generate import SIGNATURES, FormulaWriter
 from stickslip.friction.expression import Expression
 
 SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
-FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp")
+FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp", "-Wl,-Bsymbolic")
 
 
 def c_function(writer: FormulaWriter, part: str) -> str:

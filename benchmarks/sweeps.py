@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import resource
-import statistics
 import sys
 import threading
 import time
@@ -25,6 +24,7 @@ from benchmarks.runner import UnavailableError
 from benchmarks.sweep_peers import FEWER, ONE_THREAD, PEERS, Run, Task, ours
 from stickslip.batch import run_members
 
+Rates = dict[tuple[str, int], list[tuple[float, float]]]
 ROUNDS = 5
 THREADS = (1, 2)
 TASKS = (
@@ -65,14 +65,16 @@ def two_cores() -> float:
     return 2.0 * spent[0] / spent[1]
 
 
-def timed(run: Callable[[], object]) -> float:
-    start = time.perf_counter()
+def timed(run: Callable[[], object]) -> tuple[float, float]:
+    """Wall clock and processor time (s) of a run."""
+    start, before = time.perf_counter(), time.process_time()
     run()
-    return time.perf_counter() - start
+    return time.perf_counter() - start, time.process_time() - before
 
 
-def measure(task: Task, members: int) -> tuple[dict[tuple[str, int], list[float]], dict[str, float], list[str]]:
-    """Rates (members/s) of every peer on each number of threads, in turns; largest errors of the slip; who is missing."""
+def measure(task: Task, members: int) -> tuple[Rates, dict[str, float], list[str]]:
+    """Members per second, and µs of processor time for one, of every peer on each number of threads, in turns; largest errors of
+    the slip; who is missing."""
     exact = ours(replace(task, rtol=1e-13), members)(1)
     runs: dict[str, tuple[Run, int]] = {}
     errors, notes = {}, []
@@ -85,11 +87,12 @@ def measure(task: Task, members: int) -> tuple[dict[tuple[str, int], list[float]
         except UnavailableError as reason:
             notes.append(f"{task.title} - {name}: {reason}")
             runs.pop(name, None)
-    rates: dict[tuple[str, int], list[float]] = {}
+    rates: Rates = {}
     for _ in range(ROUNDS):
         for name, (run, count) in runs.items():
             for threads in THREADS[: 1 if name in ONE_THREAD else None]:
-                rates.setdefault((name, threads), []).append(count / timed(lambda run=run, threads=threads: run(threads)))
+                spent = timed(lambda run=run, threads=threads: run(threads))
+                rates.setdefault((name, threads), []).append((count / spent[0], 1e6 * spent[1] / count))
     return rates, errors, notes
 
 
@@ -99,19 +102,19 @@ def show(members: int) -> None:
     table = Table(title=f"{members} members, medians of {ROUNDS}", title_justify="left")
     for name in ("members", "by"):
         table.add_column(name)
-    for name in ("1 thread, /s", "2 threads, /s", "2 / 1", "ours is so many times faster, 1 thread", "2 threads", "error of slip"):
+    for name in ("1 thread, /s", "2 threads, /s", "2 / 1", "processor, µs a member", "times ours", "error of slip"):
         table.add_column(name, justify="right")
     missing, cores = [], []
     for task in TASKS:
         cores.append(two_cores())
         rates, errors, notes = measure(task, members)
         missing += notes
-        middle = {key: statistics.median(found) for key, found in rates.items()}
+        middle = {key: np.median(found, axis=0) for key, found in rates.items()}
+        base = middle["stickslip, slip", 1][1]
         for n, name in enumerate(errors):
-            one, two = middle[name, 1], middle.get((name, 2), middle[name, 1])
-            ratios = [middle["stickslip, slip", threads] / rate for threads, rate in ((1, one), (2, two))]
-            cells = [f"{one:,.0f}", *([f"{two:,.0f}", f"{two / one:.2f}"] if (name, 2) in middle else ["", ""])]
-            table.add_row(task.title if n == 0 else "", name, *cells, *(f"{ratio:.3g}" for ratio in ratios), f"{errors[name]:.0e}")
+            (one, spent), (two, _) = middle[name, 1], middle.get((name, 2), (0.0, 0.0))
+            cells = [f"{one:,.0f}", f"{two:,.0f}" if two else "", f"{two / one:.2f}" if two else "", f"{spent:.3g}"]
+            table.add_row(task.title if n == 0 else "", name, *cells, f"{spent / base:.3g}", f"{errors[name]:.0e}")
         table.add_section()
     console.print(table)
     console.print(f"two threads of pure arithmetic beside one, in between: {', '.join(f'{found:.2f}' for found in cores)}")
@@ -124,7 +127,7 @@ def million() -> None:
     task = TASKS[1]
     for members in (1_000, 1_000, 10_000, 100_000, 1_000_000):
         values = {task.key: task.numbers(members)}
-        seconds = timed(lambda values=values: run_members(task.scenario, values, ("slip", "events"), 2))
+        seconds, _ = timed(lambda values=values: run_members(task.scenario, values, ("slip", "events"), 2))
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         print(f"{members:>9,} members: {members / seconds:>9,.0f} /s on 2 threads, {memory:.1f} MB at most")  # noqa: T201
 
