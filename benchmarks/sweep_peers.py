@@ -14,10 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks import c_peer, scipy_peer
-from benchmarks.problems import Case, Floats
+from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
 from stickslip.batch import run_members
 from stickslip.batch.conditions import QUANTITIES
+from stickslip.batch.kernels.engine import engine_address
+from stickslip.batch.kernels.runs import run_group
 from stickslip.batch.many import member
 from stickslip.batch.setups import set_up
 from stickslip.batch.workspace import new_workspace, table_of
@@ -59,6 +61,20 @@ def ours(task: Task, members: int, quantities: tuple[str, ...] = ("slip",)) -> R
     return lambda threads: run_members(task.scenario, values, quantities, threads).results["slip"]
 
 
+def setups_given(task: Task, members: int) -> Run:
+    """The batch's kernel alone, on one thread: as C, it gets the setups as a gift."""
+    setups, work = set_up(task.scenario, {task.key: task.numbers(members)}), new_workspace()
+    base, stride = table_of(setups, work)
+    codes, out, stop = np.empty(members, np.int64), np.empty((members, len(QUANTITIES))), np.zeros(1, np.int64)
+
+    def run(threads: int) -> Floats:
+        done = run_group(engine_address(), setups, base, stride, work, np.zeros(3, np.int64), False, stop, codes, out)
+        assert done == members
+        return out[:, QUANTITIES.index("slip")]
+
+    return run
+
+
 def all_quantities(task: Task, members: int) -> Run:
     """A batch that folds each run into everything it knows."""
     return ours(task, members, QUANTITIES)
@@ -92,7 +108,8 @@ def in_scipy(task: Task, members: int) -> Run:
     def run(threads: int) -> Floats:
         for runner in runners:
             runner.run()
-        return np.array([runner.slip(np.array([task.case.duration]))[0] for runner in runners])
+        end = ROUND * round(task.case.duration / ROUND)  # it rests from there on; the block is asked for its last slip
+        return np.array([runner.slip(np.array([end]))[0] for runner in runners])
 
     return run
 
@@ -216,13 +233,16 @@ def in_diffrax(task: Task, members: int) -> Run:
 
 PEERS: dict[str, Callable[[Task, int], Run]] = {
     "stickslip, slip": ours,
+    "stickslip, its setups given": setups_given,
     "stickslip, 18 quantities": all_quantities,
     "C with OpenMP, its setups given": in_c,
     "scipy DOP853 in a loop": in_scipy,
     "heyoka, SIMD lanes": in_heyoka,
     "diffrax Dopri8, vmapped": in_diffrax,
 }
-ONE_THREAD = {"scipy DOP853 in a loop", "diffrax Dopri8, vmapped"}
+ONE_THREAD = {"stickslip, its setups given", "scipy DOP853 in a loop", "diffrax Dopri8, vmapped"}
 """Peers for which threads are no option: scipy holds Python's lock, XLA decides by itself."""
+ADAPTED = {"heyoka, SIMD lanes", "diffrax Dopri8, vmapped"}
+"""Peers that get the loosest tolerance at which their error is no larger than twice ours."""
 FEWER = {"scipy DOP853 in a loop": 1000, "diffrax Dopri8, vmapped": 4}
 """By how much fewer members the slower ones get."""

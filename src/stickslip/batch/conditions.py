@@ -17,7 +17,7 @@ QUANTITIES = COLUMNS
 
 def why_not(scenario: Scenario, keys: Sequence[str], quantities: Sequence[str]) -> str:
     """Why a batch cannot run a scenario with these keys varied and these quantities kept, in one line; "" where it can."""
-    return of_quantities(quantities) or of_scenario(scenario) or of_law(scenario) or of_keys(scenario, keys)
+    return of_quantities(quantities) or of_scenario(scenario) or of_law(scenario, keys) or of_keys(scenario, keys)
 
 
 def of_quantities(quantities: Sequence[str]) -> str:
@@ -37,7 +37,7 @@ def of_scenario(scenario: Scenario) -> str:
     return ""
 
 
-def of_law(scenario: Scenario) -> str:
+def of_law(scenario: Scenario, keys: Sequence[str]) -> str:
     """Laws whose setup is more than formulas of plain numbers."""
     problem = scenario.problem
     law, name = problem.friction, type(problem.friction).__name__
@@ -47,7 +47,8 @@ def of_law(scenario: Scenario) -> str:
         return f"{name}: memory '{law.memory}' is not followed by a batch"
     if folds_move(problem):
         return f"{name}: branches of the contact equation move with slip"
-    if is_algebraic(problem) and problem.rule not in RULES:
+    chooses = is_algebraic(problem) or ("body.contact_mass" in keys and law.depends_on_rate)
+    if chooses and problem.rule not in RULES:
         return f"selection rule '{problem.rule}' is worked out for one problem at a time; a batch knows {', '.join(RULES)}"
     if not law.variation < float("inf") or not law.range()[1] < float("inf"):
         return f"{name}: friction grows without bound"

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.lumping import LARGEST_SHARE
+from stickslip.evolution.lumping import LARGEST_SHARE, check_shortest_event
 from stickslip.problem import Problem
 from stickslip.quantities import Quantity, quantities_of
 from stickslip.scenarios.scenario import Scenario
@@ -77,7 +77,9 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     run = {name: RUN[name].check("run", name, value) for name, value in numbers.run.items()}
     if "rtol" in run:
         check_rtol(run["rtol"], "run")
-    return replace(scenario, problem=replace(scenario.problem, body=body, friction=law, **numbers.problem), **run)  # type: ignore[arg-type] # by name
+    problem = replace(scenario.problem, body=body, friction=law, **numbers.problem)
+    check_shortest_event(problem, scenario.shortest_event, "run")
+    return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
 
 
 def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
@@ -145,11 +147,17 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
         if body.p_wave_speed is not None:
             fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
         if scenario.shortest_event > 0.0:
-            fine &= scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time)
+            fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
         problem = with_numbers(scenario.problem, numbers.problem)
         if problem.far_stress is not None or np.any(problem.far_stress_rate):
             fine &= ~np.isinf(body.driver_impedance)
     return fine
+
+
+def driven_rigidly(body: ElasticSlab) -> Booleans:
+    """Which slabs have a driver that sends everything back, turned round (r = -1)."""
+    driver = np.asarray(body.driver_impedance)
+    return np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
 
 
 def groups(scenario: Scenario, values: Values) -> Iterator[tuple[Places, dict[str, Floats]]]:
@@ -160,11 +168,10 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[Places, dict[st
     start = pieces_at_start(with_numbers(scenario.problem, {"friction": law} | numbers.problem))
     kind = np.broadcast_to(4 * start, (count,)).copy()
     if isinstance(body, ElasticSlab):
-        driver = np.asarray(body.driver_impedance)
-        rigid = np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
+        rigid = driven_rigidly(body)
         kind += 2 * rigid + (np.asarray(body.contact_mass) > 0.0)
         if "driver_impedance" in numbers.body:  # what nothing passes is rigid
-            values = {**values, "body.driver_impedance": np.where(rigid, math.inf, driver)}
+            values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)
         yield chosen, {key: value[chosen] for key, value in values.items()}

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.batch.conditions import why_not
+from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
 from stickslip.batch.kernels.runs import AT_START, run_group
 from stickslip.batch.long_member import run_alone
@@ -85,6 +86,7 @@ class _Batch:
         self.reason: dict[int, str] = {}
         self.queue: SimpleQueue[slice] = SimpleQueue()
         self.stop = np.zeros(1, np.int64)
+        self.engine = engine_address()
 
     def run(self, threads: int) -> None:
         """Do all chunks; an error, or Ctrl-C, ends every thread."""
@@ -130,7 +132,7 @@ class _Batch:
         where = np.array([0, AT_START, 0])
         while True:
             base, stride = table_of(setups, work)
-            done = run_group(setups, base, stride, work, where, self.wants_events, self.stop, codes, out)
+            done = run_group(self.engine, setups, base, stride, work, where, self.wants_events, self.stop, codes, out)
             if done == len(places) or self.stop[0] != 0:
                 break
             if where[2] != at.FULL:

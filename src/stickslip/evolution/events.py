@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stickslip.evolution.compiled import kernel
 from stickslip.evolution.history import History, Moments
 from stickslip.evolution.layout import S_MODE, TERMS, Floats, Integers, Store
-from stickslip.evolution.polynomial import crossings, evaluate, total
+from stickslip.evolution.polynomial import clearly_positive, crossings, evaluate, total
 
 MAXIMA_PER_PIECE = 32
 SAME = 1e-12
@@ -46,9 +46,10 @@ def turning_points(
         if begins:
             found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
             above = True
+        way = 1.0 if p[1] >= 0.0 else -1.0
         for k in range(TERMS - 1):
-            slope[k] = (k + 1) * p[k + 1]
-        turns_not, last = keeps_its_sign(slope), total(p)
+            slope[k] = way * (k + 1) * p[k + 1]
+        turns_not, last = keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope)), total(p)
         p[0] -= threshold
         stays = turns_not and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
         crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)

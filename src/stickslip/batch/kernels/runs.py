@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from stickslip.batch.kernels.engine import advance_at
 from stickslip.batch.kernels.reduction import find_events, fold_events, fold_first, fold_whole, reached
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import inlined, kernel
-from stickslip.evolution.engine import advance
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.status import BAD_PARAMETERS
@@ -30,13 +30,18 @@ BRANCHES_AT = 16
 
 @inlined
 def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats) -> None:
-    """As at t = 0."""
-    state[:], count[:] = setups.state, setups.counts
+    """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
+    for k in range(len(state)):
+        state[k] = setups.state[k]
+    for k in range(len(count)):
+        count[k] = setups.counts[k]
+    count[at.TO_THE_END] = 1
     scratch[:] = 0.0
 
 
 @kernel
 def run_group(
+    engine: int,
     setups: Setups,
     base: Integers,
     stride: Integers,
@@ -47,7 +52,7 @@ def run_group(
     codes: Integers,
     out: Floats,
 ) -> int:
-    """Run members from where[0] on, of which the first is as far as where[1] says; where[2] keeps its code.
+    """Run members from where[0] on, of which the first is as far as where[1] says; where[2] keeps its code. `engine`: its address.
 
     Returns the number of members when all are done, else that at which there is no room (where says how to go on); less when
     `stop` is set.
@@ -64,7 +69,7 @@ def run_group(
                 continue
             start_member(setups, state, count, scratch)
         if where[1] != AT_END:
-            where[2] = to_the_end(table, count, setups.last_row[n], setups.last_theta[n], stop)
+            where[2] = to_the_end(engine, table, setups.last_row[n], setups.last_theta[n], stop)
             if where[2] == at.FULL or where[2] == OUT_OF_BUDGET:
                 where[0], where[1] = n, UNDER_WAY
                 return n
@@ -89,11 +94,9 @@ def run_group(
 
 
 @kernel
-def to_the_end(table: Integers, count: Integers, last_row: int, last_theta: float, stop: Integers) -> int:
+def to_the_end(engine: int, table: Integers, last_row: int, last_theta: float, stop: Integers) -> int:
     """Run one member until it ends, its history is full, or the batch is stopped; says which, as `engine.advance`."""
     while True:
-        code = advance(table, last_row, last_theta, BUDGET)
-        if code == at.END_AHEAD:
-            count[at.TO_THE_END] = 1
-        elif code != OUT_OF_BUDGET or stop[0] != 0:
+        code = advance_at(engine, table, last_row, last_theta, BUDGET)
+        if code != OUT_OF_BUDGET or stop[0] != 0:
             return code

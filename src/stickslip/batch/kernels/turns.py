@@ -14,7 +14,7 @@ import numpy as np
 from stickslip.evolution.compiled import ahead, bits_of, call_value, float_of, floats, inlined, kernel
 from stickslip.evolution.layout import Floats, Integers
 
-MOST_BRANCHES = 8
+MOST_BRANCHES = 4
 RULES = ("perfect-delay", "minimal", "maximal")
 """Selection rules that the batch knows."""
 PERFECT_DELAY, MINIMAL, MAXIMAL = range(3)
