@@ -53,11 +53,11 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
     """
     arrays = checked(scenario, values, quantities)
     count = len(next(iter(arrays.values())))
-    batch = _Batch(scenario, arrays, any(name in OF_EVENTS for name in quantities), count)
+    batch = _Batch(scenario, arrays, quantities, count)
     for n in range(0, count, batch_size(count, threads)):
         batch.queue.put(slice(n, min(n + batch_size(count, threads), count)))
     batch.run(threads)
-    return Members({name: batch.out[:, COLUMNS.index(name)].copy() for name in quantities}, batch.status, batch.reason)
+    return Members(batch.results, batch.status, batch.reason)
 
 
 def batch_size(count: int, threads: int) -> int:
@@ -79,9 +79,9 @@ def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequen
 class _Batch:
     """A batch at work: chunks yet to be done, and the numbers of those that are."""
 
-    def __init__(self, scenario: Scenario, values: Values, wants_events: bool, count: int) -> None:
-        self.scenario, self.values, self.wants_events = scenario, values, wants_events
-        self.out = np.full((count, len(COLUMNS)), np.nan)
+    def __init__(self, scenario: Scenario, values: Values, quantities: Sequence[str], count: int) -> None:
+        self.scenario, self.values, self.wants_events = scenario, values, not OF_EVENTS.isdisjoint(quantities)
+        self.results = {name: np.full(count, np.nan) for name in quantities}
         self.status = np.full(count, INTERRUPTED)
         self.reason: dict[int, str] = {}
         self.queue: SimpleQueue[slice] = SimpleQueue()
@@ -144,7 +144,9 @@ class _Batch:
                 where[:] = done + 1, AT_START, 0
         out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
         out[codes == BAD_PARAMETERS] = np.nan
-        self.out[places], self.status[places] = out, codes
+        self.status[places] = codes
+        for name, column in self.results.items():
+            column[places] = out[:, COLUMNS.index(name)]
         for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():
             self.reason[int(places[n])] = NO_START if setups.branches[n] > 0 else NO_BRANCH
         return work
