@@ -243,6 +243,6 @@ PEERS: dict[str, Callable[[Task, int], Run]] = {
 ONE_THREAD = {"stickslip, its setups given", "scipy DOP853 in a loop", "diffrax Dopri8, vmapped"}
 """Peers for which threads are no option: scipy holds Python's lock, XLA decides by itself."""
 ADAPTED = {"heyoka, SIMD lanes", "diffrax Dopri8, vmapped"}
-"""Peers that get the loosest tolerance at which their error is no larger than twice ours."""
+"""Peers that get the loosest tolerance at which their error is like ours."""
 FEWER = {"scipy DOP853 in a loop": 1000, "diffrax Dopri8, vmapped": 4}
 """By how much fewer members the slower ones get."""
