@@ -19,7 +19,7 @@ from stickslip.evolution.generate import SIGNATURES, FormulaWriter
 from stickslip.friction.expression import Expression
 
 SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
-FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno")
+FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp", "-Wl,-Bsymbolic")
 
 
 def c_function(writer: FormulaWriter, part: str) -> str:
@@ -56,6 +56,15 @@ def library(formula: Expression, parameters: tuple[str, ...]) -> ctypes.CDLL:
     loaded.prepare_tables()
     loaded.advance.argtypes = (ctypes.c_void_p, ctypes.c_int64, ctypes.c_double, ctypes.c_int64)
     loaded.advance.restype = ctypes.c_int64
+    loaded.run_members.argtypes = (
+        *[ctypes.c_void_p] * 2,
+        ctypes.c_int64,
+        *[ctypes.c_void_p] * 5,
+        ctypes.c_int64,
+        ctypes.c_int,
+        ctypes.c_void_p,
+    )
+    loaded.run_members.restype = ctypes.c_int64
     return loaded
 
 

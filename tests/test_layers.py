@@ -26,6 +26,7 @@ LAYERS = (
     ("observables",),
     ("studies",),
     ("scenarios",),
+    ("batch",),
     ("storage",),
     ("long_runs",),
     ("exports", "side_by_side"),

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include "law.h"
 
@@ -492,4 +493,35 @@ int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64
         } else if (is_last) return FINISHED;
         else run.count[READY] = 0;
     }
+}
+
+/* ---- many runs ------------------------------------------------------------------------------------------------------------ */
+
+/* Members one after the other, as `stickslip.batch` does: table[k] = base[k] + n stride[k], a state and a history per thread.
+   slip: of each member, from its start to its end. Returns how many did not finish. */
+int64_t run_members(const int64_t *base, const int64_t *stride, int64_t size, const int64_t *branches, const double *state,
+                    const int64_t *count, const int64_t *last_row, const double *last_theta, int64_t members, int threads,
+                    double *slip) {
+    int64_t failed = 0;
+#pragma omp parallel num_threads(threads) reduction(+ : failed)
+    {
+        int64_t table[32], capacity = base[CAPACITY], own_count[COUNTS];
+        double own_state[STATES];
+        int64_t *whole = malloc(capacity * WHOLE * sizeof *whole);
+        double *real = malloc(capacity * REAL * sizeof *real);
+        double *load = malloc(capacity * TERMS * sizeof *load), *rate = malloc(capacity * TERMS * sizeof *rate);
+#pragma omp for schedule(dynamic, 256)
+        for (int64_t n = 0; n < members; n++) {
+            for (int64_t k = 0; k < size; k++) table[k] = base[k] + n * stride[k];
+            memcpy(own_state, state, sizeof own_state), memcpy(own_count, count, sizeof own_count);
+            own_count[TO_THE_END] = 1;
+            table[STATES_AT] = (int64_t)own_state, table[COUNTS_AT] = (int64_t)own_count, table[WHOLE_AT] = (int64_t)whole;
+            table[REAL_AT] = (int64_t)real, table[LOAD_AT] = (int64_t)load, table[RATE_AT] = (int64_t)rate;
+            table[BRANCHES] = branches[n];
+            failed += advance(table, last_row[n], last_theta[n], INT64_MAX) != FINISHED;
+            slip[n] = own_state[SLIP_NOW];
+        }
+        free(whole), free(real), free(load), free(rate);
+    }
+    return failed;
 }

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from stickslip.bodies.spring_block import SpringBlock
 from stickslip.errors import InputError
 from stickslip.quantities import check_quantities, quantity
@@ -60,9 +62,14 @@ class ElasticSlab:
     @property
     def reflection(self) -> float:
         """r = (Z - Zd) / (Z + Zd): what comes back from the driver; -1 rigid, 0 matched, +1 dead load."""
-        if math.isinf(self.driver_impedance):
+        if np.all(np.isinf(self.driver_impedance)):
             return -1.0
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """Whether the driver sends everything back, turned round: r = -1."""
+        return bool(np.all(self.reflection == -1.0))
 
     @property
     def stiffness(self) -> float:

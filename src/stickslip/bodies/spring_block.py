@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from stickslip.quantities import check_quantities, quantity
 
 
@@ -26,7 +28,8 @@ class SpringBlock:
     @property
     def period(self) -> float:
         """2 pi sqrt(m / K): the period of free oscillation, in s."""
-        return 2.0 * math.pi * math.sqrt(self.mass / self.stiffness)
+        found: float = 2.0 * math.pi * np.sqrt(self.mass / self.stiffness)
+        return found
 
     def __post_init__(self) -> None:
         check_quantities(self)

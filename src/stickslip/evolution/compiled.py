@@ -33,7 +33,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 def _sources_hash() -> str:
     package = Path(__file__).parents[1]
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in sorted([*(package / "evolution").glob("*.py"), package / "friction" / "expression.py"]):
+    folders = [path for folder in ("evolution", "batch/kernels") for path in (package / folder).glob("*.py")]
+    for path in sorted([*folders, package / "friction" / "expression.py"]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -124,6 +125,11 @@ class CompiledFormula:
         return function
 
     @cached_property
+    def prepare_at(self) -> int:
+        """Address of prepare(parameters, reference slip, constants)."""
+        return int(self._function("prepare").address)
+
+    @cached_property
     def value(self) -> int:
         """Address of value(c, dx, s, out)."""
         return int(self._function("value").address)
@@ -151,6 +157,12 @@ def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rate
 
 
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
+
+
+@intrinsic
+def call_prepare(typingctx: Any, address: Any, parameters: Any, reference: Any, c: Any) -> Any:
+    """prepare(parameters, reference, c) of the formula at `address`."""
+    return types.void(types.int64, FLOATS, types.float64, FLOATS), _call
 
 
 @intrinsic

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from stickslip.evolution.compiled import kernel
 from stickslip.evolution.history import History, Moments
 from stickslip.evolution.layout import S_MODE, TERMS, Floats, Integers, Store
-from stickslip.evolution.polynomial import crossings, evaluate
+from stickslip.evolution.polynomial import clearly_positive, crossings, evaluate, total
 
 MAXIMA_PER_PIECE = 32
+SAME = 1e-12
+"""Relative distance of a slip rate from the threshold within which rounding may decide on which side it is."""
 NOT_YET = -1
 
 
@@ -44,21 +46,24 @@ def turning_points(
         if begins:
             found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
             above = True
+        way = 1.0 if p[1] >= 0.0 else -1.0
         for k in range(TERMS - 1):
-            slope[k] = (k + 1) * p[k + 1]
+            slope[k] = way * (k + 1) * p[k + 1]
+        turns_not, last = keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope)), total(p)
         p[0] -= threshold
-        crossed = 0 if keeps_its_sign(p) else crossings(p, places)
+        stays = turns_not and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
+        crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
         for i in range(crossed):
             above = not above
             found = _note(piece, xi, rate, kind, found, n, places[i], threshold, 1 if above else -1)
         p[0] += threshold
-        turns = 0 if keeps_its_sign(slope) else crossings(slope, places)
+        turns = 0 if turns_not else crossings(slope, places)
         for i in range(turns):
             height = evaluate(p, places[i])
             if height > threshold:
                 found = _note(piece, xi, rate, kind, found, n, places[i], height, 0)
         if above:
-            found = _note(piece, xi, rate, kind, found, n, 1.0, p.sum(), 0)
+            found = _note(piece, xi, rate, kind, found, n, 1.0, last, 0)
     return found
 
 

@@ -129,7 +129,7 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
     body = problem.body
     if not isinstance(body, ElasticSlab):
         return body.stiffness * problem.first_pull_rate, 0.0
-    if body.reflection == -1.0:
+    if body.is_driven_rigidly:
         return 2.0 * body.impedance * problem.first_pull_rate, 0.0
     gain, far = 1.0 + body.reflection, problem.far_stress
     assert not isinstance(far, LoadingHistory)

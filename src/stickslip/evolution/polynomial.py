@@ -173,8 +173,8 @@ def _falling_root(c: Floats) -> float:
 
 
 @kernel
-def _clearly_positive(c: Floats) -> bool:
-    """Whether the first terms, by their Bernstein coefficients, stay above anything that the rest can take away on [0, 1]."""
+def clearly_positive(c: Floats) -> bool:
+    """Whether p > 0 on [0, 1], if it is at 0: by Bernstein coefficients of the first terms, above what the rest can take away."""
     rest = 0.0
     for k in range(LOW, TERMS):
         rest += abs(c[k])
@@ -206,7 +206,7 @@ def first_descent(c: Floats, spare: Floats) -> float:
         bound += abs(c[k])
     if c[lead] > bound:
         return NONE
-    if lead == 0 and _clearly_positive(c):
+    if lead == 0 and clearly_positive(c):
         return NONE
     for j in range(TERMS):
         spare[j] = c[lead]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -28,25 +29,31 @@ def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup
     """
     setup, state, count = _prepared(problem, rule_of(problem))
     par = setup.par.copy()
-    par[at.SHORTEST] = shortest
-    par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, max(1e-10, 10.0 * rtol)
+    set_tolerance(par, rtol, shortest)
     return setup._replace(par=par), state.copy(), count.copy()
+
+
+def set_tolerance(par: at.Floats, rtol: Any, shortest: float) -> None:
+    """What the tolerance says in `Setup.par`, or in one with a column a member."""
+    par[at.SHORTEST] = shortest
+    par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
 @lru_cache(maxsize=256)
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
-    par = _parameters(problem)
+    par = parameters_of(problem)
     branches, par[at.STICK_TO] = branch_rows(problem, 0.0)
-    first = _first_load_varying(problem) if problem.varies else _first_load(problem)
-    setup = Setup(par, *_formulas(problem), branches, first, _loading(problem))
+    first = first_load_varying(problem) if problem.varies else first_load(problem)
+    setup = Setup(par, *_formulas(problem), branches, first, loading_of(problem))
     for shared in setup:
         shared.flags.writeable = False
-    return setup, *_start(problem)
+    return setup, *start_of(problem)
 
 
-def _parameters(problem: Problem) -> at.Floats:
+def parameters_of(problem: Problem) -> at.Floats:
+    """`Setup.par` but for what the tolerance says; with a column a member where the numbers of the problem are arrays."""
     body, law = problem.body, problem.friction
-    par = np.zeros(at.PARAMETERS)
+    par = np.zeros((at.PARAMETERS, *np.shape(problem.strength)))
     par[at.ROW_TIME] = row_time(problem)
     par[at.NORMAL] = problem.normal
     par[at.REFERENCE] = problem.strength
@@ -56,7 +63,7 @@ def _parameters(problem: Problem) -> at.Floats:
     par[at.RATE_FLOOR] = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
     par[at.HEALED_PIECE] = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
-    par[at.LARGEST_DROP] = max(problem.strength - problem.normal * lowest, 0.0)
+    par[at.LARGEST_DROP] = np.maximum(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):
         par[at.IMPEDANCE], par[at.INERTIA], par[at.REFLECTION] = body.impedance, body.contact_mass, body.reflection
         par[at.SMALLEST_JUMP] = 1e-14 * problem.normal / body.impedance
@@ -68,7 +75,7 @@ def _parameters(problem: Problem) -> at.Floats:
         par[at.RAMP] = body.stiffness * problem.first_pull_rate * row_time(problem)
     else:
         par[at.INFLOW], par[at.INFLOW_RATE] = steady_inflow(problem)
-        par[at.RAMP] = par[at.INFLOW] if body.reflection == -1.0 else problem.far_stress_rate * body.two_way_time
+        par[at.RAMP] = par[at.INFLOW] if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
     return par
 
 
@@ -79,26 +86,24 @@ SAFETY = 0.1
 """Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
 
-def _first_load(problem: Problem) -> at.Floats:
+def first_load(problem: Problem) -> at.Floats:
     """The load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
     if not isinstance(body, ElasticSlab):
         return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
     slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
-    if body.reflection == -1.0:
+    if body.is_driven_rigidly:
         return _pieces([0.0, body.two_way_time], [excess], [slope])
     r, half = body.reflection, 0.5 * body.two_way_time
     steady, rate = steady_inflow(problem)
     # for h/c <= t < R the start comes back: w(t - R) = G V (R - t) / h - tau0
     reflected = steady + rate * half + r * (slope * half - excess)
     before = excess + slope * half
-    jump = abs(reflected - before) > 1e-12 * max(abs(problem.strength), abs(before))
-    if not jump:
-        reflected = before
-    return _pieces([0.0, half, 2.0 * half], [excess, reflected], [slope, rate - r * slope], [0, int(jump)])
+    jump = abs(reflected - before) > 1e-12 * np.maximum(abs(problem.strength), abs(before))
+    return _pieces([0.0, half, 2.0 * half], [excess, np.where(jump, reflected, before)], [slope, rate - r * slope], [0.0, jump])
 
 
-def _first_load_varying(problem: Problem) -> at.Floats:
+def first_load_varying(problem: Problem) -> at.Floats:
     """The same without what a loading that varies adds to it, in parts so short that a tone in it is a polynomial to rounding."""
     body, excess = problem.body, problem.excess
     if not isinstance(body, ElasticSlab):
@@ -107,7 +112,7 @@ def _first_load_varying(problem: Problem) -> at.Floats:
     slope = body.impedance * problem.first_pull_rate / half
     before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
-    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0, int(jump)]))
+    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0.0, jump]))
 
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
@@ -134,7 +139,7 @@ LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 """Phase (rad) in which a sine's Taylor series is right to rounding; parts of a round trip."""
 
 
-def _loading(problem: Problem) -> at.Floats:
+def loading_of(problem: Problem) -> at.Floats:
     """Rows of `Setup.loading`: the segments of the inflow by where they arrive; none of a loading that does not vary."""
     if not problem.varies:
         return NOT_VARYING
@@ -145,8 +150,10 @@ def _loading(problem: Problem) -> at.Floats:
     return np.array([row, offset, inflow.value, inflow.slope, [0.0, *jump]])
 
 
-def _pieces(theta: list[float], load: list[float], slope: list[float], jump: list[int] | None = None) -> at.Floats:
-    return np.array([theta, [*load, 0.0], [*slope, 0.0], [*(jump or [0] * len(load)), 0.0]])
+def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
+    rows = [*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0]
+    table = np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*rows)])
+    return table.reshape(4, len(theta), *table.shape[1:])
 
 
 def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
@@ -164,12 +171,12 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     static = float(law.static_coefficient(start))
     at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    address = np.array([_addresses(formula, problem) for formula in formulas], np.int64).T.copy()
+    address = np.array([addresses_of(formula, problem) for formula in formulas], np.int64).T.copy()
     knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
     return address, constants, np.array([[start - reference for reference in references], offsets, knots])
 
 
-def _addresses(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int]:
+def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int]:
     """Of what is compiled of a formula: a law with a state is only ever stepped implicitly."""
     if problem.friction.state:
         return 0, 0, formula.state_value
@@ -181,7 +188,7 @@ def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at
     formula.prepare(values.ctypes.data_as(double), reference, row.ctypes.data_as(double))
 
 
-def _start(problem: Problem) -> tuple[at.Floats, at.Integers]:
+def start_of(problem: Problem) -> tuple[at.Floats, at.Integers]:
     """State and counts at t = 0: at rest, the load not yet met."""
     state, count = np.zeros(STATES), np.zeros(COUNTS, np.int64)
     state[at.LAST_STEP] = math.inf

@@ -23,6 +23,7 @@ FULL_HISTORY = -2
 INTERRUPTED = -3
 ENOUGH_EVENTS = -4
 UNDER_WAY = -5
+BAD_PARAMETERS = -6
 
 STATUSES = {
     FINISHED: Status("finished", "the run reached its duration", True),
@@ -41,5 +42,6 @@ STATUSES = {
         False,
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),
+    BAD_PARAMETERS: Status("bad parameters", "a member of a batch whose numbers make no problem", False),
     UNDER_WAY: Status("under way", "a checkpoint of a run that went on: what is there is valid up to this time", False),
 }

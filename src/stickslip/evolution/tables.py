@@ -53,7 +53,7 @@ CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 def default_event_rate(problem: Problem) -> float:
     """1e-6 S (range of mu) / Z, m/s; for the block sqrt(K m) stands for Z."""
     body = problem.body
-    resistance = body.impedance if isinstance(body, ElasticSlab) else float(np.sqrt(body.stiffness * body.mass))
+    resistance = body.impedance if isinstance(body, ElasticSlab) else np.sqrt(body.stiffness * body.mass)
     return 1e-6 * problem.normal * problem.friction.variation / resistance
 
 

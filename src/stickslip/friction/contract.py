@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -75,6 +74,8 @@ class FrictionLaw(ABC):
     """A state variable of the law's own: then `formula` has it as a fourth argument, and `state_rate` says how it changes."""
     sticks: ClassVar[bool] = True
     """Whether there is a static strength below which the contact rests; else friction passes smoothly through v = 0."""
+    many: ClassVar[bool] = False
+    """Whether fields may be arrays, one number a member of a batch: formulas, `range`, `knots`, `static_excess` then are too."""
     start: ClassVar[Mapping[str, Any]] = {}
     """Of a law that never sticks: `coefficient` (load per normal load) and `state` from which its example may start."""
     example: ClassVar[Mapping[str, Any]] = {}
@@ -219,9 +220,14 @@ class FrictionLaw(ABC):
     def variation(self) -> float:
         """How much friction changes, finite: high - low, or what it changes up to 1 m/s where it grows without bound."""
         low, high = self.range()
-        if math.isfinite(high):
+        if np.all(np.isfinite(high)):
             return high - low
         return float(np.ptp(self.coefficient(0.0, np.linspace(0.0, 1.0, 101))))
+
+    @property
+    def bends_one_way(self) -> bool:
+        """Whether mu is convex, or concave, over all slip rates v > 0: then Z v + S mu(v) turns at most once."""
+        return not self.depends_on_rate
 
     @property
     def rate_scales(self) -> tuple[float, ...]:

@@ -16,6 +16,7 @@ class Coulomb(FrictionLaw):
 
     kind: ClassVar[str] = "coulomb"
     source: ClassVar[str] = "Campillo et al. 1996, section 4 (limit of eq. 15)"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.5}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
@@ -39,3 +40,7 @@ class Coulomb(FrictionLaw):
 
     def range(self) -> tuple[float, float]:
         return self.dynamic, self.static
+
+    @property
+    def bends_one_way(self) -> bool:
+        return True

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from stickslip.friction.expression import exp
 from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
@@ -23,6 +25,7 @@ class ExponentialCohesiveZone(RemembersSlip):
         "PyLith_custom_friction, doi:10.5281/zenodo.14047393; shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397"
     )
     counts: ClassVar[Literal["net", "path"]] = "path"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "distance": "0.2 m", "offset": "0.1 m"}
 
     static: float = quantity("1", "largest friction coefficient, at y = 1", at_least=0)
@@ -36,4 +39,4 @@ class ExponentialCohesiveZone(RemembersSlip):
         return law.dynamic + (law.static - law.dynamic) * y * exp(1.0 - y)
 
     def range(self) -> tuple[float, float]:
-        return min(self.static, self.dynamic), max(self.static, self.dynamic)
+        return np.minimum(self.static, self.dynamic), np.maximum(self.static, self.dynamic)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from stickslip.friction.expression import exp
 from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
@@ -20,6 +22,7 @@ class ExponentialSlipWeakening(RemembersSlip):
     kind: ClassVar[str] = "exponential-slip-weakening"
     source: ClassVar[str] = "Mizoguchi, Hirose, Shimamoto & Fukuyama 2007, Geophys. Res. Lett. 34, L01308"
     counts: ClassVar[Literal["net", "path"]] = "path"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.7, "dynamic": 0.2, "distance": "0.5 m"}
 
     static: float = quantity("1", "friction coefficient before slip", at_least=0)
@@ -31,4 +34,4 @@ class ExponentialSlipWeakening(RemembersSlip):
         return law.dynamic + (law.static - law.dynamic) * exp(-u / law.distance)
 
     def range(self) -> tuple[float, float]:
-        return min(self.static, self.dynamic), max(self.static, self.dynamic)
+        return np.minimum(self.static, self.dynamic), np.maximum(self.static, self.dynamic)

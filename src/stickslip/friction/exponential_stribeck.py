@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from stickslip.friction.contract import FrictionLaw
 from stickslip.friction.expression import exp
 from stickslip.quantities import quantity
@@ -23,6 +25,7 @@ class ExponentialStribeck(FrictionLaw):
         "Tustin 1947, J. Inst. Electr. Eng. 94, 143 (exponent 1); Bo & Pavelescu 1982, Wear 82, 277; "
         "Armstrong-Helouvry, Dupont & Canudas de Wit 1994, Automatica 30, 1083"
     )
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 1}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
@@ -45,5 +48,9 @@ class ExponentialStribeck(FrictionLaw):
         return ("rate", fall / (impedance + normal * self.viscosity)) if fall > 0.0 else None
 
     def range(self) -> tuple[float, float]:
-        high = math.inf if self.viscosity > 0.0 else max(self.static, self.dynamic)
-        return min(self.static, self.dynamic), high
+        high = math.inf if self.viscosity > 0.0 else np.maximum(self.static, self.dynamic)
+        return np.minimum(self.static, self.dynamic), high
+
+    @property
+    def bends_one_way(self) -> bool:
+        return self.exponent == 1.0

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from stickslip.friction.contract import FrictionLaw
 from stickslip.quantities import quantity
 
@@ -15,6 +17,7 @@ class HyperbolicRate(FrictionLaw):
 
     kind: ClassVar[str] = "hyperbolic-rate"
     source: ClassVar[str] = "Campillo et al. 1996, eq. (15)"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}
 
     static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
@@ -26,9 +29,13 @@ class HyperbolicRate(FrictionLaw):
         return law.dynamic + (law.static - law.dynamic) / (1.0 + law.alpha * v)
 
     def range(self) -> tuple[float, float]:
-        return min(self.static, self.dynamic), max(self.static, self.dynamic)
+        return np.minimum(self.static, self.dynamic), np.maximum(self.static, self.dynamic)
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
         """alpha_c = Z / (S (muS - muD)), paper section 3; a law that strengthens has none."""
         fall = normal * (self.static - self.dynamic)
         return ("alpha", impedance / fall) if fall > 0.0 else None
+
+    @property
+    def bends_one_way(self) -> bool:
+        return True

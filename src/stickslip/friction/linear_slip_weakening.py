@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from stickslip.friction.memory import RemembersSlip
 from stickslip.quantities import quantity
 
@@ -16,6 +18,7 @@ class LinearSlipWeakening(RemembersSlip):
     kind: ClassVar[str] = "linear-slip-weakening"
     source: ClassVar[str] = "Ida 1972, J. Geophys. Res. 77, 3796; Andrews 1976, J. Geophys. Res. 81, 5679"
     counts: ClassVar[Literal["net", "path"]] = "path"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.677, "dynamic": 0.525, "distance": "0.4 m"}
 
     static: float = quantity("1", "friction coefficient before slip", at_least=0)
@@ -40,4 +43,4 @@ class LinearSlipWeakening(RemembersSlip):
         return (self.distance,)
 
     def range(self) -> tuple[float, float]:
-        return min(self.static, self.dynamic), max(self.static, self.dynamic)
+        return np.minimum(self.static, self.dynamic), np.maximum(self.static, self.dynamic)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, ClassVar, Literal
+
+import numpy as np
 
 from stickslip.friction.contract import Formula
 from stickslip.friction.memory import RemembersSlip
@@ -24,6 +27,7 @@ class ParabolicSlipWeakening(RemembersSlip):
         "PyLith_custom_friction, doi:10.5281/zenodo.14047393"
     )
     counts: ClassVar[Literal["net", "path"]] = "path"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "distance": "0.4 m", "onset": 0.0}
 
     static: float = quantity("1", "friction coefficient at the onset", at_least=0)
@@ -49,5 +53,5 @@ class ParabolicSlipWeakening(RemembersSlip):
         return (self.onset + self.distance,)
 
     def range(self) -> tuple[float, float]:
-        start = float(self.formula(self, 0.0, 0.0))
-        return min(self.static, self.dynamic, start), max(self.static, self.dynamic, start)
+        values = (self.static, self.dynamic, self.formula(self, 0.0, 0.0))
+        return reduce(np.minimum, values), reduce(np.maximum, values)

@@ -16,6 +16,7 @@ class SinusoidalSlip(RemembersSlip):
 
     kind: ClassVar[str] = "sinusoidal-slip"
     source: ClassVar[str] = "Campillo et al. 1996, eq. (14)"
+    many: ClassVar[bool] = True
     example: ClassVar[dict[str, Any]] = {"mean": 1.0, "amplitude": 0.5, "wavenumber": "5 / m"}
 
     mean: float = quantity("1", "mean friction coefficient mu0", at_least=0)

@@ -1,0 +1,33 @@
+"""The engine of single runs, called through its address: what is compiled for a batch holds no second copy of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.extending import intrinsic
+
+from stickslip.evolution.engine import advance
+
+ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
+"""Of `engine.advance`: table, last row, last theta, budget."""
+
+
+def engine_address() -> int:
+    """Where the machine code of `engine.advance` is; compiles it where no single run has done so."""
+    advance.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
+    compiled = advance.overloads[ARGUMENTS]  # type: ignore[attr-defined]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
+
+
+@intrinsic
+def advance_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
+    """`engine.advance` at its address."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        convention = context.call_conv
+        function = builder.inttoptr(args[0], convention.get_function_type(types.int64, ARGUMENTS).as_pointer())
+        _, code = convention.call_function(builder, function, types.int64, ARGUMENTS, args[1:])
+        return code
+
+    return types.int64(types.int64, *ARGUMENTS), codegen

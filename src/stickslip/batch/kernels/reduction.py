@@ -1,0 +1,315 @@
+"""What a batch keeps of a run: numbers folded from its history, as the tables of a `Solution` have them.
+
+Slip events are found by the kernels of `evolution.events`. What comes behind them here is `evolution.tables` for one row, in
+compiled code.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.evolution import layout as at
+from stickslip.evolution.branch import friction_of
+from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.events import NOT_YET, count_pulses, highest, rises_over, turning_points
+from stickslip.evolution.history import ROUNDING
+from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.polynomial import evaluate, integral
+from stickslip.evolution.workspace import Run
+
+COLUMNS = (
+    "events",
+    "pulses",
+    "shocks",
+    "slip",
+    "peak_rate",
+    "peak_time",
+    "first_start",
+    "first_end",
+    "first_duration",
+    "first_slip",
+    "first_traction_drop",
+    "first_static_drop",
+    "recurrence",
+    "recurrence_cv",
+    "end_time",
+    "arrested",
+    "irregular",
+    "branches",
+)
+(
+    EVENTS,
+    PULSES,
+    SHOCKS,
+    SLIP,
+    PEAK_RATE,
+    PEAK_TIME,
+    FIRST_START,
+    FIRST_END,
+    FIRST_DURATION,
+    FIRST_SLIP,
+    FIRST_TRACTION_DROP,
+    FIRST_STATIC_DROP,
+    RECURRENCE,
+    RECURRENCE_CV,
+    END_TIME,
+    ARRESTED,
+    IRREGULAR,
+    BRANCHES,
+) = range(len(COLUMNS))
+OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, RECURRENCE_CV + 1)))
+"""Quantities for which slip events must be found."""
+POINTS_PER_PIECE = 8
+"""Turning points for which there is room at first."""
+
+
+class Points(NamedTuple):
+    """Room for the turning points of a slip rate, in order of time, and for the events made of them."""
+
+    piece: Integers
+    xi: Floats
+    rate: Floats
+    kind: Integers
+    begin: Integers
+    past: Integers
+    top: Integers
+    pulses: Integers
+
+
+def new_points(capacity: int) -> Points:
+    """Room for so many."""
+    whole = [np.empty(capacity, np.int64) for _ in range(6)]
+    return Points(whole[0], np.empty(capacity), np.empty(capacity), *whole[1:])
+
+
+# ---- places in a history ----------------------------------------------------------------------------------------------------
+
+
+@inlined
+def offset_at(store: Store, piece: int, xi: float) -> float:
+    """Offset in the row (s) of a place in a piece: as `History.placed`."""
+    if xi == 1.0:
+        return store.real[piece, at.S_THETA_TO]
+    return store.real[piece, at.S_THETA_FROM] + xi * (store.real[piece, at.S_SPEED] + xi * store.real[piece, at.S_BEND])
+
+
+@inlined
+def time_between(store: Store, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
+    """From one place to another, s."""
+    rows = store.whole[later, at.S_ROW] - store.whole[piece, at.S_ROW]
+    return rows * row_time + (offset_at(store, later, later_xi) - offset_at(store, piece, xi))
+
+
+@inlined
+def time_at(store: Store, row_time: float, piece: int, xi: float) -> float:
+    """Of a place, since the start of the run, s."""
+    return store.whole[piece, at.S_ROW] * row_time + offset_at(store, piece, xi)
+
+
+@inlined
+def place_of(store: Store, piece: int, local: float) -> float:
+    """Place in [0, 1] of a time `local` s after the start of a piece: as `History.xi`."""
+    speed, bend = store.real[piece, at.S_SPEED], store.real[piece, at.S_BEND]
+    pace = speed + math.sqrt(max(speed * speed + 4.0 * bend * local, 0.0))
+    return min(max(2.0 * local / (pace if pace > 0.0 else 1.0), 0.0), 1.0)
+
+
+@kernel
+def grown(store: Store, piece: int, xi: float) -> float:
+    """Slip since the start of the piece, m: as `History.grown`."""
+    rate, bend = store.rate[piece], store.real[piece, at.S_BEND]
+    straight = store.real[piece, at.S_SPEED] * integral(rate, xi, 1)
+    return straight if bend == 0.0 else straight + 2.0 * bend * integral(rate, xi, 2)
+
+
+@kernel
+def reached(run_end: float, code: int, row_time: float, store: Store, length: int) -> float:
+    """Up to where (s) a run that ended with a code has come."""
+    return run_end if code in (at.FINISHED, at.LOCKED) else time_at(store, row_time, length - 1, 1.0)
+
+
+@kernel
+def rests_at(store: Store, length: int, row_time: float, end: float) -> bool:
+    """Whether the contact is at rest at the end of the run."""
+    recorded = time_at(store, row_time, length - 1, 1.0)
+    return store.whole[length - 1, at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
+
+
+@kernel
+def slipped(store: Store, length: int, row_time: float, end: float) -> float:
+    """Slip from the start of the run to its end, m."""
+    last = length - 1
+    while last > 0 and time_at(store, row_time, last, 0.0) > end:
+        last -= 1
+    return store.real[last, at.S_SLIP] + grown(store, last, place_of(store, last, end - time_at(store, row_time, last, 0.0)))
+
+
+@kernel
+def slipped_between(store: Store, piece: int, xi: float, later: int, later_xi: float) -> float:
+    """Slip from one place to a later one, m: as `History.slipped_within`."""
+    whole = 0.0
+    for n in range(piece, later):
+        whole += grown(store, n, 1.0)
+    return whole + (grown(store, later, later_xi) - grown(store, piece, xi))
+
+
+# ---- friction ---------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def friction_in(run: Run, store: Store, piece: int, xi: float) -> float:
+    """Friction minus the reference strength at a place in slip or at rest: as `History.friction`."""
+    excess, rate, mode = evaluate(store.load[piece], xi), evaluate(store.rate[piece], xi), store.whole[piece, at.S_MODE]
+    if run.counts[at.HAS_INERTIA] == 0:
+        return excess - run.par[at.IMPEDANCE] * rate
+    if mode == 0:
+        return excess
+    walked = grown(store, piece, xi) * (1 if run.par[at.COUNTS_NET] == 1.0 else mode)
+    friction_of(run, store.whole[piece, at.S_PIECE], store.real[piece, at.S_LAW_SLIP] + walked, abs(rate), run.value)
+    return run.value[0] if mode > 0 else -run.value[0] - 2.0 * run.par[at.REFERENCE]
+
+
+@kernel
+def friction_before(run: Run, store: Store, piece: int, excess: float) -> float:
+    """Its left limit where a piece starts: at rest before the first one, or behind rows that nothing was recorded of."""
+    if piece == 0:
+        return excess
+    row_time, last = run.par[at.ROW_TIME], piece - 1
+    if not time_between(store, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
+        return friction_in(run, store, last, 1.0)
+    row, phase = store.whole[piece, at.S_ROW], store.real[piece, at.S_THETA_FROM]
+    if phase == 0.0:
+        row, phase = row - 1, row_time
+    while last >= 0 and not (store.real[last, at.S_THETA_FROM] < phase <= store.real[last, at.S_THETA_TO]):
+        last -= 1
+    if last < 0:
+        return friction_in(run, store, piece - 1, 1.0)
+    xi, trips = place_of(store, last, phase - store.real[last, at.S_THETA_FROM]), row - store.whole[last, at.S_ROW]
+    if trips == 0:
+        return friction_in(run, store, last, xi)
+    load = evaluate(store.load[last], xi) + trips * run.par[at.RAMP]
+    return load if run.counts[at.IS_BLOCK] == 1 else load - 2.0 * run.par[at.IMPEDANCE] * evaluate(store.rate[last], xi)
+
+
+@kernel
+def friction_after(run: Run, store: Store, length: int, piece: int, xi: float) -> float:
+    """Friction after an event that ends at a place, at rest: as `tables.friction_after`."""
+    mode, rate = store.whole[piece, at.S_MODE], abs(evaluate(store.rate[piece], xi))
+    for n in range(piece + 1, length):
+        if store.whole[n, at.S_MODE] != mode:
+            return friction_in(run, store, n, 0.0)
+        if rises_over(store.rate[n], rate):
+            break
+    if xi == 1.0 and piece + 1 < length:
+        return friction_in(run, store, piece + 1, 0.0)
+    return friction_in(run, store, piece, xi)
+
+
+# ---- events -----------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def put_in_order(points: Points, found: int) -> None:
+    """By piece, place in it, and at one place first what rises: as `events.walk`, whose order of pieces is right already."""
+    for n in range(1, found):
+        piece, xi, rate, kind = points.piece[n], points.xi[n], points.rate[n], points.kind[n]
+        k = n - 1
+        while k >= 0 and points.piece[k] == piece and comes_later(points.xi[k], points.kind[k], xi, kind):
+            move(points, k, k + 1)
+            k -= 1
+        points.piece[k + 1], points.xi[k + 1], points.rate[k + 1], points.kind[k + 1] = piece, xi, rate, kind
+
+
+@inlined
+def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
+    """Whether a point comes behind another one of the same piece."""
+    return xi > other_xi or (xi == other_xi and xi < 1.0 and kind < other_kind)
+
+
+@inlined
+def move(points: Points, source: int, target: int) -> None:
+    """A point to another place in the order."""
+    points.piece[target], points.xi[target] = points.piece[source], points.xi[source]
+    points.rate[target], points.kind[target] = points.rate[source], points.kind[source]
+
+
+@kernel
+def find_events(store: Store, length: int, threshold: float, points: Points) -> int:
+    """Slip events: where each begins, is fastest and ends among the points. Returns how many; NOT_YET if there is no room."""
+    found = turning_points(store, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
+    if found < 0:
+        return NOT_YET
+    put_in_order(points, found)
+    events = 0
+    for n in range(found):
+        if points.kind[n] == 1:
+            points.begin[events] = n
+            events += 1
+    for n in range(events):
+        points.past[n] = points.begin[n + 1] if n + 1 < events else found
+    highest(points.rate, points.begin[:events], points.past[:events], points.top)
+    count_pulses(points.rate, points.begin[:events], points.past[:events], points.pulses)
+    return events
+
+
+@kernel
+def fold_events(run: Run, store: Store, length: int, points: Points, events: int, out: Floats) -> None:
+    """Numbers of all events, and how they recur."""
+    out[EVENTS], out[PULSES] = events, 0.0
+    out[PEAK_RATE : RECURRENCE_CV + 1] = math.nan
+    if events == 0:
+        return
+    row_time, fastest = run.par[at.ROW_TIME], points.top[0]
+    for n in range(events):
+        out[PULSES] += points.pulses[n]
+        if points.rate[points.top[n]] > points.rate[fastest]:
+            fastest = points.top[n]
+    out[PEAK_RATE] = points.rate[fastest]
+    out[PEAK_TIME] = time_at(store, row_time, points.piece[fastest], points.xi[fastest])
+    if events > 1:
+        fold_recurrence(store, row_time, points, events, out)
+
+
+@kernel
+def fold_recurrence(store: Store, row_time: float, points: Points, events: int, out: Floats) -> None:
+    """Mean of the times between starts of events, and the sample's standard deviation over it (0 of two events: NaN)."""
+    mean = spread = 0.0
+    for n in range(1, events):
+        a, b = points.begin[n - 1], points.begin[n]
+        since = time_between(store, row_time, points.piece[a], points.xi[a], points.piece[b], points.xi[b])
+        change = since - mean
+        mean += change / n
+        spread += change * (since - mean)
+    out[RECURRENCE] = mean
+    if events > 2:
+        out[RECURRENCE_CV] = math.sqrt(spread / (events - 2)) / mean
+
+
+@kernel
+def fold_first(run: Run, store: Store, length: int, points: Points, excess: float, stiffness: float, out: Floats) -> None:
+    """Numbers of the first event: as `tables.event_rows`."""
+    a, b = points.begin[0], points.past[0] - 1
+    piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
+    row_time = run.par[at.ROW_TIME]
+    out[FIRST_START] = time_at(store, row_time, piece, xi)
+    if points.kind[b] == -1:
+        out[FIRST_END] = time_at(store, row_time, last, last_xi)
+        out[FIRST_DURATION] = time_between(store, row_time, piece, xi, last, last_xi)
+    out[FIRST_SLIP] = abs(slipped_between(store, piece, xi, last, last_xi))
+    out[FIRST_STATIC_DROP] = stiffness * out[FIRST_SLIP]
+    before = friction_before(run, store, piece, excess) if xi == 0.0 else friction_in(run, store, piece, xi)
+    out[FIRST_TRACTION_DROP] = before - friction_after(run, store, length, last, last_xi)
+
+
+@kernel
+def fold_whole(run: Run, store: Store, length: int, end: float, out: Floats) -> None:
+    """Numbers of the whole run."""
+    shocks = 0
+    for n in range(length):
+        shocks += 1 if store.whole[n, at.S_CAUSE] > 0 else 0
+    out[SHOCKS], out[END_TIME] = shocks, end
+    out[ARRESTED] = 1.0 if rests_at(store, length, run.par[at.ROW_TIME], end) else 0.0
+    out[SLIP] = slipped(store, length, run.par[at.ROW_TIME], end)

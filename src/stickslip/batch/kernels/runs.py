@@ -1,0 +1,100 @@
+"""Many runs one after the other in compiled code: the engine on each member, and what is kept of it.
+
+One thread has one workspace, which serves all its members. No Python comes in between, so threads run side by side.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stickslip.batch.kernels.engine import advance_at
+from stickslip.batch.kernels.reduction import find_events, fold_events, fold_first, fold_whole, reached
+from stickslip.evolution import layout as at
+from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.status import BAD_PARAMETERS
+from stickslip.evolution.workspace import BRANCHES, borrow
+
+if TYPE_CHECKING:
+    from stickslip.batch.setups import Setups
+    from stickslip.batch.workspace import Workspace
+
+BUDGET = 200_000
+"""Steps between two looks at whether the batch is to stop."""
+AT_START, UNDER_WAY, AT_END = range(3)
+"""How far the member is at which `run_group` goes on."""
+
+
+@inlined
+def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats) -> None:
+    """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
+    for k in range(len(state)):
+        state[k] = setups.state[k]
+    for k in range(len(count)):
+        count[k] = setups.counts[k]
+    count[at.TO_THE_END] = 1
+    scratch[:] = 0.0
+
+
+@kernel
+def run_group(
+    engine: int,
+    setups: Setups,
+    base: Integers,
+    stride: Integers,
+    work: Workspace,
+    where: Integers,
+    wants_events: bool,
+    stop: Integers,
+    codes: Integers,
+    out: Floats,
+) -> int:
+    """Run members from where[0] on, of which the first is as far as where[1] says; where[2] keeps its code. `engine`: its address.
+
+    Returns the number of members when all are done, else that at which there is no room (where says how to go on); less when
+    `stop` is set.
+    """
+    state, count, scratch, store, points = work.state, work.counts, work.scratch, work.store, work.points
+    table = base.copy()
+    for n in range(where[0], len(codes)):
+        for k in range(len(base)):
+            table[k] = base[k] + n * stride[k]
+        table[BRANCHES] = setups.branches[n]
+        if where[1] == AT_START:
+            if setups.branches[n] <= 0:
+                codes[n] = BAD_PARAMETERS
+                continue
+            start_member(setups, state, count, scratch)
+        if where[1] != AT_END:
+            where[2] = to_the_end(engine, table, setups.last_row[n], setups.last_theta[n], stop)
+            if where[2] == at.FULL or where[2] == OUT_OF_BUDGET:
+                where[0], where[1] = n, UNDER_WAY
+                return n
+        codes[n] = where[2]
+        length = count[at.LENGTH]
+        if length > 0:
+            run = borrow(table)
+            if wants_events:
+                events = find_events(store, length, setups.threshold[n], points)
+                if events < 0:
+                    where[0], where[1] = n, AT_END
+                    return n
+                fold_events(run, store, length, points, events, out[n])
+                if events > 0:
+                    fold_first(run, store, length, points, setups.excess[n], setups.stiffness[n], out[n])
+            end = reached(setups.duration[n], codes[n], setups.par[n, at.ROW_TIME], store, length)
+            fold_whole(run, store, length, end, out[n])
+        else:
+            codes[n] = BAD_PARAMETERS
+        where[1] = AT_START
+    return len(codes)
+
+
+@kernel
+def to_the_end(engine: int, table: Integers, last_row: int, last_theta: float, stop: Integers) -> int:
+    """Run one member until it ends, its history is full, or the batch is stopped; says which, as `engine.advance`."""
+    while True:
+        code = advance_at(engine, table, last_row, last_theta, BUDGET)
+        if code != OUT_OF_BUDGET or stop[0] != 0:
+            return code

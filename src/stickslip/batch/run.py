@@ -1,0 +1,165 @@
+"""Run the members of a batch: in chunks, in threads, each chunk set up and run by itself so that memory stays flat."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from queue import Empty, SimpleQueue
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.batch.conditions import why_not
+from stickslip.batch.kernels.engine import engine_address
+from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
+from stickslip.batch.kernels.runs import AT_START, run_group
+from stickslip.batch.long_member import run_alone
+from stickslip.batch.many import Values, are_fine, groups, member
+from stickslip.batch.setups import set_up
+from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
+from stickslip.errors import InputError
+from stickslip.evolution import layout as at
+from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
+from stickslip.scenarios.scenario import Scenario
+
+CHUNK = 4096
+"""Members that are set up together: enough for numpy, few enough for the cache and for threads to share evenly."""
+CHUNKS_PER_THREAD = 4
+NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
+NO_START = "the run ends where it starts"
+
+
+class Members(NamedTuple):
+    """What came of each member, in the order of the values given."""
+
+    results: dict[str, Floats]
+    """By quantity: one number a member; NaN for a member that made no problem."""
+    status: Integers
+    """What ended each run: codes of `stickslip.evolution.status.STATUSES`."""
+    reason: dict[int, str]
+    """Of members with bad parameters, by their place: why, in one line."""
+
+
+def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> Members:
+    """Run a scenario once for each of the numbers given, in compiled code, and fold each run into the quantities asked for.
+
+    values: by key ("friction.alpha", "body.thickness", "loading.pull_rate", "initial.excess", "run.duration"): one-dimensional
+    arrays of one length, in SI, one number a member. quantities: of `QUANTITIES`. What comes out depends neither on the number of
+    threads nor on which members run together. A member whose numbers make no problem gets the status BAD_PARAMETERS and a reason;
+    it stops nobody else.
+
+    Raises InputError where `why_not` says that the batch cannot run this, and for values that do not fit together.
+    """
+    arrays = checked(scenario, values, quantities)
+    count = len(next(iter(arrays.values())))
+    batch = _Batch(scenario, arrays, quantities, count)
+    for n in range(0, count, batch_size(count, threads)):
+        batch.queue.put(slice(n, min(n + batch_size(count, threads), count)))
+    batch.run(threads)
+    return Members(batch.results, batch.status, batch.reason)
+
+
+def batch_size(count: int, threads: int) -> int:
+    """Members in a chunk."""
+    return max(1, min(CHUNK, -(-count // (CHUNKS_PER_THREAD * threads))))
+
+
+def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str]) -> dict[str, Floats]:
+    """The values as arrays. Raises InputError."""
+    reason = why_not(scenario, tuple(values), quantities)
+    if reason:
+        raise InputError(f"run_members: {reason}")
+    arrays = {key: np.ascontiguousarray(value, float) for key, value in values.items()}
+    if not arrays or any(array.shape != next(iter(arrays.values())).shape or array.ndim != 1 for array in arrays.values()):
+        raise InputError("run_members: values must be one-dimensional arrays of one length, one number a member")
+    return arrays
+
+
+class _Batch:
+    """A batch at work: chunks yet to be done, and the numbers of those that are."""
+
+    def __init__(self, scenario: Scenario, values: Values, quantities: Sequence[str], count: int) -> None:
+        self.scenario, self.values, self.wants_events = scenario, values, not OF_EVENTS.isdisjoint(quantities)
+        self.results = {name: np.full(count, np.nan) for name in quantities}
+        self.status = np.full(count, INTERRUPTED)
+        self.reason: dict[int, str] = {}
+        self.queue: SimpleQueue[slice] = SimpleQueue()
+        self.stop = np.zeros(1, np.int64)
+        self.engine = engine_address()
+
+    def run(self, threads: int) -> None:
+        """Do all chunks; an error, or Ctrl-C, ends every thread."""
+        if threads == 1:
+            self.work()
+            return
+        with ThreadPoolExecutor(threads) as pool:
+            done = [pool.submit(self.work) for _ in range(threads)]
+            try:
+                for one in done:
+                    one.result()
+            except BaseException:
+                self.stop[0] = 1
+                raise
+
+    def work(self) -> None:
+        """What one thread does."""
+        work = new_workspace()
+        while self.stop[0] == 0:
+            try:
+                chunk = self.queue.get_nowait()
+            except Empty:
+                return
+            work = self.chunk(chunk, work)
+
+    def chunk(self, chunk: slice, work: Workspace) -> Workspace:
+        """Run one chunk; gives the workspace back, which may have grown."""
+        values = {key: value[chunk] for key, value in self.values.items()}
+        fine = are_fine(self.scenario, values)
+        for n in np.flatnonzero(~fine).tolist():
+            self.refuse(chunk.start + n)
+        valid = np.flatnonzero(fine)
+        if not valid.size:
+            return work
+        for places, numbers in groups(self.scenario, {key: value[valid] for key, value in values.items()}):
+            work = self.group(chunk.start + valid[places], numbers, work)
+        return work
+
+    def group(self, places: Integers, values: Values, work: Workspace) -> Workspace:
+        """Run members that are alike but for their numbers; `places` says where they stand in the batch."""
+        setups = set_up(self.scenario, values)
+        codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
+        where = np.array([0, AT_START, 0])
+        while True:
+            base, stride = table_of(setups, work)
+            done = run_group(self.engine, setups, base, stride, work, where, self.wants_events, self.stop, codes, out)
+            if done == len(places) or self.stop[0] != 0:
+                break
+            if where[2] != at.FULL:
+                work = work.with_more_points()
+            elif work.capacity < LARGEST_CAPACITY:
+                work = work.larger()
+            else:
+                codes[done] = run_alone(self.member(places[done]), LARGEST_CAPACITY, self.stop, out[done])
+                where[:] = done + 1, AT_START, 0
+        out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
+        out[codes == BAD_PARAMETERS] = np.nan
+        self.status[places] = codes
+        for name, column in self.results.items():
+            column[places] = out[:, COLUMNS.index(name)]
+        for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():
+            self.reason[int(places[n])] = NO_START if setups.branches[n] > 0 else NO_BRANCH
+        return work
+
+    def member(self, n: int) -> Scenario:
+        """One member by itself. Raises InputError where its numbers make no problem."""
+        return member(self.scenario, {key: float(value[n]) for key, value in self.values.items()})
+
+    def refuse(self, n: int) -> None:
+        """Note why a member is no problem."""
+        self.status[n] = BAD_PARAMETERS
+        try:
+            self.member(n)
+            self.reason[n] = "its numbers make no problem"
+        except InputError as error:
+            self.reason[n] = str(error)

@@ -1,0 +1,159 @@
+"""From the numbers of many members to what the engine works on: `evolution.setup`, with a row a member."""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip.batch.kernels.constants import fill_constants
+from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
+from stickslip.batch.many import Values, many, member
+from stickslip.bodies import ElasticSlab
+from stickslip.evolution import layout as at
+from stickslip.evolution.compiled import compile_formula
+from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.moving_branches import branch_rows, is_algebraic
+from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of
+from stickslip.evolution.tables import default_event_rate
+from stickslip.friction import FrictionLaw
+from stickslip.problem import Problem
+from stickslip.quantities import quantities_of
+from stickslip.scenarios.scenario import Scenario
+
+LOADING = Lock()
+"""Threads must not load a formula twice: the code of which the other has the address would go."""
+FASTEST = 1e9
+"""Rates beyond so many times the contact's own scale do not matter: as `contact.resistance`."""
+
+
+class Setups(NamedTuple):
+    """Members that are alike but for their numbers, each table with a row a member."""
+
+    par: Floats  # (members, PARAMETERS)
+    address: Integers  # (3, pieces), the same for all
+    constants: Floats  # (members, pieces, size)
+    law: Floats  # (members, 3, pieces)
+    branch: Floats  # (members, 6 MOST_BRANCHES), of which the first 6 branches[n] are filled
+    first: Floats  # (members, 4, pieces of the first load + 1)
+    branches: Integers  # (members,); 0 where friction falls for ever, -1 where there are more than MOST_BRANCHES
+    irregular: Floats
+    state: Floats  # at t = 0, the same for all
+    counts: Integers
+    last_row: Integers  # where each run ends
+    last_theta: Floats
+    duration: Floats
+    threshold: Floats  # event rate, m/s
+    stiffness: Floats
+    excess: Floats  # initial load minus strength
+
+
+def set_up(scenario: Scenario, values: Values) -> Setups:
+    """One group of members (`many.groups`)."""
+    count = len(next(iter(values.values())))
+    first = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
+    problem = many(scenario, values)
+    duration = np.broadcast_to(np.asarray(values.get("run.duration", scenario.duration)), (count,))
+    par = parameters_of(problem)
+    set_tolerance(par, values.get("run.rtol", scenario.rtol), scenario.shortest_event)
+    address, constants, law = formulas(problem, first, count)
+    branch, branches, irregular, par[at.STICK_TO] = branches_of(problem, first, address, constants, count)
+    state, counts = start_of(first)
+    last_row, last_theta = split_times(duration, par[at.ROW_TIME])
+    return Setups(
+        par=rows(par),
+        address=address,
+        constants=constants,
+        law=law,
+        branch=branch,
+        first=rows(first_load(problem)),
+        branches=branches,
+        irregular=irregular,
+        state=state,
+        counts=counts,
+        last_row=last_row,
+        last_theta=last_theta,
+        duration=np.ascontiguousarray(duration, float),
+        threshold=spread(default_event_rate(problem), count),
+        stiffness=spread(problem.body.stiffness, count),
+        excess=spread(problem.excess, count),
+    )
+
+
+def rows(table: Floats) -> Floats:
+    """With the members first."""
+    return np.ascontiguousarray(np.moveaxis(table, -1, 0))
+
+
+def spread(numbers: Any, count: int) -> Floats:
+    """One number a member, also where all have the same; of a table, along a last axis."""
+    found = np.asarray(numbers, float)
+    return np.ascontiguousarray(np.broadcast_to(found, (*found.shape[: max(found.ndim - 1, 0)], count)))
+
+
+def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
+    """As `evolution.drive.split_time`."""
+    whole = np.floor(time / row)
+    offset = time - whole * row
+    back = (offset <= 0.0) & (whole > 0)
+    return (whole - back).astype(np.int64), np.where(back, row, np.minimum(offset, row))
+
+
+# ---- the law ----------------------------------------------------------------------------------------------------------------
+
+
+def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Floats, Floats]:
+    """Addresses of the law's functions, their constants, and shifts, offsets and knots: as in `evolution.setup`."""
+    law, start = problem.friction, problem.law_slip
+    home = int(first.friction.piece_at(first.law_slip))
+    with LOADING:
+        compiled = [compile_formula(tree, first.friction.parameters(), None) for tree in first.friction.trees()]
+        address = np.array([addresses_of(formula, first) for formula in compiled], np.int64).T.copy()
+        prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
+    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(compiled))]
+    references = near if law.knot_variable == "slip" else [start] * len(compiled)
+    static = law.pieces[home](law, start, 0.0) + law.static_excess
+    at_reference = [law.pieces[i](law, x, 0.0) for i, x in enumerate(references)]
+    offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
+    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
+    table = [spread(number, count) for number in (*(start - reference for reference in references), *offsets, *knots)]
+    numbers = np.stack([spread(getattr(law, name), count) for name in law.parameters()], axis=1)
+    constants = np.zeros((count, len(compiled), max(formula.size for formula in compiled)))
+    fill_constants(prepare, numbers, np.stack([spread(x, count) for x in references], axis=1), constants)
+    return address, constants, rows(np.stack(table).reshape(3, len(compiled), count))
+
+
+# ---- the contact equation ---------------------------------------------------------------------------------------------------
+
+
+def branches_of(
+    problem: Problem, first: Problem, address: Integers, constants: Floats, count: int
+) -> tuple[Floats, Integers, Floats, Floats]:
+    """Branches of each member's resistance, how many, whether some loads have several solutions, and where stick is left."""
+    table, branches = np.empty((count, 6 * MOST_BRANCHES)), np.ones(count, np.int64)
+    if not is_algebraic(first):
+        table[:, :6] = branch_rows(first, 0.0)[0][:, 0]
+        return table, branches, np.zeros(count), np.zeros(count)
+    law, body = problem.friction, problem.body
+    assert isinstance(body, ElasticSlab)
+    own = problem.normal * law.variation / body.impedance
+    slowest, fastest = scales(law, spread(own, count), count)
+    impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
+    irregular, stick_to = np.empty(count), np.empty(count)
+    kind = (first.friction.bends_one_way, RULES.index(first.rule))
+    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest)
+    branch_tables(*contact, *kind, table, branches, irregular, stick_to)
+    return table, branches, irregular, stick_to
+
+
+def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:
+    """The slowest and the fastest of `Resistance.scales`, m/s."""
+    rates = {name: declared.unit for name, declared in quantities_of(type(law)).items() if declared.unit in ("m/s", "s/m")}
+    with np.errstate(divide="ignore"):
+        sizes = [np.abs(getattr(law, name)) if unit == "m/s" else 1.0 / np.abs(getattr(law, name)) for name, unit in rates.items()]
+    found = np.stack([own, *(spread(size, count) for size in sizes)])
+    counts = (found > 0.0) & np.isfinite(found) & (found <= np.where(np.arange(len(found)) == 0, np.inf, FASTEST)[:, None] * own)
+    none = ~counts.any(axis=0)
+    lowest, highest = (np.where(counts, found, fill) for fill in (np.inf, -np.inf))
+    return np.where(none, 1.0, lowest.min(axis=0)), np.where(none, 1.0, highest.max(axis=0))

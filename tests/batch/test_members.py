@@ -1,0 +1,158 @@
+"""Members of a batch are what `simulate` makes of them, whoever runs beside them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from stickslip.batch import QUANTITIES, long_member, run, run_members
+from stickslip.errors import InputError
+from stickslip.evolution.layout import FINISHED
+from stickslip.evolution.status import BAD_PARAMETERS, STATUSES
+
+from .cases import CASES, SLAB, Case, by_solution, one
+
+ROUNDING = {"rel": 2e-14, "abs": 1e-300}
+"""Of numbers that a history is folded into in another order, or with fused products; the history itself is the same bit for bit."""
+WHOLE = ("events", "pulses", "shocks", "arrested", "irregular", "branches", "end_time", "peak_rate")
+"""Numbers that are the same bit for bit."""
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_members_are_those_of_simulate(name: str) -> None:
+    case = CASES[name]
+    values = case.values()
+    members = run_members(case.scenario, values, QUANTITIES)
+    assert members.reason == {}
+    for n in range(len(members.status)):
+        solution = one(case, values, n).run()
+        assert STATUSES[members.status[n]] == solution.status
+        expected = by_solution(solution)
+        found = {name: column[n] for name, column in members.results.items()}
+        assert {name: found[name] for name in WHOLE} == pytest.approx(
+            {name: expected[name] for name in WHOLE}, rel=0, abs=0, nan_ok=True
+        )
+        strength = {"rel": 0.0, "abs": 4e-15 * solution.problem.strength}
+        assert found.pop("first_traction_drop") == pytest.approx(expected.pop("first_traction_drop"), nan_ok=True, **strength)
+        assert found.pop("recurrence_cv") == pytest.approx(expected.pop("recurrence_cv"), rel=1e-12, abs=1e-14, nan_ok=True)
+        assert found == pytest.approx(expected, nan_ok=True, **ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["rate", "slip", "driver", "linear block", "gauss"])
+def test_neither_threads_nor_order_nor_company_matter(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = CASES[name]
+    values = case.values(203)
+    alone = run_members(case.scenario, values, QUANTITIES)
+    order = np.random.default_rng(5).permutation(203)
+    monkeypatch.setattr(run, "CHUNK", 17)
+    shuffled = run_members(case.scenario, {key: value[order] for key, value in values.items()}, QUANTITIES, threads=3)
+    assert (alone.status[order] == shuffled.status).all()
+    for quantity in QUANTITIES:
+        assert alone.results[quantity][order].tobytes() == shuffled.results[quantity].tobytes(), quantity
+
+
+def test_each_quantity_comes_out_the_same_when_it_is_asked_for_alone() -> None:
+    case = CASES["rate"]
+    values = case.values()
+    together = run_members(case.scenario, values, QUANTITIES)
+    for quantity in QUANTITIES:
+        (found,) = run_members(case.scenario, values, [quantity]).results.values()
+        assert found.tobytes() == together.results[quantity].tobytes(), quantity
+
+
+def test_bad_members_stop_nobody() -> None:
+    case = CASES["coulomb"]
+    static = np.array([0.6, 0.4, math.nan, 0.7, -1.0])
+    members = run_members(case.scenario, {"friction.static": static}, ("slip", "events"), threads=2)
+    assert members.status.tolist() == [FINISHED, BAD_PARAMETERS, BAD_PARAMETERS, FINISHED, BAD_PARAMETERS]
+    assert np.isnan(members.results["slip"]).tolist() == [False, True, True, False, True]
+    assert list(members.reason) == [1, 2, 4]
+    assert members.reason[1] == "Coulomb: static must be at least dynamic, got static 0.4 < dynamic 0.5"
+    assert members.reason[2] == "Coulomb: static must be finite, got nan"
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("friction.alpha", -1.0),
+        ("body.thickness", 0.0),
+        ("body.normal_stress", math.inf),
+        ("initial.slip", math.nan),
+        ("run.duration", 0.0),
+        ("run.rtol", 0.1),
+        ("run.rtol", 1e-16),
+        ("friction.dynamic", -0.1),
+    ],
+)
+def test_what_a_member_refuses_the_batch_refuses(key: str, value: float) -> None:
+    case = Case(CASES["rate"].scenario, {key: (value, value)})
+    with pytest.raises(InputError) as error:
+        one(case, {key: np.array([value])}, 0)
+    members = run_members(case.scenario, {key: np.array([value])}, ("slip",))
+    assert members.status.tolist() == [BAD_PARAMETERS]
+    assert members.reason == {0: str(error.value)}
+
+
+def test_far_stress_needs_a_driver_that_gives_way() -> None:
+    values = {"body.driver_impedance": np.array([math.inf, 5e6]), "loading.far_stress_rate": np.full(2, 1e5)}
+    members = run_members(CASES["far stress"].scenario, values, ("slip",))
+    assert members.status.tolist() == [BAD_PARAMETERS, FINISHED]
+    assert "finite driver_impedance" in members.reason[0]
+
+
+def test_rigid_and_other_drivers_massless_and_heavy_contacts_mix() -> None:
+    case = CASES["driver"]
+    values = {
+        "body.driver_impedance": np.array([math.inf, 5e6, 1e300, 0.0, math.inf]),
+        "body.contact_mass": np.array([0.0, 0.0, 1e6, 1e6, 1e7]),
+    }
+    members = run_members(case.scenario, values, ("slip", "events"))
+    for n in range(5):
+        expected = by_solution(one(case, values, n).run())
+        assert members.results["events"][n] == expected["events"]
+        assert members.results["slip"][n] == pytest.approx(expected["slip"], **ROUNDING)
+
+
+def test_a_history_that_outgrows_the_store_is_folded_as_it_goes(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = Case(replace(CASES["coulomb block"].scenario, duration=2e5), {"friction.static": (0.55, 0.6)})
+    values = case.values(2)
+    whole = run_members(case.scenario, values, QUANTITIES)
+    assert whole.results["events"].min() > 100
+    calls = []
+    original = long_member.run_alone
+    monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
+    monkeypatch.setattr(run, "run_alone", lambda *given: calls.append(given) or original(*given))
+    folded = run_members(case.scenario, values, QUANTITIES)
+    assert len(calls) == 2
+    for quantity in QUANTITIES:
+        assert folded.results[quantity] == pytest.approx(whole.results[quantity], nan_ok=True, rel=1e-12, abs=1e-12), quantity
+
+
+def test_members_beside_a_long_one_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario = CASES["coulomb block"].scenario
+    values = {"run.duration": np.array([1e3, 2e5, 1e3])}
+    monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
+    members = run_members(scenario, values, QUANTITIES)
+    for quantity in QUANTITIES:
+        first, _, last = members.results[quantity]
+        assert np.float64(first).tobytes() == np.float64(last).tobytes()
+
+
+def test_the_window_of_several_solutions_is_told() -> None:
+    alpha = SLAB.impedance / (SLAB.normal_stress * 0.5) * np.array([0.0, 1.0 - 1e-9, 1.0 + 1e-9])
+    members = run_members(CASES["rate"].scenario, {"friction.alpha": alpha}, ("branches", "irregular"))
+    assert members.results["branches"].tolist() == [1.0, 1.0, 1.0]
+    assert members.results["irregular"].tolist() == [0.0, 0.0, 1.0]
+
+
+def test_values_must_fit_together() -> None:
+    scenario = CASES["rate"].scenario
+    with pytest.raises(InputError, match="one-dimensional arrays of one length"):
+        run_members(scenario, {"friction.alpha": np.ones(2), "friction.static": np.ones(3)}, ("slip",))
+    with pytest.raises(InputError, match="not a plain number"):
+        run_members(scenario, {"friction.beta": np.ones(2)}, ("slip",))
+    with pytest.raises(InputError, match="did you mean 'slip'"):
+        run_members(scenario, {"friction.alpha": np.ones(2)}, ("slipp",))

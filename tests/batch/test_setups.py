@@ -1,0 +1,126 @@
+"""Members set up together have the setups of each by itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.batch import why_not
+from stickslip.batch.kernels.turns import RULES
+from stickslip.batch.many import groups
+from stickslip.batch.setups import Setups, set_up
+from stickslip.evolution import layout as at
+from stickslip.evolution.drive import split_time
+from stickslip.evolution.setup import prepare, row_time
+from stickslip.evolution.tables import default_event_rate
+from stickslip.friction import LAWS
+from stickslip.scenarios.scenario import Scenario
+
+from .cases import CASES, PULL, SLAB, Case, one
+
+LEVEL = 4e-16
+"""Of the strength: rounding of loads at the ends of branches."""
+
+
+def branch_of(setups: Setups, n: int) -> at.Floats:
+    """The table of a member."""
+    count = int(setups.branches[n])
+    return setups.branch[n, : 6 * count].reshape(6, count)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_setups_are_those_of_single_runs(name: str) -> None:
+    case = CASES[name]
+    drawn = case.values(12, seed=7)
+    for places, values in groups(case.scenario, drawn):
+        setups = set_up(case.scenario, values)
+        for n, place in enumerate(places.tolist()):
+            alone = one(case, drawn, place)
+            problem = alone.problem
+            setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
+            assert setups.par[n, at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
+            others = np.arange(at.PARAMETERS) != at.STICK_TO
+            assert np.array_equal(setups.par[n, others], setup.par[others])
+            assert np.array_equal(setups.address, setup.address)
+            assert np.array_equal(setups.constants[n], setup.constants)
+            assert np.array_equal(setups.law[n], setup.law)
+            assert np.array_equal(setups.first[n], setup.first)
+            assert np.array_equal(setups.state, state)
+            assert np.array_equal(setups.counts, count)
+            assert setups.threshold[n] == default_event_rate(problem)
+            assert setups.excess[n] == problem.excess
+            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, row_time(problem))
+            found = branch_of(setups, n)
+            assert found[:2] == pytest.approx(setup.branch[:2], rel=1e-14, abs=0)
+            assert found[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
+
+
+@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("name", ["rate", "stribeck", "gauss", "power"])
+def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> None:
+    """Over many decades of what makes the contact irregular, and next to where it becomes so."""
+    scenario = CASES[name].scenario
+    scenario = replace(scenario, problem=replace(scenario.problem, selection=rule))
+    key = "friction.alpha" if name == "rate" else "friction.rate"
+    closed = scenario.problem.friction.critical_value(SLAB.impedance, SLAB.normal_stress)
+    assert closed is not None
+    shares = np.concatenate((10.0 ** np.random.default_rng(2).uniform(-3, 3, 20), 1.0 + np.array([-1e-3, 1e-3, 1e-6, -1e-6])))
+    case, values = Case(scenario, {}), {key: closed[1] * shares}
+    setups = set_up(scenario, values)
+    assert {0.0, 1.0} == set(setups.irregular)
+    for n in range(len(shares)):
+        problem = one(case, values, n).problem
+        contact = ss.uniqueness(problem)
+        setup = prepare(problem, scenario.rtol)[0]
+        assert setups.irregular[n] == (contact.regime == "irregular")
+        assert branch_of(setups, n)[:2] == pytest.approx(setup.branch[:2], rel=1e-9, abs=0)
+        assert branch_of(setups, n)[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
+        assert setups.par[n, at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
+
+
+@pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
+def test_laws_that_bend_one_way_do(kind: str) -> None:
+    law = CASES_OF_KIND[kind]
+    rates = np.geomspace(1e-6, 1e3, 4001)
+    mu = law.coefficient(0.1, rates)
+    slope = np.diff(mu) / np.diff(rates)
+    bends = np.diff(slope)
+    slack = 1e-15 / np.diff(rates)[1:]
+    one_way = bool((bends >= -4 * slack).all() or (bends <= 4 * slack).all())
+    assert one_way or not law.bends_one_way
+    if kind in ("exponential-stribeck", "power-stribeck"):
+        assert not replace(law, exponent=2.0).bends_one_way
+
+
+CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}
+
+
+def test_every_law_of_many_has_a_case() -> None:
+    assert {kind for kind, law in LAWS.items() if law.many} == set(CASES_OF_KIND)
+
+
+def test_why_not() -> None:
+    scenario = CASES["rate"].scenario
+    assert why_not(scenario, ("friction.alpha", "body.thickness", "run.duration"), ("events",)) == ""
+    assert "not one that a batch folds" in why_not(scenario, ("friction.alpha",), ("horizon",))
+    assert "not a plain number" in why_not(scenario, ("friction.alfa",), ("slip",))
+    assert "exclude each other" in why_not(scenario, ("initial.load", "initial.excess"), ("slip",))
+    assert "so many events" in why_not(replace(scenario, events=3), ("friction.alpha",), ("slip",))
+    assert "leaps over creep" in why_not(replace(scenario, creep_rtol=1e-3), ("friction.alpha",), ("slip",))
+    maxwell = replace(scenario, problem=replace(scenario.problem, selection="maxwell"))
+    assert "maxwell" in why_not(maxwell, ("friction.alpha",), ("slip",))
+    stribeck = CASES["stribeck"].scenario
+    assert "without bound" in why_not(stribeck, ("friction.viscosity",), ("slip",))
+    assert "not a plain number" in why_not(stribeck, ("friction.exponent",), ("slip",))
+
+
+def test_why_not_of_other_laws() -> None:
+    law = ss.friction.VelocityStrengthening(0.6, 0.01)
+    scenario = Scenario(ss.Problem(SLAB, law, PULL, initial_excess=0.0), 1.0)
+    assert why_not(scenario, ("friction.a",), ("slip",)) == "VelocityStrengthening is not made of plain numbers alone"
+    heals = ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1, memory="since-arrest")
+    scenario = Scenario(ss.Problem(SLAB, heals, PULL, initial_excess=0.0), 1.0)
+    assert "memory 'since-arrest'" in why_not(scenario, ("friction.static",), ("slip",))
