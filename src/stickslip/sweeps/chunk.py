@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,18 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.batch import run_members, why_not
 from stickslip.errors import InputError
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import STATUSES, Status
-from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.sweeps.axis import Values
 from stickslip.sweeps.keys import Key
 from stickslip.sweeps.members import Members
 from stickslip.sweeps.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE
-from stickslip.sweeps.quantities import Summary
+from stickslip.sweeps.quantities import QUANTITIES, Summary
 from stickslip.sweeps.series import Series
 
 Floats = NDArray[np.float64]
+END = "end_time"
 MAX_PIECES = 200_000
 """Pieces of history of one member: one that needs more fails."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
@@ -40,6 +43,21 @@ class Work:
     def members(self) -> Members:
         """Makes the scenarios of members."""
         return Members(self.text, self.keys)
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """What is varied."""
+        return read_scenario(self.text, "member")
+
+    @cached_property
+    def why_one_by_one(self) -> str:
+        """Why the compiled batch cannot do this work, in one line; "" where it can."""
+        if self.series:
+            return "curves over time need whole solutions"
+        own = next((one.name for one in self.quantities if QUANTITIES.get(one.name) is not one), None)
+        if own is not None:
+            return f"{own} is a function of a whole solution"
+        return why_not(self.scenario, [key.name for key in self.keys], [one.name for one in self.quantities])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -66,8 +84,30 @@ def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = No
 
 
 def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None) -> ChunkResult | None:
-    """All members in the compiled batch; None where it cannot do them."""
-    return None  # the place where `stickslip.batch` is plugged in
+    """All members in the compiled batch (`stickslip.batch`); None where it cannot do them."""
+    if work.why_one_by_one:
+        return None
+    names = [one.name for one in work.quantities]
+    found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads or os.cpu_count() or 1)
+    status = np.array([CODES[code] for code in found.status.tolist()], np.int8)
+    failed = status >= FIRST_FAILURE
+    result = ChunkResult({name: np.where(failed, np.nan, found.results[name]) for name in names}, status)
+    for i in np.flatnonzero(failed).tolist():
+        result.reasons[i] = (
+            _refused(work, values, i, found.reason[i])
+            if i in found.reason
+            else _stopped(STATUSES[int(found.status[i])], float(found.results[END][i]))
+        )
+    return result
+
+
+def _refused(work: Work, values: Mapping[str, Values], i: int, otherwise: str) -> str:
+    """Why a member is no scenario, in the words of one that is read alone."""
+    try:
+        work.members.scenario(_of_member(values, i))
+    except InputError as error:
+        return str(error)
+    return otherwise
 
 
 def _of_member(values: Mapping[str, Values], i: int) -> dict[str, float | str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, STORM
+from stickslip.evolution.status import BAD_PARAMETERS as REFUSED
 from stickslip.evolution.status import ENOUGH_EVENTS, FULL_HISTORY
 
 NOT_RUN = -1
@@ -24,5 +25,5 @@ MEANINGS = {
 """Names of the codes: below 0 the member has not been run, from 10 on it failed and has no results but a reason."""
 FIRST_FAILURE = 10
 
-CODES = {FINISHED: 0, ENOUGH_EVENTS: 1, LOCKED: 2, STORM: 11, FAILED: 12, FULL_HISTORY: 13}
+CODES = {FINISHED: 0, ENOUGH_EVENTS: 1, LOCKED: 2, STORM: 11, FAILED: 12, FULL_HISTORY: 13, REFUSED: BAD_PARAMETERS}
 """Of the codes that end a run (`evolution.layout`, `evolution.status`)."""
