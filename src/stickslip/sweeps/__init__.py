@@ -1,0 +1,1 @@
+"""Sweeps: a problem over many values of its numbers."""
