@@ -29,6 +29,7 @@ LAYERS = (
     ("storage",),
     ("long_runs",),
     ("exports", "side_by_side"),
+    ("sweeps",),
     ("figures",),
     ("paper",),
     ("cli",),
@@ -39,7 +40,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "long_runs", "figures", "paper"},
+    "xarray": {"observables", "storage", "long_runs", "sweeps", "figures", "paper"},
 }
 
 
@@ -84,7 +85,7 @@ def test_imports_point_down(path: Path) -> None:
 
 def test_importing_the_package_is_light() -> None:
     """Tables, units, files, figures and the compiler are imported when they are used."""
-    heavy = "{'numba', 'pandas', 'xarray', 'pint', 'matplotlib', 'jinja2', 'typer', 'scipy'}"
+    heavy = "{'numba', 'pandas', 'xarray', 'pint', 'matplotlib', 'jinja2', 'typer', 'scipy', 'zarr'}"
     code = f"import sys, stickslip; print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

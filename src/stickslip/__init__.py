@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from stickslip.studies.analogy import Analogy, analogy
     from stickslip.studies.ensemble import Ensemble, ensemble
     from stickslip.studies.regularise import Regularisation, regularise
+    from stickslip.sweeps.sweep import sweep
 
 __version__ = "0.1.0"
 
@@ -59,6 +60,7 @@ _LATER = {
     "resume_catalogue": "stickslip.long_runs.catalogue",
     "save": "stickslip.storage",
     "simulate": "stickslip.evolution.simulate",
+    "sweep": "stickslip.sweeps.sweep",
     "uniqueness": "stickslip.contact.uniqueness",
 }
 """Names that are imported when first used: the compiler and the table libraries take their time to load."""
@@ -91,6 +93,7 @@ __all__ = [
     "save",
     "selection",
     "simulate",
+    "sweep",
     "uniqueness",
 ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -109,11 +109,17 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
         raise InputError(f"{file}: not a scenario: nested too deeply") from None
     except ValueError as error:  # tomllib.TOMLDecodeError, and whole numbers beyond what Python converts
         raise InputError(f"{file}: not TOML: {' '.join(str(error).split())}") from None
-    content = read_document(raw, Source(file, folder))
+    return replace(scenario_of(raw, Source(file, folder)), name=name or file, source=text)
+
+
+def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
+    """A scenario from a parsed TOML document. Raises InputError like `load_scenario`."""
+    file = source.file
+    content = read_document(raw, source)
     problem = _problem(content, file)
     run = content["run"]
     check_rtol(run["rtol"], file, "[run] rtol")
-    about = {"title": content["title"], "description": content["description"], "name": name or file, "source": text}
+    about = {"title": content["title"], "description": content["description"], "name": file}
     check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
     check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
     how = {name: run[name] for name in ("events", "creep_rtol", "shortest_event")}

@@ -1,0 +1,116 @@
+"""The work of a sweep, in chunks: values of some members in, their results out. All of it can be sent to other processes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.errors import InputError
+from stickslip.evolution.solution import Solution
+from stickslip.evolution.status import STATUSES
+from stickslip.scenarios.scenario import Scenario
+from stickslip.sweeps.axis import Values
+from stickslip.sweeps.keys import Key
+from stickslip.sweeps.members import Members
+from stickslip.sweeps.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE
+from stickslip.sweeps.quantities import Summary
+from stickslip.sweeps.series import Series
+
+Floats = NDArray[np.float64]
+MAX_PIECES = 1_000_000
+"""Pieces of history of one member, some 300 MB: one that needs more fails."""
+CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
+
+
+@dataclass(frozen=True)
+class Work:
+    """What is done for every member: the scenario (TOML in SI), what varies in it, and what is kept."""
+
+    text: str
+    keys: tuple[Key, ...]
+    quantities: tuple[Summary, ...]
+    series: Series | None = None
+
+    @cached_property
+    def members(self) -> Members:
+        """Makes the scenarios of members."""
+        return Members(self.text, self.keys)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of everything that is kept."""
+        return tuple(one.name for one in self.quantities) + (self.series.names if self.series else ())
+
+
+@dataclass(frozen=True)
+class ChunkResult:
+    """Results of some members, in their order: `results` by name, float64, one number a member (a series: members x samples);
+    `status` codes (`outcome.MEANINGS`); `reasons` by the place of those that failed, which have NaN for results."""
+
+    results: dict[str, Floats]
+    status: NDArray[np.int8]
+    reasons: dict[int, str] = field(default_factory=dict)
+
+
+def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = None) -> ChunkResult:
+    """Run members with these values (SI, one-dimensional, by key) on so many threads (default: all cores).
+
+    What a member gives depends on nothing but its own values.
+    """
+    return compiled_batch(work, values, threads) or one_by_one(work, values)
+
+
+def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None) -> ChunkResult | None:
+    """All members in the compiled batch; None where it cannot do them."""
+    return None  # the place where `stickslip.batch` is plugged in
+
+
+def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
+    """Each member as a run of its own. Raises KeyboardInterrupt on Ctrl-C."""
+    count = len(next(iter(values.values())))
+    result = _nothing(work, count)
+    for i in range(count):
+        try:
+            _run_one(work, {name: column[i : i + 1].tolist()[0] for name, column in values.items()}, result, i)
+        except InputError as error:
+            _fail(result, i, BAD_PARAMETERS, str(error))
+        except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, AssertionError) as error:
+            _fail(result, i, ERROR, f"{type(error).__name__}: {error}")
+    return result
+
+
+def _nothing(work: Work, count: int) -> ChunkResult:
+    results = {one.name: np.full(count, np.nan) for one in work.quantities}
+    if work.series:
+        results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
+    return ChunkResult(results, np.zeros(count, np.int8))
+
+
+def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:
+    solution = _solved(work.members.scenario(values))
+    code = CODE_OF[solution.status.name]
+    if code >= FIRST_FAILURE:
+        status = solution.status
+        _fail(result, i, code, f"{status.name} at {solution.history.duration:.9g} s: {status.message}")
+        return
+    for one in work.quantities:
+        result.results[one.name][i] = one.value(solution)
+    for name, samples in (work.series.of(solution) if work.series else {}).items():
+        result.results[name][i] = samples
+    result.status[i] = code
+
+
+def _solved(scenario: Scenario) -> Solution:
+    solution = scenario.run(max_pieces=MAX_PIECES)
+    if solution.status.name == "interrupted":
+        raise KeyboardInterrupt
+    return solution
+
+
+def _fail(result: ChunkResult, i: int, code: int, reason: str) -> None:
+    result.status[i] = code
+    result.reasons[i] = " ".join(reason.split())

@@ -1,0 +1,28 @@
+"""How each member of a sweep ended: codes in the variable `status` of the dataset."""
+
+from __future__ import annotations
+
+from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, STORM
+from stickslip.evolution.status import ENOUGH_EVENTS, FULL_HISTORY
+
+NOT_RUN = -1
+BAD_PARAMETERS = 10
+"""The scenario with these values is refused, or cannot start."""
+ERROR = 14
+"""A quantity could not be worked out, or something else went wrong."""
+MEANINGS = {
+    NOT_RUN: "not_run",
+    0: "finished",
+    1: "enough_events",
+    2: "locked_for_ever",
+    BAD_PARAMETERS: "bad_parameters",
+    11: "event_storm",
+    12: "not_finite",
+    13: "too_many_pieces",
+    ERROR: "error",
+}
+"""Names of the codes: below 0 the member has not been run, from 10 on it failed and has no results but a reason."""
+FIRST_FAILURE = 10
+
+CODES = {FINISHED: 0, ENOUGH_EVENTS: 1, LOCKED: 2, STORM: 11, FAILED: 12, FULL_HISTORY: 13}
+"""Of the codes that end a run (`evolution.layout`, `evolution.status`)."""

@@ -1,0 +1,138 @@
+"""Run a sweep, or go on with one."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from stickslip.errors import InputError
+from stickslip.scenarios.scenario import Scenario
+from stickslip.sweeps.axis import Values
+from stickslip.sweeps.chunk import ChunkResult, Work, run_chunk
+from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.plan import SAMPLES, Plan, make_plan
+from stickslip.sweeps.quantities import DEFAULT, Wanted
+from stickslip.sweeps.store import ResultStore
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Report(NamedTuple):
+    """How far a sweep is: members done and failed (those of earlier runs of it counted), all of them, members a second since it
+    was taken up, and the wall clock (s) that is left; NaN where that is not known yet."""
+
+    done: int
+    failed: int
+    members: int
+    rate: float
+    left: float
+
+
+Progress = Callable[[Report], object]
+Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
+"""Runs chunks, each given by its number and its values, and yields their results in any order."""
+
+
+def sweep(
+    scenario: Scenario | str,
+    vary: Any,
+    *,
+    design: str = "grid",
+    members: int | None = None,
+    seed: int = 0,
+    quantities: Iterable[Wanted] = DEFAULT,
+    series: Sequence[str] = (),
+    samples: int = SAMPLES,
+    out: str | Path | None = None,
+    threads: int | None = None,
+    chunk: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Run a scenario over what varies, and collect summary quantities of every run in a Dataset with units.
+
+    scenario: a `Scenario`, the path of a file, or a bundled name. vary: a mapping from keys of the scenario to
+    "LOW..HIGH:POINTS" (":log" behind it for equal ratios), to "VALUE,VALUE,..." or to a list of values, numbers in SI or texts
+    with units; or a DataFrame, or the `Path` of a CSV file, with a member a row. design "grid" runs every combination, with a
+    dimension a key; "random" and "lhs" (Latin hypercube) draw so many `members` between LOW and HIGH from a seed.
+
+    quantities: names (`stickslip.sweeps.quantities.REGISTERED`), or (name, unit, function of a `Solution`). series: curves of a
+    solution at so many `samples` of time, kept as `series_...`. `status` says how each member ended; a member that failed has NaN
+    for results and a `reason`.
+
+    With out (a folder, .zarr) results are written there in chunks (of `chunk` members) as they come; called again it runs what is
+    missing. Ctrl-C ends the sweep with what is there. Results depend neither on `threads` (default: all cores) nor on the order.
+
+    Raises InputError for anything that cannot be used: a key, a value, a quantity, or an `out` of another sweep.
+    """
+    plan = make_plan(
+        scenario,
+        vary,
+        design=design,
+        members=members,
+        seed=seed,
+        quantities=quantities,
+        series=series,
+        samples=samples,
+        chunk=chunk,
+    )
+    return carry_out(plan, out, on_threads(threads), progress)
+
+
+def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progress | None = None) -> xr.Dataset:
+    """Run what is missing of a plan. Raises InputError where the store cannot be used."""
+    store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
+    tally = Tally(store, progress)
+    try:
+        for chunk, result in run(plan.work, ((chunk, store.plan.values(chunk)) for chunk in store.missing())):
+            store.write(chunk, result)
+            tally.add(result)
+    except KeyboardInterrupt:
+        pass  # what is there is valid, and says itself what is not
+    return store.dataset()
+
+
+def on_threads(threads: int | None) -> Runner:
+    """Runs chunks one after the other in this process, each on so many threads. Raises InputError."""
+    if threads is not None and not (isinstance(threads, int) and threads > 0):
+        raise InputError(f"sweep: threads must be a whole number above 0, got {threads!r}")
+    return lambda work, chunks: ((chunk, run_chunk(work, values, threads)) for chunk, values in chunks)
+
+
+def check_out(path: Path, what: str = "sweep: out") -> Path:
+    """Refuse a store that could not be written. Raises InputError."""
+    if path.suffix != ".zarr":
+        raise InputError(f"{what} {path}: the name must end in .zarr")
+    if not path.parent.is_dir():
+        raise InputError(f"{what} {path}: there is no folder {path.parent}")
+    return path
+
+
+class Tally:
+    """Counts what comes in, and tells."""
+
+    def __init__(self, store: ResultStore, tell: Progress | None) -> None:
+        before = Counter(store.status.ravel().tolist())
+        self.members = store.plan.design.size
+        self.done = self.members - before[NOT_RUN]
+        self.failed = sum(count for code, count in before.items() if code >= FIRST_FAILURE)
+        self.tell, self.started, self.before = tell, time.monotonic(), self.done
+        self.report()
+
+    def add(self, result: ChunkResult) -> None:
+        """Another chunk is done."""
+        self.done += len(result.status)
+        self.failed += int((result.status >= FIRST_FAILURE).sum())
+        self.report()
+
+    def report(self) -> None:
+        """Say how far it is."""
+        if self.tell is None:
+            return
+        took = time.monotonic() - self.started
+        new = self.done - self.before
+        rate = new / took if new else float("nan")
+        self.tell(Report(self.done, self.failed, self.members, rate, (self.members - self.done) / rate))
