@@ -10,15 +10,19 @@ import asyncio
 import json
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from stickslip.errors import InputError
 from stickslip.evolution.checkpoint import engine
+from stickslip.sweeps.chunk import run_chunk
 
 if TYPE_CHECKING:
     from distributed import Client, Future
+
+    from stickslip.sweeps.sweep import Runner
 
 Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
@@ -80,7 +84,12 @@ def _answering(scheduler: str) -> str:
     return address
 
 
-def on_cluster(
+def on_cluster(client: Client) -> Runner:
+    """Runs chunks on the workers of a cluster, each chunk on one thread: a worker with more threads runs more chunks at a time."""
+    return lambda work, chunks: stream(client, partial(run_chunk, work), chunks)
+
+
+def stream(
     client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]
 ) -> Iterator[tuple[int, Result]]:
     """Number and result of each chunk, in the order in which they are ready; few are in flight at a time.

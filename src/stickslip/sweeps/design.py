@@ -86,7 +86,7 @@ def read_design(
         return vary
     if isinstance(vary, Path) or hasattr(vary, "columns"):
         return listed(scenario, read_csv(vary, where) if isinstance(vary, Path) else vary, where)
-    axes = _axes(scenario, vary, where)
+    axes = axes_of(scenario, vary, where)
     if kind not in KINDS:
         raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS)}")
     if kind == "grid":
@@ -96,7 +96,8 @@ def read_design(
     return sampled(axes, kind, members, seed, where)
 
 
-def _axes(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
+def axes_of(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
+    """The axes that are described. Raises InputError beginning with `where`."""
     if isinstance(vary, Mapping):
         axes = [axis_of(scenario, str(name), content, where) for name, content in vary.items()]
     else:

@@ -97,6 +97,11 @@ def _create(plan: Plan, path: Path) -> None:
     """Whole or not at all."""
     draft = path.with_name(f".{path.name}.draft")
     lay_out(plan, draft)
+    publish(draft, path)
+
+
+def publish(draft: Path, path: Path) -> None:
+    """Give a store that is whole its name."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", category=UserWarning)  # consolidated metadata are no part of the format, but xarray's wish
         zarr.consolidate_metadata(draft)
