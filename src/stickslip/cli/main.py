@@ -18,6 +18,7 @@ from stickslip.cli.new import new
 from stickslip.cli.paper import paper
 from stickslip.cli.regularise import regularise
 from stickslip.cli.run import run
+from stickslip.cli.sweep import sweep
 from stickslip.errors import InputError
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
@@ -31,6 +32,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
   stickslip compare A B            runs side by side: a table, a figure
+  stickslip sweep mine.toml        many runs: maps over its numbers
   stickslip analogy                when does a block stand for a slab
   stickslip export mine.toml F     time series for other tools
   stickslip regularise mine.toml   which selection rule does physics choose
@@ -46,7 +48,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, check, new, compare, analogy, export, regularise, ensemble, paper):
+for command in (run, check, new, compare, sweep, analogy, export, regularise, ensemble, paper):
     app.command()(command)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from typer import Context  # typer looks the annotation up
+
 STARTERS = ("slab", "block")
 
 
@@ -57,5 +59,32 @@ def complete_rule(incomplete: str) -> list[str]:
 def complete_regularisation(incomplete: str) -> list[str]:
     """What `stickslip regularise --by` knows."""
     from stickslip.studies.kinds import KINDS
+
+    return [kind for kind in KINDS if kind.startswith(incomplete)]
+
+
+def complete_vary(context: Context, incomplete: str) -> list[str]:
+    """Keys of the scenario on the command line that a sweep can vary."""
+    from stickslip.errors import InputError
+    from stickslip.scenarios.scenario import load_scenario
+    from stickslip.sweeps.keys import keys_of
+
+    try:
+        found = keys_of(load_scenario(context.params["scenario"]))
+        return [f"{key.name}=" for key in found if key.name.startswith(incomplete)]
+    except (InputError, KeyError, TypeError):
+        return []
+
+
+def complete_quantity(incomplete: str) -> list[str]:
+    """Quantities that a sweep keeps."""
+    from stickslip.sweeps.quantities import QUANTITIES
+
+    return [name for name in QUANTITIES if name.startswith(incomplete)]
+
+
+def complete_design(incomplete: str) -> list[str]:
+    """Designs of a sweep."""
+    from stickslip.sweeps.design import KINDS
 
     return [kind for kind in KINDS if kind.startswith(incomplete)]

@@ -55,7 +55,9 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
 
 def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
     values = dataset[name]
-    return name not in ("status", "level") and values.dims == dataset["status"].dims and bool(np.issubdtype(values.dtype, np.number))
+    return (
+        name not in ("status", "level") and values.dims == dataset["status"].dims and bool(np.issubdtype(values.dtype, np.number))
+    )
 
 
 @styled

@@ -51,9 +51,7 @@ def _draw_points(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colo
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)
     there = state == 0
-    axes.scatter(
-        x.values[there], y.values[there], c=values[there], s=SIZE, linewidths=0.0, rasterized=True, **colours.options
-    )
+    axes.scatter(x.values[there], y.values[there], c=values[there], s=SIZE, linewidths=0.0, rasterized=True, **colours.options)
     x.show(axes, "x")
     y.show(axes, "y")
 

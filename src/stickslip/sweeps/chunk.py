@@ -21,8 +21,8 @@ from stickslip.sweeps.quantities import Summary
 from stickslip.sweeps.series import Series
 
 Floats = NDArray[np.float64]
-MAX_PIECES = 1_000_000
-"""Pieces of history of one member, some 300 MB: one that needs more fails."""
+MAX_PIECES = 200_000
+"""Pieces of history of one member: one that needs more fails."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 
 

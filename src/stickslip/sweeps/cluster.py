@@ -89,9 +89,7 @@ def on_cluster(client: Client) -> Runner:
     return lambda work, chunks: stream(client, partial(run_chunk, work), chunks)
 
 
-def stream(
-    client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]
-) -> Iterator[tuple[int, Result]]:
+def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
     """Number and result of each chunk, in the order in which they are ready; few are in flight at a time.
 
     `run` and the chunks must be picklable. A chunk that fails holds up no others: when these are done ChunksLostError is raised.

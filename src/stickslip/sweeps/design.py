@@ -35,6 +35,8 @@ class Design:
     keys: tuple[Key, ...]
     columns: tuple[Values, ...]
     seed: int | None = None
+    logs: frozenset[str] = frozenset()
+    """Names of the keys that run in equal ratios."""
 
     @property
     def is_grid(self) -> bool:
@@ -127,7 +129,12 @@ def grid(axes: Iterable[Axis], where: str) -> Design:
         twice = np.flatnonzero(ordered[1:] == ordered[:-1])
         if twice.size:
             raise InputError(f"{where}: {axis.key.name} has the value {ordered[twice[0]]} twice")
-    return Design("grid", tuple(axis.key for axis in axes), tuple(axis.values for axis in axes))
+    keys, columns = tuple(axis.key for axis in axes), tuple(axis.values for axis in axes)
+    return Design("grid", keys, columns, logs=_logs(axes))
+
+
+def _logs(axes: Iterable[Axis]) -> frozenset[str]:
+    return frozenset(axis.key.name for axis in axes if axis.log)
 
 
 def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, where: str) -> Design:
@@ -142,7 +149,7 @@ def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, whe
             raise InputError(f"{where}: {axis.key.name} needs no number of points in the design {kind}: LOW..HIGH")
     shares = _shares(kind, members, len(axes), seed)
     columns = tuple(axis.at(shares[:, i]) for i, axis in enumerate(axes))
-    return Design(kind, tuple(axis.key for axis in axes), columns, seed)
+    return Design(kind, tuple(axis.key for axis in axes), columns, seed, _logs(axes))
 
 
 def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64]:

@@ -26,7 +26,7 @@ def lay_out(plan: Plan, place: Any) -> None:
     group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
     design, series = plan.design, plan.work.series
     for key, column in zip(design.keys, design.columns, strict=True):
-        about = {"long_name": key.meaning, "key": key.name} | ({"units": key.unit} if key.unit else {})
+        about = {"long_name": key.meaning, "log": int(key.name in design.logs)} | ({"units": key.unit} if key.unit else {})
         _put(group, key.name, column, (key.name,) if design.is_grid else design.dims, about)
     if series is not None:
         _put(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
@@ -55,6 +55,7 @@ def _new(
         name,
         shape=plan.design.shape + more,
         chunks=plan.tile + more,
+        chunk_key_encoding={"name": "default", "separator": "."},  # no folders in folders
         dtype=kind,
         fill_value=fill,
         dimension_names=(*plan.design.dims, *(dim for dim, _ in samples)),

@@ -93,9 +93,10 @@ def _chunk_size(members: int, chunk: int | None) -> int:
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:
-    """Shape of a chunk of at most `size` members: whole last dimensions as far as they fit, then a part of one, then ones."""
+    """Shape of a chunk of at most `size` members: whole last dimensions as far as they fit, then an even part of one, then ones."""
     tile: list[int] = []
     for length in reversed(shape):
-        tile.append(max(min(length, size), 1))
+        parts = -(-length // max(size, 1))
+        tile.append(-(-length // parts))
         size = size // length
     return tuple(reversed(tile))

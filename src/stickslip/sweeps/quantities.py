@@ -1,4 +1,4 @@
-"""What a sweep keeps of each member: summary quantities of its solution, by name. Users register their own."""
+"""What a sweep keeps of each member: summary quantities of its solution, by name, or functions of the user's own."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ class Summary:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A built-in one goes to other processes by its name."""
-        if BUILT_IN.get(self.name) is self:
+        if QUANTITIES.get(self.name) is self:
             return _built_in, (self.name,)
         return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag)
 
 
 def _built_in(name: str) -> Summary:
-    return BUILT_IN[name]
+    return QUANTITIES[name]
 
 
 def _first(column: str) -> Callable[[Solution], float]:
@@ -141,21 +141,12 @@ _ALL = (
         )
     ),
 )
-BUILT_IN = {one.name: one for one in _ALL}
-REGISTERED = dict(BUILT_IN)
+QUANTITIES = {one.name: one for one in _ALL}
 """Those that are known by their name."""
 DEFAULT = ("events", "pulses", "slip", "peak_rate", "first_duration", "recurrence", "arrested")
 
 Wanted = str | tuple[str, str, Callable[["Solution"], Any]] | Summary
 """A quantity by its name; one of the user's own as (name, unit, function of a solution), or in full."""
-
-
-def register(summary: Summary) -> Summary:
-    """Make a quantity known by its name, also to the command line. Raises InputError where the name is taken."""
-    if summary.name in REGISTERED:
-        raise InputError(f"sweep: the quantity '{summary.name}' is there already")
-    REGISTERED[summary.name] = summary
-    return summary
 
 
 def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
@@ -166,7 +157,7 @@ def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
         if names.count(name) > 1:
             raise InputError(f"sweep: the quantity '{name}' is wanted twice")
     if not found:
-        raise InputError(f"sweep: no quantity is wanted; allowed: {', '.join(sorted(REGISTERED))}")
+        raise InputError(f"sweep: no quantity is wanted; allowed: {', '.join(sorted(QUANTITIES))}")
     return found
 
 
@@ -174,9 +165,9 @@ def _one(item: Wanted) -> Summary:
     if isinstance(item, Summary):
         return item
     if isinstance(item, str):
-        if item not in REGISTERED:
-            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, REGISTERED)}")
-        return REGISTERED[item]
+        if item not in QUANTITIES:
+            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES)}")
+        return QUANTITIES[item]
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
     name, unit, of = item

@@ -102,9 +102,9 @@ class _Search:
             return self.together()
         if place is None or folder is None:
             return self.together()
-        with writing(place):
-            _keep(self.together(), place)
-            shutil.rmtree(folder)
+        together = self.together().drop_encoding()
+        publish(place, lambda draft: together.to_zarr(draft, consolidated=False))
+        shutil.rmtree(folder)
         return self.there(place)
 
     def round(self, points: Integers, out: Path | None, run: Runner, progress: Progress | None) -> Floats:
@@ -166,11 +166,3 @@ def _made(folder: Path) -> Path:
     with writing(folder):
         folder.mkdir(exist_ok=True)
     return folder
-
-
-def _keep(dataset: xr.Dataset, place: Path) -> None:
-    """Whole or not at all."""
-    draft = place.with_name(f".{place.name}.draft")
-    shutil.rmtree(draft, ignore_errors=True)
-    dataset.drop_encoding().to_zarr(draft, consolidated=False)
-    publish(draft, place)

@@ -8,11 +8,15 @@ store depends on when, in which order or by whom chunks were done.
 from __future__ import annotations
 
 import errno
+import os
+import shutil
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import TracebackType
 from typing import Any, Self
+from uuid import uuid4
 
 import numpy as np
 import xarray as xr
@@ -28,10 +32,10 @@ from stickslip.sweeps.plan import Plan
 
 
 class ResultStore:
-    """The store of a plan, in memory or in a folder."""
+    """The store of a plan, in memory or in a folder, which it holds against other sweeps until the end of its `with`."""
 
-    def __init__(self, plan: Plan, place: Path | MemoryStore) -> None:
-        self.plan, self.place = plan, place
+    def __init__(self, plan: Plan, place: Path | MemoryStore, hold: int | None = None) -> None:
+        self.plan, self.place, self._hold = plan, place, hold
         self.group = zarr.open_group(place, mode="r+")
 
     @classmethod
@@ -44,13 +48,20 @@ class ResultStore:
     @classmethod
     def at(cls, plan: Plan, path: Path) -> Self:
         """A new one, or the one that is there if it is of the same plan. Raises InputError for anything else that is there."""
-        with writing(path):
-            if not path.exists():
-                _create(plan, path)
-        store = cls(as_begun(plan, path), path)
+        if not path.exists():
+            _create(plan, path)
+        plan, hold = as_begun(plan, path), _held(path)
         for draft in path.rglob("*.partial"):  # of a sweep that was killed while it wrote
             draft.unlink()
-        return store
+        return cls(plan, path, hold)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._hold is not None:
+            os.close(self._hold)
+            self._hold = None
 
     def missing(self) -> list[int]:
         """Chunks that are not done."""
@@ -94,15 +105,39 @@ def writing(place: Path | MemoryStore) -> Iterator[None]:
 
 
 def _create(plan: Plan, path: Path) -> None:
-    """Whole or not at all."""
-    draft = path.with_name(f".{path.name}.draft")
-    lay_out(plan, draft)
-    publish(draft, path)
+    publish(path, lambda draft: lay_out(plan, draft))
 
 
-def publish(draft: Path, path: Path) -> None:
-    """Give a store that is whole its name."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", category=UserWarning)  # consolidated metadata are no part of the format, but xarray's wish
-        zarr.consolidate_metadata(draft)
-    draft.replace(path)
+def publish(path: Path, fill: Callable[[Path], object]) -> None:
+    """Let `fill` make a store under another name, then give it its own: whole or not at all. Raises InputError."""
+    draft = path.with_name(f".{uuid4().hex}{path.suffix}")
+    try:
+        with writing(path):
+            fill(draft)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", category=UserWarning)  # not part of the format, but what xarray wishes
+                zarr.consolidate_metadata(draft)
+            draft.replace(path)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _held(path: Path) -> int | None:
+    """Hold a store for one sweep, until the number that is returned is closed or the process ends, however it does.
+
+    Raises InputError where another one holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    folder = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(folder)
+        raise InputError(f"{path}: another sweep is writing into it") from None
+    except OSError:  # a file system without locks
+        os.close(folder)
+        return None
+    return folder

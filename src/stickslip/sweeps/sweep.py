@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -62,7 +62,7 @@ def sweep(
     with units; or a DataFrame, or the `Path` of a CSV file, with a member a row. design "grid" runs every combination, with a
     dimension a key; "random" and "lhs" (Latin hypercube) draw so many `members` between LOW and HIGH from a seed.
 
-    quantities: names (`stickslip.sweeps.quantities.REGISTERED`), or (name, unit, function of a `Solution`). series: curves of a
+    quantities: names (`stickslip.sweeps.quantities.QUANTITIES`), or (name, unit, function of a `Solution`). series: curves of a
     solution at so many `samples` of time, kept as `series_...`. `status` says how each member ended; a member that failed has NaN
     for results and a `reason`.
 
@@ -97,7 +97,9 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
     from stickslip.sweeps.cluster import cluster, on_cluster
 
     if threads is not None or (workers is not None and scheduler is not None):
-        raise InputError("sweep: give one of threads, workers (a local cluster) and scheduler (the address of a cluster that is there)")
+        raise InputError(
+            "sweep: give one of threads, workers (a local cluster) and scheduler (the address of a cluster that is there)"
+        )
     with cluster(scheduler, workers) as client:
         yield on_cluster(client)
 
@@ -106,12 +108,10 @@ def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progres
     """Run what is missing of a plan. Raises InputError where the store cannot be used."""
     store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
     tally = Tally(store, progress)
-    try:
+    with store, suppress(KeyboardInterrupt):  # what is there by then is valid, and says itself what is not
         for chunk, result in run(plan.work, ((chunk, store.plan.values(chunk)) for chunk in store.missing())):
             store.write(chunk, result)
             tally.add(result)
-    except KeyboardInterrupt:
-        pass  # what is there is valid, and says itself what is not
     return store.dataset()
 
 

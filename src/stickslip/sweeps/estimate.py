@@ -1,0 +1,75 @@
+"""What a sweep will cost, from a timed sample of its members."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from stickslip.sweeps.outcome import FIRST_FAILURE
+from stickslip.sweeps.plan import Plan
+from stickslip.sweeps.sweep import Runner
+
+LONG_ENOUGH = 2.0
+"""Wall clock (s) from which on a sample is believed."""
+GOLDEN = 0.6180339887498949
+REASON_BYTES = 200
+BLOCK = 4096
+"""Bytes that a file takes at least, and by which it grows."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Cost of a sweep of so many `members` in so many `chunks`: wall clock (s), and the size of its store (bytes, at most).
+
+    It rests on `sampled` members, of which `failed` failed, that took `took` s together.
+    """
+
+    members: int
+    chunks: int
+    seconds: float
+    bytes: int
+    sampled: int
+    failed: int
+    took: float
+
+
+def estimate(plan: Plan, run: Runner) -> Estimate:
+    """Run a sample spread over the design, twice as large every time until it takes long enough to be believed.
+
+    The first member is run before the clock starts: what has to be compiled is compiled with it.
+    """
+    size, wanted = plan.design.size, 1
+    _timed(plan, run, 1)
+    while True:
+        took, failed = _timed(plan, run, wanted)
+        if took >= LONG_ENOUGH or wanted == size:
+            break
+        wanted = min(2 * wanted, size)
+    return Estimate(size, plan.chunks, took / wanted * size, _bytes(plan, failed / wanted), wanted, failed, took)
+
+
+def _timed(plan: Plan, run: Runner, wanted: int) -> tuple[float, int]:
+    """Wall clock (s) of so many members, and how many of them failed."""
+    spread = np.unique((np.arange(1, wanted + 1) * GOLDEN % 1.0 * plan.design.size).astype(np.intp))
+    start = time.perf_counter()
+    done = [result for _, result in run(plan.work, [(0, plan.design.values(spread))])]
+    took = (time.perf_counter() - start) * wanted / len(spread)
+    return took, sum(int((result.status >= FIRST_FAILURE).sum()) for result in done)
+
+
+def _bytes(plan: Plan, failing: float) -> int:
+    """At most: numbers are compressed, by how much depends on them."""
+    series, chunk = plan.work.series, math.prod(plan.tile)
+    reason = 4 + failing * REASON_BYTES
+    of_member = [8] * len(plan.work.quantities) + [1, reason] + ([8 * len(series.times)] * len(series.curves) if series else [])
+    coordinates = [8 * len(column) for column in plan.design.columns] + ([8 * len(series.times)] if series else [])
+    layout = 4 * (len(of_member) + len(coordinates) + 1)  # a folder, its description, and that in the list of all
+    blocks = plan.chunks * sum(_blocks(one * chunk) for one in of_member) + sum(map(_blocks, coordinates)) + layout
+    return BLOCK * blocks
+
+
+def _blocks(size: float) -> int:
+    return 1 + int(size) // BLOCK
