@@ -13,12 +13,14 @@ from matplotlib.figure import Figure
 
 from stickslip.errors import InputError, nearest
 from stickslip.figures.style import styled
+from stickslip.figures.sweep_cells import draw_cells
 from stickslip.figures.sweep_curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweep_maps import draw_maps
 from stickslip.figures.sweep_members import draw_members
 from stickslip.files import write_atomically
 from stickslip.sweeps.design import MEMBER
 from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.recipe import ATTRIBUTE
 
 
 def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None) -> Figure:
@@ -44,20 +46,19 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     status = dataset["status"].transpose(*values.dims)
     kinds = [status.values >= FIRST_FAILURE, status.values == NOT_RUN, np.isnan(values.values)]
     state = xr.Variable(values.dims, np.select(kinds, [2, 3, 1], 0))
-    level = ["level"] if "level" in dataset else []
-    drawn = dataset[[name, *level]].assign(state=state).squeeze(drop=False)
+    drawn = dataset[[name]].assign(state=state).squeeze(drop=False)
     if len(drawn[name].dims) > 3:
         raise InputError(f"plot_sweep: a grid of {len(drawn[name].dims)} keys: select some values first, dataset.sel(KEY=VALUE)")
     if not drawn[name].dims:
         raise InputError("plot_sweep: nothing is varied in this sweep, it has one member")
-    return drawn.assign_attrs(dataset.attrs, quantity=name)
+    title = str(dataset.attrs.get("title", "")).removeprefix("stickslip sweep: ")
+    return drawn.assign_attrs(dataset.attrs, quantity=name, title=title)
 
 
 def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
     values = dataset[name]
-    return (
-        name not in ("status", "level") and values.dims == dataset["status"].dims and bool(np.issubdtype(values.dtype, np.number))
-    )
+    numbers = bool(np.issubdtype(values.dtype, np.number))
+    return numbers and name != "status" and values.dims == dataset["status"].dims
 
 
 @styled
@@ -65,5 +66,5 @@ def draw(dataset: xr.Dataset) -> Figure:
     """The figure that fits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
-        return draw_members(dataset)
+        return draw_cells(dataset) if ATTRIBUTE in dataset.attrs else draw_members(dataset)
     return draw_curves(dataset) if len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES) else draw_maps(dataset)

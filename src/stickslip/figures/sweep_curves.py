@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -34,7 +36,7 @@ def draw_curves(dataset: xr.Dataset) -> Figure:
     axes = grid[0, 0]
     for k, row in enumerate(rows):
         text = value_text(dataset[others[0]][k]) if others else ""
-        look = {"marker": marker, "markersize": 3.0, "linestyle": "none" if across.words else "-"}
+        look: dict[str, Any] = {"marker": marker, "markersize": 3.0, "linestyle": "none" if across.words else "-"}
         if quantity.is_whole:
             look["drawstyle"] = "steps-mid"
         axes.plot(across.values[order], row[order], color=_COLOURS[k], label=text, **look)
@@ -53,7 +55,7 @@ def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
     """Crosses at the foot of the panel."""
     if places.size:
         text = "" if "failed" in axes.get_legend_handles_labels()[1] else "failed"
-        at = {"transform": axes.get_xaxis_transform(), "clip_on": False}
+        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
         axes.plot(places, np.full(len(places), 0.02), "x", color=colour, markersize=4.0, label=text, **at)
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stickslip.figures.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.style import PALE, letter, panels
@@ -28,30 +31,34 @@ def draw_maps(dataset: xr.Dataset) -> Figure:
         draw_map(grid[0, 0], dataset, quantity, colours)
         letter(grid[0, 0], title)
     else:
-        figure, grid = _side_by_side(dataset, quantity, colours, min(lengths, key=lambda name: lengths[name]))
+        third = dataset[min(lengths, key=lambda name: lengths[name])]
+
+        def draw_one(axes: Axes, k: int) -> None:
+            one = quantity.values.isel({third.name: k}), quantity.state.isel({third.name: k})
+            draw_map(axes, dataset, replace(quantity, values=one[0], state=one[1]), colours)
+
+        figure, grid = side_by_side(third, draw_one)
         figure.suptitle(title, fontsize=9.5, fontweight="bold")
     explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity))
     return figure
 
 
-def _side_by_side(dataset: xr.Dataset, quantity: Shown, colours: Colours, third: str) -> tuple[Figure, np.ndarray]:
-    """A map for each value of the third key, or for some of them, evenly chosen."""
-    values = dataset[third]
-    chosen = np.unique(np.linspace(0, values.size - 1, min(values.size, PANELS)).round().astype(int))
+def side_by_side(third: xr.DataArray, draw_one: Callable[[Axes, int], None]) -> tuple[Figure, NDArray[Any]]:
+    """A panel for each value of a key, or for some of them, evenly chosen; `draw_one` is told which."""
+    chosen = np.unique(np.linspace(0, third.size - 1, min(third.size, PANELS)).round().astype(int))
     columns = min(len(chosen), 3)
     rows = -(-len(chosen) // columns)
     figure, grid = panels(rows, columns, (2.4 * columns + 1.2, 2.1 * rows + 1.0), sharex=True, sharey=True)
-    for place, k in enumerate(chosen):
-        axes = grid.flat[place]
-        one = replace(quantity, values=quantity.values.isel({third: k}), state=quantity.state.isel({third: k}))
-        draw_map(axes, dataset, one, colours)
-        letter(axes, value_text(values[k]))
-        axes.yaxis.label.set_visible(place % columns == 0)
+    for place, axes in enumerate(grid.flat):
+        if place >= len(chosen):
+            axes.set_axis_off()
+            continue
+        draw_one(axes, int(chosen[place]))
+        letter(axes, value_text(third[chosen[place]]))
         lowest = place + columns >= len(chosen)
+        axes.yaxis.label.set_visible(place % columns == 0)
         axes.xaxis.label.set_visible(lowest)
         axes.xaxis.set_tick_params(labelbottom=lowest)
-    for axes in list(grid.flat)[len(chosen) :]:
-        axes.set_axis_off()
     return figure, grid
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,8 +14,8 @@ from matplotlib.lines import Line2D
 from stickslip.figures.colours import Colours, colours_of, explain
 from stickslip.figures.style import BLUE, GREY, PALE, letter, panels
 from stickslip.figures.sweep_curves import mark_failed, show_ordinate
-from stickslip.figures.varied import Shown, scaled, shown
-from stickslip.sweeps.design import MEMBER
+from stickslip.figures.varied import Scaled, Shown, scaled, shown
+from stickslip.sweeps.recipe import ATTRIBUTE, Recipe
 
 SIZE = 12.0
 """Area of a point (square points)."""
@@ -19,20 +23,20 @@ SIZE = 12.0
 
 def draw_members(dataset: xr.Dataset) -> Figure:
     """Coloured points over two varied keys; for any other number of them the quantity over each key, whatever the others are."""
-    quantity, names = shown(dataset), varied(dataset)
-    if len(names) == 2:
+    quantity, places = shown(dataset), list(axes_of(dataset).values())
+    if len(places) == 2:
         colours = colours_of(quantity)
         figure, grid = panels(1, 1, (5.4, 4.4))
-        _draw_points(grid[0, 0], dataset, quantity, colours, names)
+        _draw_points(grid[0, 0], quantity, colours, places)
         crosses = Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed", markersize=4.0)
         explain(figure, list(grid.flat), colours, quantity, *([crosses] if quantity.has(2) else []))
     else:
-        columns = min(len(names), 3)
-        rows = -(-len(names) // columns)
-        figure, grid = panels(rows, columns, (2.6 * columns + 1.0, 2.6 * rows + 0.4), sharey=True)
-        for axes, name in zip(grid.flat, names, strict=False):
-            _draw_over(axes, dataset, quantity, name)
-        for axes in list(grid.flat)[len(names) :]:
+        columns = min(len(places), 3)
+        rows = -(-len(places) // columns)
+        figure, grid = panels(rows, columns, (max(2.6 * columns + 1.0, 5.4), max(2.6 * rows + 0.4, 3.8)), sharey=True)
+        for axes, across in zip(grid.flat, places, strict=False):
+            _draw_over(axes, quantity, across)
+        for axes in list(grid.flat)[len(places) :]:
             axes.set_axis_off()
         for axes in grid[:, 0]:
             show_ordinate(axes, quantity)
@@ -40,13 +44,18 @@ def draw_members(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def varied(dataset: xr.Dataset) -> list[str]:
+def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
     """The keys that members differ in."""
-    return [str(name) for name in dataset.coords if dataset[name].dims == (MEMBER,) and name not in (MEMBER, "level")]
+    names = [str(name) for name in json.loads(dataset.attrs["design"])["keys"]]
+    found = {name: scaled(dataset[name]) for name in names}
+    if ATTRIBUTE not in dataset.attrs:
+        return found
+    logarithmic = dict(zip(names, Recipe.read(dataset).logarithmic, strict=True))  # members crowd where the answer changes
+    return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 
-def _draw_points(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours, names: list[str]) -> None:
-    x, y = (scaled(dataset[name]) for name in names)
+def _draw_points(axes: Axes, quantity: Shown, colours: Colours, places: Sequence[Scaled]) -> None:
+    x, y = places
     values, state = quantity.values.values, quantity.state.values
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)
@@ -56,8 +65,7 @@ def _draw_points(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colo
     y.show(axes, "y")
 
 
-def _draw_over(axes: Axes, dataset: xr.Dataset, quantity: Shown, name: str) -> None:
-    across, state = scaled(dataset[name]), quantity.state.values
+def _draw_over(axes: Axes, quantity: Shown, across: Scaled) -> None:
     axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=3.0, rasterized=True)
-    mark_failed(axes, across.values[state == 2])
+    mark_failed(axes, across.values[quantity.state.values == 2])
     across.show(axes, "x")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ Floats = NDArray[np.float64]
 
 SPREAD = 3.0
 """Values that do not span this factor are drawn on a linear axis however they are spread."""
+LONG = 60
+"""Letters in a line of a key's title."""
 NARROW = 500.0
 """Logarithmic axes that span less than this factor have numbers at 1, 2, 5, 10, ..."""
 WIDE = 100.0
@@ -25,10 +28,11 @@ _TEXTS = {"m s-1": "m/s", "J m-2": "J/m²"}
 
 @dataclass(frozen=True)
 class Scaled:
-    """Numbers as they are drawn; words stand at 0, 1, 2, ..."""
+    """Numbers as they are drawn, in a unit of so many SI units (`size`); words stand at 0, 1, 2, ..."""
 
     values: Floats
     label: str
+    size: float = 1.0
     log: bool = False
     words: tuple[str, ...] = ()
 
@@ -37,7 +41,7 @@ class Scaled:
         """Where areas around ascending values meet: half way, on a logarithmic axis in the logarithm."""
         place = np.log(self.values) if self.log else self.values
         if len(place) == 1:
-            return self.values[0] + np.array([-0.5, 0.5])
+            return np.asarray(self.values[0] + np.array([-0.5, 0.5]))
         between = 0.5 * (place[1:] + place[:-1])
         edges = np.concatenate([[2.0 * place[0] - between[0]], between, [2.0 * place[-1] - between[-1]]])
         return np.asarray(np.exp(edges) if self.log else edges)
@@ -65,7 +69,7 @@ def scaled(variable: xr.DataArray, name: str = "") -> Scaled:
     values = np.asarray(variable.values, float)
     known = np.abs(values[np.isfinite(values)])
     unit, size = unit_of(variable.attrs.get("units", "1"), float(known.max()) if known.size else 1.0)
-    return Scaled(values / size, name + (f" ({unit})" if unit != "1" else ""), is_logarithmic(values))
+    return Scaled(values / size, name + (f" ({unit})" if unit != "1" else ""), size, is_logarithmic(values))
 
 
 def unit_of(units: str, largest: float) -> tuple[str, float]:
@@ -130,5 +134,5 @@ def shown(dataset: xr.Dataset) -> Shown:
     """The quantity of a figure's dataset, in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
     unit, size = unit_of(values.attrs.get("units", "1"), float(np.nanmax(np.abs(values), initial=0.0)))
-    title = values.attrs.get("long_name", str(values.name)) + (f" ({unit})" if unit != "1" else "")
+    title = textwrap.fill(values.attrs.get("long_name", str(values.name)) + (f" ({unit})" if unit != "1" else ""), LONG)
     return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs)

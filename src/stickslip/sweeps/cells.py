@@ -49,7 +49,7 @@ class Lattice:
 
     def fractions(self, points: Integers) -> Floats:
         """Where points lie, from 0 to 1 along each axis; shape (points, axes) both."""
-        return points / (np.array(self.shape) - 1.0)
+        return np.asarray(points / (np.array(self.shape) - 1.0))
 
     def levels(self, points: Integers) -> Integers:
         """How often the grid must be halved to have each point; 0 for the coarse grid."""
@@ -142,12 +142,12 @@ class Refined:
         The boundary is nowhere farther from one than half a cell's size along an axis.
         """
         finest = self.changes & (self.cells.level == self.lattice.depth)
-        return (self.cells.corner[finest] + 0.5) / (np.array(self.lattice.shape) - 1.0)
+        return np.asarray((self.cells.corner[finest] + 0.5) / (np.array(self.lattice.shape) - 1.0))
 
 
 def unequal(least: Floats, most: Floats) -> NDArray[np.bool_]:
     """Whole numbers differ."""
-    return least < most
+    return np.asarray(least < most)
 
 
 def apart(factor: float) -> Differ:
@@ -155,7 +155,7 @@ def apart(factor: float) -> Differ:
 
     def differ(least: Floats, most: Floats) -> NDArray[np.bool_]:
         smaller, larger = np.sort(np.abs([least, most]), axis=0)
-        return (larger > factor * smaller) | (least * most < 0.0)
+        return np.asarray((larger > factor * smaller) | (least * most < 0.0))
 
     return differ
 

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from stickslip.errors import InputError
 from stickslip.evolution.checkpoint import engine
@@ -54,7 +54,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         with Client(_answering(scheduler), set_as_default=False) as client:
             yield client
     else:
-        local = LocalCluster(n_workers=_checked(workers), threads_per_worker=1, dashboard_address=None)
+        local = LocalCluster(n_workers=_checked(workers), threads_per_worker=1, dashboard_address=":0")
         with local, Client(local, set_as_default=False) as client:
             yield client
 

@@ -10,6 +10,7 @@ from typing import Self
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from stickslip.errors import InputError
 from stickslip.sweeps.axis import Axis
@@ -90,7 +91,14 @@ class RefinedMap:
     low: dict[str, Floats]
     high: dict[str, Floats]
     answer: Floats
-    changes: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    changes: NDArray[np.bool_]
+
+    def at(self, key: str, value: float) -> RefinedMap:
+        """The cells that a value of one of the keys cuts; of two that touch there, the upper."""
+        low, high = self.low[key], self.high[key]
+        rows = (low <= value) & ((value < high) | (high == high.max()) & (value == high))
+        lower, upper = ({name: one[rows] for name, one in side.items()} for side in (self.low, self.high))
+        return RefinedMap(lower, upper, self.answer[rows], self.changes[rows])
 
 
 def cells_of(dataset: xr.Dataset) -> RefinedMap:
@@ -100,7 +108,7 @@ def cells_of(dataset: xr.Dataset) -> RefinedMap:
     cells = found.cells
     size = (2 ** (recipe.depth - cells.level))[:, np.newaxis]
     low, high = (dict(zip(recipe.columns, recipe.values(corner), strict=True)) for corner in (cells.corner, cells.corner + size))
-    return RefinedMap(low, high, np.where(found.changes, np.nan, cells.least), found.changes)
+    return RefinedMap(low, high, np.where(found.changes, np.nan, 0.5 * (cells.least + cells.most)), found.changes)
 
 
 def _again(recipe: Recipe, answers: Floats) -> Refined:

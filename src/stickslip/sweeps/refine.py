@@ -144,7 +144,7 @@ class _Search:
     def there(self, place: Path) -> xr.Dataset:
         """What is kept at `place`. Raises InputError if it is of another search."""
         try:
-            found = xr.open_zarr(place, chunks=None)
+            found: xr.Dataset = xr.open_zarr(place, chunks=None)
         except (OSError, ValueError, KeyError):
             raise InputError(f"{place}: is there, and is no store of a sweep: choose another name") from None
         for name, ours in self.attributes.items():

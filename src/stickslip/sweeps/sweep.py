@@ -98,7 +98,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
 
     if threads is not None or (workers is not None and scheduler is not None):
         raise InputError(
-            "sweep: give one of threads, workers (a local cluster) and scheduler (the address of a cluster that is there)"
+            "sweep: give one of threads, workers (processes of a cluster of its own) and scheduler (of another cluster)"
         )
     with cluster(scheduler, workers) as client:
         yield on_cluster(client)
