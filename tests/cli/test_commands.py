@@ -16,7 +16,7 @@ from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from stickslip.studies import ensemble as ensembles
 
-COMMANDS = ["run", "check", "new", "compare", "analogy", "export", "regularise", "ensemble", "paper"]
+COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.plan import Plan
 
+_NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
 """Reasons of failures that are shown."""
 
@@ -60,12 +62,22 @@ def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.nd
     screen = console()
     for code, count in sorted(Counter(status.tolist()).items()):
         screen.print(f"{count} {MEANINGS[code].replace('_', ' ')}")
-        told = Counter(reasons[status == code].tolist()) if code >= FIRST_FAILURE else Counter()
-        for reason, times in told.most_common(FIRST):
-            screen.print(f"  {times}: {clean(reason)}", soft_wrap=True)
-        if len(told) > FIRST:
-            screen.print(f"  and {len(told) - FIRST} other reasons")
+        if code >= FIRST_FAILURE:
+            _show_reasons(reasons[status == code].tolist())
     screen.print()
+
+
+def _show_reasons(reasons: list[str]) -> None:
+    """The most frequent ones, those together that differ in their numbers only."""
+    alike: dict[str, list[str]] = {}
+    for reason in reasons:
+        alike.setdefault(_NUMBER.sub("#", reason), []).append(reason)
+    told = sorted(alike.values(), key=len, reverse=True)
+    screen = console()
+    for group in told[:FIRST]:
+        screen.print(f"  {len(group)}: {clean(group[0])}" + (" (and the like)" if len(set(group)) > 1 else ""), soft_wrap=True)
+    if len(told) > FIRST:
+        screen.print(f"  and {len(told) - FIRST} other reasons")
 
 
 def _show_quantities(plan: Plan, dataset: xr.Dataset) -> None:

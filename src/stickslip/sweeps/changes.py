@@ -38,7 +38,7 @@ def changes(dataset: xr.Dataset, name: str) -> list[Change]:
             continue
         along = np.moveaxis(values.to_numpy(), axis, 0)
         differ = (along[1:] != along[:-1]) & np.isfinite(along[1:]) & np.isfinite(along[:-1])
-        at = np.flatnonzero(differ.reshape(len(differ), -1).any(axis=1))
+        at = np.flatnonzero(differ.any(axis=tuple(range(1, differ.ndim))))
         if at.size:
             places = dataset[key].to_numpy()
             found.append(

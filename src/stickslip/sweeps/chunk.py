@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,10 +98,9 @@ def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i:
         status = solution.status
         _fail(result, i, code, f"{status.name} at {solution.history.duration:.9g} s: {status.message}")
         return
-    for one in work.quantities:
-        result.results[one.name][i] = one.value(solution)
-    for name, samples in (work.series.of(solution) if work.series else {}).items():
-        result.results[name][i] = samples
+    found: dict[str, Any] = {one.name: one.value(solution) for one in work.quantities}
+    for name, value in (found | work.series.of(solution) if work.series else found).items():
+        result.results[name][i] = value
     result.status[i] = code
 
 

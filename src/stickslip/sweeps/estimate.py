@@ -7,6 +7,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.sweeps.outcome import FIRST_FAILURE
 from stickslip.sweeps.plan import Plan
@@ -42,22 +43,29 @@ def estimate(plan: Plan, run: Runner) -> Estimate:
     The first member is run before the clock starts: what has to be compiled is compiled with it.
     """
     size, wanted = plan.design.size, 1
-    _timed(plan, run, 1)
+    _timed(plan, run, _spread(size, 1))
     while True:
-        took, failed = _timed(plan, run, wanted)
+        members = _spread(size, wanted)
+        took, failed = _timed(plan, run, members)
         if took >= LONG_ENOUGH or wanted == size:
             break
         wanted = min(2 * wanted, size)
-    return Estimate(size, plan.chunks, took / wanted * size, _bytes(plan, failed / wanted), wanted, failed, took)
+    sampled = len(members)
+    return Estimate(size, plan.chunks, took / sampled * size, _bytes(plan, failed / sampled), sampled, failed, took)
 
 
-def _timed(plan: Plan, run: Runner, wanted: int) -> tuple[float, int]:
-    """Wall clock (s) of so many members, and how many of them failed."""
-    spread = np.unique((np.arange(1, wanted + 1) * GOLDEN % 1.0 * plan.design.size).astype(np.intp))
+def _spread(size: int, wanted: int) -> NDArray[np.intp]:
+    """Numbers of so many members, or somewhat fewer, spread over the design: multiples of the golden ratio."""
+    if wanted == size:
+        return np.arange(size)
+    return np.unique((np.arange(1, wanted + 1) * GOLDEN % 1.0 * size).astype(np.intp))
+
+
+def _timed(plan: Plan, run: Runner, members: NDArray[np.intp]) -> tuple[float, int]:
+    """Wall clock (s) of members, and how many of them failed."""
     start = time.perf_counter()
-    done = [result for _, result in run(plan.work, [(0, plan.design.values(spread))])]
-    took = (time.perf_counter() - start) * wanted / len(spread)
-    return took, sum(int((result.status >= FIRST_FAILURE).sum()) for result in done)
+    done = [result for _, result in run(plan.work, [(0, plan.design.values(members))])]
+    return time.perf_counter() - start, sum(int((result.status >= FIRST_FAILURE).sum()) for result in done)
 
 
 def _bytes(plan: Plan, failing: float) -> int:

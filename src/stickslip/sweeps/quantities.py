@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -145,6 +146,10 @@ QUANTITIES = {one.name: one for one in _ALL}
 """Those that are known by their name."""
 DEFAULT = ("events", "pulses", "slip", "peak_rate", "first_duration", "recurrence", "arrested")
 
+TAKEN = ("status", "reason", "time", "member")
+"""Other names in the dataset."""
+_NAME = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
+
 Wanted = str | tuple[str, str, Callable[["Solution"], Any]] | Summary
 """A quantity by its name; one of the user's own as (name, unit, function of a solution), or in full."""
 
@@ -171,4 +176,6 @@ def _one(item: Wanted) -> Summary:
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
     name, unit, of = item
+    if name in QUANTITIES or name in TAKEN or not _NAME.fullmatch(name):
+        raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, of letters, digits, blanks and _")
     return Summary(name, unit, name, of)

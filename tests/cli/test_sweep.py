@@ -1,0 +1,105 @@
+"""`stickslip sweep` says what it did, what it would do, and what it cannot do."""
+
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from typer import Context
+
+from stickslip.cli.names import complete_design, complete_quantity, complete_vary
+from stickslip.cli.sweep import so_far
+from stickslip.sweeps.sweep import Report
+
+MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
+
+
+def test_it_says_what_came_of_it(command):
+    shown = command(*MAP, "--out", "map.zarr")
+    assert (shown.code, shown.err) == (0, "")
+    assert "4 x 2 = 8 members over friction.alpha, body.thickness" in shown.out
+    assert "\n8 finished\n" in shown.out
+    assert "events: 0 2 times, 1 6 times; changes along friction.alpha between 0.1 s/m and 0.4 s/m" in shown.out
+    assert shown.out.endswith("written: map.zarr\n")
+    with xr.open_zarr("map.zarr") as found:
+        assert found.events.values.tolist() == [[0, 0], [1, 1], [1, 1], [1, 1]]
+
+
+def test_quantities_series_and_tables_are_taken(command, tmp_path: Path):
+    (tmp_path / "members.csv").write_text("friction.alpha,thickness\n1,1 km\n0.5 s/m,2 km\n")
+    asked = ["--list", "members.csv", "-q", "slip", "-q", "heat", "--series", "slip, load", "--samples", "7", "--out", "list.zarr"]
+    shown = command("sweep", "fig6-slab", *asked)
+    assert shown.code == 0
+    assert "2 members of a list over friction.alpha, body.thickness" in shown.out
+    with xr.open_zarr("list.zarr") as found:
+        assert set(found) == {"slip", "heat", "series_slip", "series_load", "status", "reason"}
+        assert found["body.thickness"].values.tolist() == [1000.0, 2000.0]
+        assert found.sizes == {"member": 2, "time": 7}
+
+
+def test_samples_are_drawn(command):
+    shown = command("sweep", "fig6-slab", "-v", "alpha=0.1..1:log", "--design", "lhs", "-m", "6", "--seed", "3")
+    assert shown.code == 0
+    assert "6 members drawn as a Latin hypercube over friction.alpha" in shown.out
+
+
+def test_a_dry_run_writes_nothing(command, tmp_path: Path):
+    shown = command(*MAP, "--out", "map.zarr", "--dry-run")
+    assert shown.code == 0
+    assert "4 x 2 = 8 members" in shown.out
+    assert "time: about" in shown.out
+    assert "disk: at most" in shown.out
+    assert "from a sample of 8" in shown.out
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_failures_are_counted_with_their_reasons(command):
+    shown = command("sweep", "fig6-slab", "-v", "loading.far_stress_rate=0,1,2")
+    assert shown.code == 0
+    assert "1 finished\n2 bad parameters\n  2: member: [loading] far_stress and far_stress_rate need a slab" in shown.out
+    assert command("sweep", "fig6-slab", "-v", "loading.far_stress_rate=1,2").code == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "sweep: needs either --vary or --list, got neither"),
+        (["-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
+        (["-v", "alpa=1,2"], "--vary: 'alpa' is no key of this scenario; did you mean 'alpha'?"),
+        (["-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
+        (["-v", "thickness=1..2 kg:3"], "--vary: body.thickness must be a number in m"),
+        (["-v", "alpha=1,2", "-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
+        (["-v", "alpha=1,2", "--series", "slop"], "sweep: series 'slop' is unknown; did you mean 'slip'?"),
+        (["-v", "alpha=1,2", "--design", "sobol"], "sweep: design 'sobol' is unknown; allowed: grid, lhs, random"),
+        (["-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
+        (["-v", "alpha=1,2", "--out", "no/map.zarr"], "--out no/map.zarr: there is no folder no"),
+        (["-v", "alpha=1,2", "--threads", "0"], "sweep: threads must be a whole number above 0, got 0"),
+        (["-v", "alpha=1,2", "--chunk", "0"], "sweep: chunk must be a whole number of members above 0, got 0"),
+        (["--list", "no.csv"], "--list no.csv: no such file"),
+        (["-v", "alpha=1..2", "--design", "lhs"], "sweep: members must be a whole number above 0 for the design lhs, got None"),
+    ],
+)
+def test_bad_input_is_one_line(command, tmp_path: Path, arguments, said):
+    shown = command("sweep", "fig6-slab", *arguments)
+    assert (shown.code, shown.out) == (2, "")
+    assert shown.err.startswith(f"stickslip: {said}")
+    assert shown.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_progress_is_one_line():
+    assert so_far(Report(0, 0, 100, float("nan"), float("nan"))) == "0 of 100 members"
+    assert so_far(Report(50, 2, 100, 12.5, 240.0)) == "50 of 100 members, 12.5 a second, 4 min left, 2 failed"
+
+
+def test_keys_quantities_and_designs_are_completed():
+    from typer.main import get_command
+
+    from stickslip.cli.main import app
+
+    context = Context(get_command(app))
+    context.params = {"scenario": "fig6-slab"}
+    assert complete_vary(context, "friction.") == ["friction.static=", "friction.dynamic=", "friction.alpha="]
+    context.params = {"scenario": "no such"}
+    assert complete_vary(context, "friction.") == []
+    assert complete_quantity("recu") == ["recurrence", "recurrence_cv"]
+    assert complete_design("") == ["grid", "random", "lhs"]

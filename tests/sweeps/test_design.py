@@ -1,0 +1,217 @@
+"""Axes, grids, samples and lists: which members there are, in SI, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.sweeps.design import read_design
+from stickslip.sweeps.keys import key_named, keys_of
+from stickslip.sweeps.plan import make_plan, tile_of
+
+SLAB = load_scenario("fig6-slab")
+NESTED = load_scenario("block-or-slab")
+
+
+def values(text: str) -> Any:
+    return read_design(SLAB, text).columns[0]
+
+
+def test_a_range_is_even_or_in_equal_ratios_and_in_si() -> None:
+    np.testing.assert_allclose(values("friction.alpha=0.5..2:4"), [0.5, 1.0, 1.5, 2.0], rtol=1e-15, atol=0)
+    thickness = values("body.thickness=1km..100 km:3:log")
+    np.testing.assert_allclose(thickness, [1e3, 1e4, 1e5], rtol=1e-14, atol=0)
+    assert thickness[0] == 1e3
+    assert thickness[-1] == 1e5
+    rates = values("loading.pull_rate=1 mm/year..1 m/year:4:log") * ss.YEAR
+    np.testing.assert_allclose(rates, [1e-3, 1e-2, 1e-1, 1.0], rtol=1e-14, atol=0)
+
+
+def test_a_list_is_in_si_and_keeps_its_order() -> None:
+    assert values("body.thickness=20 km,1000,5e3 m").tolist() == [20e3, 1e3, 5e3]
+    assert values("run.selection=maxwell, perfect-delay").tolist() == ["maxwell", "perfect-delay"]
+    assert read_design(SLAB, {"friction.alpha": np.array([1.0, 2.0])}).columns[0].tolist() == [1.0, 2.0]
+    assert read_design(SLAB, {"body.thickness": ["1 km", 5]}).columns[0].tolist() == [1e3, 5.0]
+
+
+def test_the_end_of_a_name_is_enough() -> None:
+    assert [key.name for key in read_design(SLAB, ["alpha=1,2", "pull_rate=1"]).keys] == ["friction.alpha", "loading.pull_rate"]
+
+
+def test_a_grid_has_every_combination_and_its_last_axis_runs_fastest() -> None:
+    design = read_design(SLAB, {"friction.alpha": [1.0, 2.0], "body.thickness": [10.0, 20.0, 30.0]})
+    assert (design.shape, design.size, design.dims) == ((2, 3), 6, ("friction.alpha", "body.thickness"))
+    every = design.values(slice(None))
+    assert every["friction.alpha"].tolist() == [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+    assert every["body.thickness"].tolist() == [10.0, 20.0, 30.0, 10.0, 20.0, 30.0]
+    assert design.values(np.array([4]))["body.thickness"].tolist() == [20.0]
+
+
+@pytest.mark.parametrize("kind", ["random", "lhs"])
+def test_samples_lie_between_the_ends_and_follow_the_seed(kind: str) -> None:
+    vary = ["alpha=0.1..10:log", "thickness=1km..5km", "run.selection=maxwell,minimal"]
+    design, again, other = (read_design(SLAB, vary, kind, 1000, seed) for seed in (3, 3, 4))
+    alpha, thickness, rule = design.columns
+    assert 0.1 <= alpha.min() < 0.11
+    assert 9.0 < alpha.max() <= 10.0
+    assert abs(np.median(np.log10(alpha))) < 0.15  # even in the logarithm: its median would be 0.7 if it were even in alpha
+    assert 1e3 <= thickness.min() < thickness.max() <= 5e3
+    assert set(rule.tolist()) == {"maxwell", "minimal"}
+    assert all((one == same).all() for one, same in zip(design.columns, again.columns, strict=True))
+    assert not (design.columns[0] == other.columns[0]).any()
+    assert design.dims == ("member",)
+
+
+def test_a_latin_hypercube_has_one_member_in_each_part_of_every_axis() -> None:
+    columns = {kind: read_design(SLAB, ["alpha=0..1", "static=0.3..0.8"], kind, 50, 1).columns for kind in ("lhs", "random")}
+    parts = {
+        kind: [np.unique(np.floor((c - low) / wide * 50)).size for c, low, wide in zip(two, (0, 0.3), (1, 0.5), strict=True)]
+        for kind, two in columns.items()
+    }
+    assert parts["lhs"] == [50, 50]
+    assert max(parts["random"]) < 45
+
+
+def test_a_table_is_a_list_of_members(tmp_path: Path) -> None:
+    path = tmp_path / "members.csv"
+    path.write_text("# ours\nthickness, run.selection,friction.alpha\n1 km,maxwell,1\n2000,minimal,2e0\n")
+    for table in (path, pd.DataFrame({"body.thickness": ["1 km", 2e3], "run.selection": ["maxwell", "minimal"], "alpha": [1, 2]})):
+        design = read_design(SLAB, table)
+        assert [key.name for key in design.keys] == ["body.thickness", "run.selection", "friction.alpha"]
+        assert [column.tolist() for column in design.columns] == [[1e3, 2e3], ["maxwell", "minimal"], [1.0, 2.0]]
+        assert (design.kind, design.dims, design.size) == ("list", ("member",), 2)
+
+
+def test_keys_reach_everything_with_a_unit() -> None:
+    keys = {key.name: key for key in keys_of(NESTED)}
+    assert keys["friction.parameters.wavelength"].unit == "m"
+    assert keys["friction.parameters.alpha"].unit == "m^-1 s"
+    assert keys["friction.parameters.a"].unit == "1"
+    assert {"body.thickness", "loading.pull_rate", "initial.excess", "run.duration", "run.rtol", "run.events"} <= set(keys)
+    parts = [key.name for key in keys_of(load_scenario("cycles-slab"))]
+    assert {"friction.memory", "body.contact_mass"} <= set(parts)
+
+
+LAW = """
+[friction]
+kind = "sum"
+
+[friction.slip]
+kind = "piecewise-linear-slip"
+slips = [0.0, 1.0]
+coefficients = [0.5, 0.2]
+
+[friction.rate]
+kind = "hyperbolic-rate"
+static = 0.3
+dynamic = 0.2
+alpha = 1.0
+
+"""
+
+
+def sum_of_laws() -> Scenario:
+    text = SLAB.to_toml()
+    return read_scenario(text[: text.index("[friction]")] + LAW + text[text.index("[loading]") :], "sum")
+
+
+def test_keys_reach_parts_and_series_of_a_law() -> None:
+    plan = make_plan(sum_of_laws(), ["friction.rate.alpha=1,2", "friction.slip.coefficients[1]=0.1,0.3"])
+    member = plan.work.members.scenario({"friction.rate.alpha": 2.0, "friction.slip.coefficients[1]": 0.3})
+    assert member.problem.friction.rate.alpha == 2.0  # type: ignore[attr-defined]
+    assert member.problem.friction.slip.coefficients == (0.5, 0.3)  # type: ignore[attr-defined]
+
+
+def test_an_ambiguous_name_asks_which() -> None:
+    text = sum_of_laws().to_toml().replace('kind = "piecewise-linear-slip"', 'kind = "linear-slip-weakening"')
+    text = text.replace(
+        "slips = [\n    0.0,\n    1.0,\n]\ncoefficients = [\n    0.5,\n    0.2,\n]", "static = 0.4\ndynamic = 0.2\ndistance = 1.0"
+    )
+    with pytest.raises(ss.InputError, match=r"'static' may be any of friction.slip.static, friction.rate.static: say which"):
+        key_named(read_scenario(text, "sum"), "static", "--vary")
+
+
+BAD = {
+    "friction.alpa=1..2:3": "'friction.alpa' is no key of this scenario; did you mean 'friction.alpha'?",
+    "thicknes=1..2:3": "'thicknes' is no key of this scenario; did you mean 'thickness'?",
+    "friction.alpha": 'must be "KEY=LOW..HIGH:POINTS"',
+    "friction.alpha=": 'must be "KEY=LOW..HIGH:POINTS"',
+    "=1..2:3": 'must be "KEY=LOW..HIGH:POINTS"',
+    "friction.alpha=1..2": "needs a number of points",
+    "friction.alpha=1..2:1": "needs at least 2 points",
+    "friction.alpha=1..2:99999999": "at most 10000000 are allowed",
+    "friction.alpha=2..1:5": "must go from a smaller to a larger number, got 2 to 1 s/m",
+    "friction.alpha=0..1:5:log": "must be above 0 for :log",
+    "friction.alpha=1..2:x": "friction.alpha must be a number in s/m",
+    "friction.alpha=1..2 km:5": "'2 km': 'km' does not convert to s/m",
+    "friction.alpha=1,1": "has the value 1.0 twice",
+    "friction.alpha=-1..1:5": "friction.alpha must be",
+    "friction.alpha=nan,1": "must be finite",
+    "body.thickness=rigid,1": "body.thickness must be a number in m",
+    "body.driver_impedance=1..rigid:5": "must go from a smaller to a larger number",
+    "run.selection=maxwel": "run.selection 'maxwel' is unknown; did you mean 'maxwell'?",
+    "run.selection=a..b:3": "has no numbers between which to go",
+    "friction.alpha=1,,2": "friction.alpha must be a number",
+    "body.kind=spring-block": "is no key of this scenario",
+}
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_bad_axes_are_one_line(text: str) -> None:
+    with pytest.raises(ss.InputError, match=r"^--vary") as told:
+        read_design(SLAB, text, where="--vary")
+    assert BAD[text] in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
+    ({"vary": []}, "what is to be varied?"),
+    ({"vary": ["alpha=1,2", "friction.alpha=3"]}, "friction.alpha is varied twice"),
+    ({"vary": ["initial.load=1", "initial.excess=1"]}, "exclude each other"),
+    ({"vary": "alpha=1,2", "kind": "lh"}, "design 'lh' is unknown"),
+    ({"vary": "alpha=1,2", "members": 5}, "members belongs to"),
+    ({"vary": "alpha=1..2", "kind": "lhs"}, "members must be a whole number above 0"),
+    ({"vary": "alpha=1..2", "kind": "lhs", "members": 0}, "members must be a whole number above 0"),
+    ({"vary": "alpha=1..2", "kind": "lhs", "members": 5, "seed": -1}, "seed must be a whole number"),
+    ({"vary": "alpha=1..2:5", "kind": "random", "members": 5}, "needs no number of points"),
+    ({"vary": Path("no.csv")}, "no such file"),
+    ({"vary": pd.DataFrame({"alpha": []})}, "has no members"),
+    ({"vary": pd.DataFrame({"alpha": ["1 km"]})}, "does not convert to s/m"),
+    ({"vary": {"alpha": []}}, "needs at least one value"),
+    ({"vary": {"alpha": 5}}, "must be a text or a list of values"),
+]
+
+
+@pytest.mark.parametrize(("asked", "said"), BAD_DESIGNS, ids=lambda one: str(one)[:40])
+def test_bad_designs_are_one_line(asked: dict[str, Any], said: str) -> None:
+    with pytest.raises(ss.InputError) as told:
+        read_design(SLAB, **asked)
+    assert said in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_a_file_that_is_no_table_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "members.csv"
+    for content in (b"", b"\xff\xfe\x00", b"alpha\n1,2,3\n1\n", b"alpha,alpha\n1,2\n"):
+        path.write_bytes(content)
+        with pytest.raises(ss.InputError) as told:
+            read_design(SLAB, path)
+        assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("shape", "size"), [((40, 30), 18), ((40, 30), 64), ((7,), 3), ((3, 4, 5), 20), ((3, 4, 5), 1), ((2, 2), 99)]
+)
+def test_chunks_hold_every_member_once(shape: tuple[int, ...], size: int) -> None:
+    axes = {name: np.arange(1.0, n + 1.0) for name, n in zip(("alpha", "thickness", "density"), shape, strict=False)}
+    plan = make_plan(SLAB, axes, chunk=size)
+    found = [plan.members(chunk) for chunk in range(plan.chunks)]
+    assert max(len(one) for one in found) <= size
+    assert sorted(np.concatenate(found).tolist()) == list(range(plan.design.size))
+    assert plan.tile == tile_of(shape, size)

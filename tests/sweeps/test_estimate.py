@@ -1,0 +1,71 @@
+"""What a sweep is said to cost is about what it costs; where its answer changes is where it changes."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from stickslip.sweeps.changes import Change, cases, changes
+from stickslip.sweeps.estimate import estimate
+from stickslip.sweeps.plan import make_plan
+from stickslip.sweeps.sweep import carry_out, on_threads
+
+
+@pytest.mark.parametrize("series", [[], ["slip", "slip_rate"]])
+def test_cost_is_about_what_it_turns_out_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, series: list[str]) -> None:
+    monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.2)
+    plan = make_plan("fig5-slab-reconstructed", ["thickness=5km..20km:10", "density=2000..3000:9"], series=series, samples=1000)
+    found, run = estimate(plan, on_threads(1)), on_threads(1)
+    start = time.perf_counter()
+    carry_out(plan, tmp_path / "map.zarr", run)
+    took = time.perf_counter() - start
+    assert (found.members, found.chunks) == (90, 10)
+    assert 1 < found.sampled <= 90
+    assert found.seconds / 5 < took < found.seconds * 5  # tests share their cores with others
+    size = sum(path.stat().st_size for path in (tmp_path / "map.zarr").rglob("*") if path.is_file())
+    blocks = sum(-(-path.stat().st_size // 4096) for path in (tmp_path / "map.zarr").rglob("*"))
+    assert size < found.bytes < 2 * 4096 * blocks
+
+
+def test_a_sample_counts_its_failures() -> None:
+    plan = make_plan("fig6-slab", {"loading.far_stress_rate": np.arange(1.0, 41.0)})
+    found = estimate(plan, on_threads(1))
+    assert found.failed == found.sampled > 0
+
+
+def test_what_has_been_compiled_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first member takes a second, the others nothing."""
+    plan, seen = make_plan("fig6-slab", {"friction.alpha": np.linspace(0.1, 2.0, 30)}), []
+    run = on_threads(1)
+
+    def slow_at_first(work, chunks):  # type: ignore[no-untyped-def]
+        if not seen:
+            time.sleep(1.0)
+        seen.append(1)
+        return run(work, chunks)
+
+    monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.0)
+    assert estimate(plan, slow_at_first).seconds < 25.0
+
+
+def small() -> xr.Dataset:
+    counts = [[1.0, 1.0, np.nan], [1.0, 2.0, 3.0]]
+    return xr.Dataset(
+        {"pulses": (("a", "b"), counts), "slip": (("a", "b"), np.arange(6.0).reshape(2, 3) + 0.5)},
+        {"a": [1.0, 2.0], "b": [5.0, 6.0, 9.0]},
+    )
+
+
+def test_changes_are_between_neighbours_that_differ() -> None:
+    assert cases(small(), "pulses") == {1.0: 3, 2.0: 1, 3.0: 1}
+    assert changes(small(), "pulses") == [Change("a", 1, 1.0, 2.0), Change("b", 2, 5.0, 9.0)]
+    assert changes(small().isel(b=[0]), "pulses") == []
+
+
+def test_a_quantity_that_is_no_count_has_no_cases() -> None:
+    assert cases(small(), "slip") == {}
+    assert cases(xr.Dataset({"many": ("a", np.arange(100.0))}), "many") == {}

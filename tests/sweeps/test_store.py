@@ -1,0 +1,253 @@
+"""A sweep that was stopped, killed or ran out of disk goes on, and leaves the store of one that was not, file by file."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stickslip as ss
+from stickslip.cli.main import main
+from stickslip.sweeps.outcome import NOT_RUN
+from stickslip.sweeps.plan import make_plan
+from stickslip.sweeps.store import ResultStore
+from stickslip.sweeps.sweep import Report, carry_out, on_threads
+
+VARY = {"friction.dynamic": [0.3, 0.9, 0.79], "body.thickness": "5km..20km:4"}
+KEPT = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
+CHUNKS, MEMBERS = 6, 12
+
+
+def sweep(out: Path | None, **asked: Any) -> xr.Dataset:
+    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(KEPT | asked))
+
+
+def files(store: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """Files of a sweep that nothing disturbed."""
+    path = tmp_path_factory.mktemp("whole") / "map.zarr"
+    sweep(path)
+    return files(path)
+
+
+def test_a_store_holds_what_a_sweep_gives(tmp_path: Path, whole: dict[str, bytes]) -> None:
+    path = tmp_path / "map.zarr"
+    given = sweep(path).load()
+    assert given.identical(sweep(None))
+    assert files(path) == whole
+    with xr.open_zarr(path) as opened:
+        assert opened.load().equals(given)
+    assert given.slip.dims == ("friction.dynamic", "body.thickness")
+    assert given.slip.sel({"friction.dynamic": 0.3, "body.thickness": 10e3}).item() > 1.0
+    assert given["body.thickness"].attrs["units"] == "m"
+    assert given["body.thickness"].attrs["long_name"]
+    assert given.slip.attrs == {"long_name": "slip of the whole run", "units": "m"}
+    assert given.attrs["source"] == f"stickslip {ss.__version__}"
+    assert "thickness = 10000.0" in given.attrs["scenario"]
+    assert (given.attrs["rtol"], given.attrs["selection_rule"]) == (1e-10, "perfect-delay")
+
+
+def test_samples_and_lists_have_a_member_dimension(tmp_path: Path) -> None:
+    asked = {"vary": ["alpha=0.1..2", "run.selection=maxwell,minimal"], "design": "lhs", "members": 7, "seed": 5}
+    sweep(tmp_path / "sample.zarr", **asked)
+    with xr.open_zarr(tmp_path / "sample.zarr") as found:
+        assert found.slip.dims == ("member",)
+        assert set(found.coords) == {"friction.alpha", "run.selection", "time"}
+        assert set(found["run.selection"].values.tolist()) == {"maxwell", "minimal"}
+        assert found.load().identical(sweep(None, **asked))
+
+
+class Stop:
+    """Presses Ctrl-C when so many members are done."""
+
+    def __init__(self, after: int) -> None:
+        self.after = after
+        self.reports: list[Report] = []
+
+    def __call__(self, report: Report) -> None:
+        self.reports.append(report)
+        if report.done >= self.after:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("after", [2, 6, 10])
+def test_stopped_and_taken_up(tmp_path: Path, whole: dict[str, bytes], after: int) -> None:
+    path = tmp_path / "map.zarr"
+    stopped = sweep(path, progress=Stop(after))
+    assert int((stopped.status != NOT_RUN).sum()) == after
+    assert np.isfinite(stopped.slip.values).sum() == after
+    again = Stop(MEMBERS + 1)
+    sweep(path, progress=again)
+    assert [report.done for report in again.reports] == list(range(after, MEMBERS + 1, 2))
+    assert files(path) == whole
+
+
+def test_ctrl_c_without_a_store_keeps_what_is_there() -> None:
+    stopped = sweep(None, progress=Stop(4))
+    assert int((stopped.status != NOT_RUN).sum()) == 4
+
+
+def test_the_order_of_chunks_does_not_matter(tmp_path: Path, whole: dict[str, bytes]) -> None:
+    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    forwards = on_threads(1)
+    carry_out(plan, path, lambda work, chunks: forwards(work, reversed(list(chunks))))
+    assert files(path) == whole
+
+
+def test_a_chunk_of_another_size_gives_the_same_numbers(tmp_path: Path) -> None:
+    one, other = sweep(None).drop_attrs(), sweep(None, chunk=5).drop_attrs()
+    assert one.identical(other)
+    path = tmp_path / "map.zarr"
+    sweep(path, progress=Stop(2))
+    assert (sweep(path, chunk=5).status.values == 0).all()  # goes on with the chunks with which it was begun
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+import tests.sweeps.test_store as test
+
+rename, left = Path.replace, [int(sys.argv[2])]
+def replace(self, target):
+    left[0] -= self.suffix == ".partial" and "map.zarr" in self.parts
+    if left[0] < 0:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return rename(self, target)
+Path.replace = replace
+test.sweep(Path(sys.argv[1]))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+@pytest.mark.parametrize("writes", [7, 14, 22])
+def test_killed_while_it_writes_and_taken_up(tmp_path: Path, whole: dict[str, bytes], writes: int) -> None:
+    """Killed with a file half written: in the middle of a chunk (five files each), and before its status (14)."""
+    path = tmp_path / "map.zarr"
+    done = subprocess.run([sys.executable, "-c", KILLED, str(path), str(writes)], capture_output=True, text=True, check=False)
+    assert done.returncode == -signal.SIGKILL, done.stderr
+    assert list(path.rglob("*.partial"))
+    with xr.open_zarr(path) as found:
+        there = found.status.values != NOT_RUN
+        assert 0 < there.sum() < MEMBERS
+        assert np.isfinite(found.slip.values[there]).all()
+    again = Stop(MEMBERS + 1)
+    sweep(path, progress=again)
+    assert again.reports[0].done == there.sum()
+    assert files(path) == whole
+
+
+def test_a_full_disk_is_one_line_and_leaves_a_store_that_goes_on(
+    tmp_path: Path, whole: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, rename, left = tmp_path / "map.zarr", Path.replace, [13]
+
+    def replace(self: Path, target: Path) -> Path:
+        left[0] -= self.suffix == ".partial" and path in self.parents
+        if left[0] < 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return rename(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(ss.InputError) as told:
+        sweep(path)
+    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; what is there can be read")
+    with xr.open_zarr(path) as found:
+        assert 0 < int((found.status != NOT_RUN).sum()) < MEMBERS
+    monkeypatch.undo()
+    sweep(path)
+    assert files(path) == whole
+
+
+def test_a_disk_that_is_full_from_the_start_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def replace(self: Path, target: Path) -> Path:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(ss.InputError, match="No space left on device"):
+        sweep(tmp_path / "map.zarr")
+    assert list(tmp_path.iterdir()) == []
+
+
+OTHERS: list[tuple[dict[str, Any], str]] = [
+    ({"vary": VARY | {"body.thickness": "5km..20km:5"}}, "was made with other values of body.thickness"),
+    ({"vary": {"friction.dynamic": [0.3]}}, "was made over friction.dynamic, body.thickness (design grid)"),
+    ({"quantities": ["slip"]}, "was made for other quantities (arrested, pulses, series_slip, slip)"),
+    ({"samples": 6}, "was made with other samples of time"),
+    ({"series": []}, "was made for other quantities"),
+]
+
+
+@pytest.mark.parametrize(("asked", "said"), OTHERS)
+def test_another_sweep_is_refused(tmp_path: Path, whole: dict[str, bytes], asked: dict[str, Any], said: str) -> None:
+    path = tmp_path / "map.zarr"
+    sweep(path)
+    with pytest.raises(ss.InputError) as told:
+        sweep(path, **asked)
+    assert str(told.value).startswith(f"{path}: {said}")
+    assert files(path) == whole
+
+
+def test_another_scenario_and_another_version_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "map.zarr"
+    sweep(path)
+    with pytest.raises(ss.InputError, match="was made from another scenario"):
+        ss.sweep("second-event-maxwell", VARY, out=path, **KEPT)
+    monkeypatch.setattr("stickslip.sweeps.layout.engine", lambda: "another")
+    with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
+        sweep(path)
+
+
+@pytest.mark.parametrize("kind", ["file", "folder", "zarr"])
+def test_what_is_no_sweep_is_left_alone(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "map.zarr"
+    if kind == "file":
+        path.write_text("mine")
+    elif kind == "folder":
+        path.mkdir()
+        (path / "mine").write_text("mine")
+    else:
+        xr.Dataset({"mine": 1}).to_zarr(path, consolidated=False)
+    before = files(tmp_path)
+    with pytest.raises(ss.InputError, match="is there, and is no store of a sweep: choose another name"):
+        sweep(path)
+    assert files(tmp_path) == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs locks")
+def test_two_sweeps_do_not_write_into_one_store(tmp_path: Path) -> None:
+    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    with ResultStore.at(plan, path), pytest.raises(ss.InputError, match="another sweep is writing into it"):
+        sweep(path)
+    assert (sweep(path).status.values == 0).all()
+
+
+def test_the_command_goes_on_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    command = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..2:4", "--out", "map.zarr", "--chunk", "1"]
+    stop = Stop(2)
+    monkeypatch.setattr("stickslip.cli.sweep.so_far", lambda report: stop(report) or "")
+    with pytest.raises(SystemExit) as ended:
+        main(command)
+    assert ended.value.code == 130
+    shown = capsys.readouterr()
+    assert "2 not run" in shown.out
+    assert shown.err == "stickslip: interrupted\n"
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        main(command)
+    assert ended.value.code in (None, 0)
+    assert "4 finished" in capsys.readouterr().out
