@@ -142,5 +142,5 @@ def _why(future: Future) -> str:
     if isinstance(error, InputError):
         raise error
     if isinstance(error, KilledWorker):
-        return f"it ended {error.allowed_failures + 1} workers one after the other (out of memory?)"
+        return f"it ended {error.allowed_failures + 1} worker(s), one after the other (out of memory?)"
     return f"{type(error).__name__}: {error}"
