@@ -59,12 +59,6 @@ def test_without_obspy_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_without_scipy_the_filter_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(sys.modules, "scipy", None)
-    with pytest.raises(ss.InputError, match=r"needs scipy: pip install 'stickslip\[seismology\]'"):
-        RUN.to_scec(tmp_path / "a.txt", 10.0, antialias=True)
-
-
 def test_names_that_say_no_format_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match=r"the name must end in \.mseed or \.sac"):
         RUN.to_seismogram(tmp_path / "a.wav", 10.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +58,7 @@ def sample(
     samples, from the right where one falls on a shock. A shock has no highest frequency: with `antialias` the run is averaged over
     an eighth of the distance of the samples (exactly, where the contact slips) and low-passed to half the sampling rate (linear
     phase, Kaiser window, no delay), which spreads each shock over some samples before and after it. Needs scipy.
-    Raises InputError for a rate that is not positive, times outside the run, more than 2e7 samples, and without scipy.
+    Raises InputError for a rate that is not positive, times outside the run or more than 2e7 samples.
     """
     first, last = (own if given is None else given for own, given in zip(run.shown, (start, end), strict=True))
     if not (0.0 < sampling_rate < math.inf):
@@ -69,7 +68,6 @@ def sample(
         raise InputError(f"samples must lie within the run, {low:g} to {high:g} s, got {first:g} to {last:g} s")
     count = _count((last - first) * sampling_rate, MOST // (FINER * len(NODES)) if antialias else MOST)
     if antialias:
-        _scipy_signal()
         fine = first + np.arange((count - 1) * FINER + 1) / (FINER * sampling_rate)
         return Series(first, sampling_rate, *(_thinned(one) for one in _means(run, fine, 1.0 / (FINER * sampling_rate), x)))
     return Series(first, sampling_rate, *_values(run, np.minimum(first + np.arange(count) / sampling_rate, last), x))
@@ -109,12 +107,6 @@ def _means(run: Readings, time: Floats, width: float, x: float) -> Iterator[Floa
 
 def _thinned(values: Floats) -> Floats:
     """Every eighth value of the low-passed series; both ends go on as they are."""
-    return np.asarray(_scipy_signal().resample_poly(values, 1, FINER, padtype="edge"))
+    from scipy import signal
 
-
-def _scipy_signal() -> Any:
-    try:
-        from scipy import signal
-    except ImportError:
-        raise InputError("the anti-alias filter needs scipy: pip install 'stickslip[seismology]'") from None
-    return signal
+    return np.asarray(signal.resample_poly(values, 1, FINER, padtype="edge"))
