@@ -69,7 +69,12 @@ class Design:
     def __str__(self) -> str:
         if self.is_grid:
             return f"{' x '.join(str(one) for one in self.shape)} = {self.size} members"
-        names = {"random": "drawn at random", "lhs": "drawn as a Latin hypercube", "list": "of a list"}
+        names = {
+            "random": "drawn at random",
+            "lhs": "drawn as a Latin hypercube",
+            "list": "of a list",
+            "refined": "of a refined map",
+        }
         return f"{self.size} members {names[self.kind]}"
 
 

@@ -111,9 +111,8 @@ class _Search:
         """Run members at points, and say what the quantity is."""
         found = carry_out(self.plan(self.members(points)), out, run, self.beyond(progress))
         level = xr.Variable(MEMBER, self.recipe.lattice.levels(points), {"long_name": "how often the coarse grid was halved"})
-        there = found.status.values != NOT_RUN
-        self.rounds.append(found.assign_coords({LEVEL: level}).isel({MEMBER: there}).load())
-        if not there.all():
+        self.rounds.append(found.assign_coords({LEVEL: level}).load())
+        if (found.status == NOT_RUN).any():
             raise _StoppedError
         return _answers(found[self.recipe.quantity], self.recipe.factor)
 
