@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -106,7 +107,7 @@ def sweep(
     Kept unless said otherwise: events, pulses, slip, peak_rate,
     first_duration, recurrence, arrested. A wrong name lists all quantities.
 
-    Exit code: 0 done, 1 every run failed, 2 unusable input, 130 interrupted.
+    Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.files import check_target
     from stickslip.cli.sweep_summary import show_estimate, show_sweep
@@ -134,19 +135,32 @@ def sweep(
         chunk=chunk,
         where="--list" if table else "--vary",
     )
-    if refine is not None:
-        where: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
-        search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
-        plan, found = _refined(plan, vary, search | where)
-    else:
-        with runner_of(threads, workers, scheduler) as run:
-            if dry_run:
-                show_estimate(plan, _estimated(plan, run))
-                return
-            found = _found(plan, out, run)
+    with _losses():
+        if refine is not None:
+            where: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
+            search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
+            plan, found = _refined(plan, vary, search | where)
+        else:
+            with runner_of(threads, workers, scheduler) as run:
+                if dry_run:
+                    show_estimate(plan, _estimated(plan, run))
+                    return
+                found = _found(plan, out, run)
     if figure is not None:
         _draw(found, refine or plan.work.names[0], figure)
     raise typer.Exit(show_sweep(plan, found, out, figure))
+
+
+@contextmanager
+def _losses() -> Iterator[None]:
+    """Say in one line what a cluster has lost."""
+    from stickslip.sweeps.cluster import ChunksLostError
+
+    try:
+        yield
+    except ChunksLostError as error:
+        typer.echo(f"stickslip: {error}", err=True)
+        raise typer.Exit(1) from None
 
 
 def _kept(wanted: Sequence[str], refined: str | None) -> list[str]:

@@ -46,7 +46,7 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     status = dataset["status"].transpose(*values.dims)
     kinds = [status.values >= FIRST_FAILURE, status.values == NOT_RUN, np.isnan(values.values)]
     state = xr.Variable(values.dims, np.select(kinds, [2, 3, 1], 0))
-    drawn = dataset[[name]].assign(state=state).squeeze(drop=False)
+    drawn = dataset[[name]].assign({name: values.where(state == 0), "state": state}).squeeze(drop=False)
     if len(drawn[name].dims) > 3:
         raise InputError(f"plot_sweep: a grid of {len(drawn[name].dims)} keys: select some values first, dataset.sel(KEY=VALUE)")
     if not drawn[name].dims:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -34,6 +35,8 @@ AHEAD = 2
 LEAST = 8
 """Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
 RETRIES = 2
+LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What workers that are started here do first: Ctrl-C reaches them too, but it is for the sweep to end them."""
 
 
 class ChunksLostError(RuntimeError):
@@ -54,7 +57,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         with Client(_answering(scheduler), set_as_default=False) as client:
             yield client
     else:
-        local = LocalCluster(n_workers=_checked(workers), threads_per_worker=1, dashboard_address=":0")
+        many = {"n_workers": _checked(workers), "threads_per_worker": 1}
+        local = LocalCluster(**many, dashboard_address=":0", silence_logs=logging.ERROR, preload=[LEAVE_CTRL_C])
         with local, Client(local, set_as_default=False) as client:
             yield client
 
