@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.observables.energy import energy
 from stickslip.scenarios.scenario import load_scenario, read_scenario
-from stickslip.sweeps.chunk import Work, run_chunk
+from stickslip.sweeps.chunk import Work, one_by_one, run_chunk
 from stickslip.sweeps.outcome import BAD_PARAMETERS, ERROR, MEANINGS
 from stickslip.sweeps.plan import make_plan
 from stickslip.sweeps.quantities import QUANTITIES, quantities_named
@@ -150,10 +150,12 @@ def test_failures_are_recorded_and_stop_nobody() -> None:
 
 def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.sweeps.chunk.MAX_PIECES", 600)
-    dataset = ss.sweep(PULSES, "thickness=100 m,10 km", quantities="slip")
-    assert [MEANINGS[code] for code in dataset.status.values] == ["too_many_pieces", "finished"]
-    assert dataset.reason.values[0].startswith("too many pieces at ")
-    assert np.isfinite(dataset.slip.values).tolist() == [False, True]
+    plan = make_plan(PULSES, "thickness=100 m,10 km", quantities="slip")
+    found = one_by_one(plan.work, plan.values(0))
+    assert [MEANINGS[code] for code in found.status] == ["too_many_pieces", "finished"]
+    assert found.reasons.keys() == {0}
+    assert found.reasons[0].startswith("too many pieces at ")
+    assert np.isfinite(found.results["slip"]).tolist() == [False, True]
 
 
 def test_work_goes_to_other_processes() -> None:
