@@ -1,23 +1,32 @@
-"""What a cluster costs: the same chunks of a sweep in this process and on one worker, for chunks of different lengths.
+"""What a cluster costs: chunks in which nothing is done, and the same chunks of a sweep in this process and on one worker.
 
     python -m benchmarks.cluster
 
-One worker with one thread, so that both do the same work one chunk after the other; the start of the cluster and the first chunk,
-with which the worker loads the engine, are told apart from the rest. The fastest of some runs each, in turns.
+One worker with one thread, so that both do the same work one chunk after the other. The fastest of some runs each, in turns.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING
 
-from stickslip.sweeps.cluster import cluster, on_cluster
+from stickslip.sweeps.axis import Values
+from stickslip.sweeps.chunk import Work
+from stickslip.sweeps.cluster import cluster, on_cluster, stream
 from stickslip.sweeps.plan import Plan, make_plan
 from stickslip.sweeps.sweep import Runner, carry_out, on_threads
 
+if TYPE_CHECKING:
+    from distributed import Client
+
+EMPTY = 200
 CHUNKS = 8
-LENGTHS = (1, 10, 40, 160)
+LENGTHS = (10, 100)
 """Members of a chunk."""
-REPEATS = 5
+REPEATS = 4
+ALLOWED = 0.05
 
 
 def plan_of(length: int) -> Plan:
@@ -25,29 +34,54 @@ def plan_of(length: int) -> Plan:
     return make_plan("fig6-slab", {"friction.alpha": f"0.2..2:{CHUNKS * length}"}, quantities=["slip", "pulses"], chunk=length)
 
 
-def timed(plan: Plan, run: Runner) -> float:
-    """Wall clock (s) of the sweep, store in memory."""
+def nothing(work: Work, values: Mapping[str, Values]) -> Mapping[str, Values]:
+    """A chunk as it is sent and comes back."""
+    return values
+
+
+def timed(function: Callable[[], object]) -> float:
+    """Wall clock (s) of a call."""
     start = time.perf_counter()
-    carry_out(plan, None, run)
+    function()
     return time.perf_counter() - start
 
 
+def of_chunk(client: Client) -> float:
+    """Wall clock (s) of a chunk in which nothing is done, one behind the other."""
+    plan = plan_of(100)
+    chunks = [(number, plan.values(0)) for number in range(EMPTY)]
+    return min(timed(lambda: list(stream(client, partial(nothing, plan.work), chunks))) for _ in range(REPEATS)) / EMPTY
+
+
+def compared(length: int, here: Runner, there: Runner) -> tuple[float, float]:
+    """Wall clock (s) of a chunk in this process, and on a worker."""
+    plan = plan_of(length)
+    runs = [[timed(lambda run=run: carry_out(plan, None, run)) for run in (here, there)] for _ in range(REPEATS)]  # type: ignore[misc]
+    own, other = (min(run[where] for run in runs) / CHUNKS for where in (0, 1))
+    return own, other
+
+
 def main() -> None:
-    """Print the table."""
+    """Print what it costs."""
     here = on_threads(1)
-    timed(plan_of(1), here)
+    carry_out(plan_of(1), None, here)
     start = time.perf_counter()
     with cluster(workers=1) as client:
-        started = time.perf_counter() - start
         there = on_cluster(client)
-        first = timed(plan_of(1), there)
-        print(f"start of the cluster {started:.2f} s, first chunks (engine loaded) {first:.2f} s")  # noqa: T201
-        print("members a chunk   s a chunk here   on a worker   ms more a chunk   overhead")  # noqa: T201
+        carry_out(plan_of(1), None, there)
+        say(f"start of a cluster with one worker, and its first chunks: {time.perf_counter() - start:.1f} s")
+        empty = of_chunk(client)
+        say(
+            f"a chunk in which nothing is done: {1e3 * empty:.1f} ms; below {ALLOWED:.0%} for chunks of {empty / ALLOWED:.2f} s or more"
+        )
         for length in LENGTHS:
-            pairs = [(timed(plan_of(length), here), timed(plan_of(length), there)) for _ in range(REPEATS)]
-            own, other = (min(pair[k] for pair in pairs) / CHUNKS for k in (0, 1))
-            line = f"{length:15d} {own:16.4f} {other:13.4f} {1e3 * (other - own):17.2f} {other / own - 1.0:10.1%}"
-            print(line)  # noqa: T201
+            own, other = compared(length, here, there)
+            say(f"{length} members a chunk: {own:.3f} s here, {other:.3f} s on the worker, {other / own - 1.0:+.1%}")
+
+
+def say(line: str) -> None:
+    """Print at once."""
+    print(line, flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":
