@@ -71,9 +71,7 @@ def main() -> None:
         carry_out(plan_of(1), None, there)
         say(f"start of a cluster with one worker, and its first chunks: {time.perf_counter() - start:.1f} s")
         empty = of_chunk(client)
-        say(
-            f"a chunk in which nothing is done: {1e3 * empty:.1f} ms; below {ALLOWED:.0%} for chunks of {empty / ALLOWED:.2f} s or more"
-        )
+        say(f"an empty chunk: {1e3 * empty:.1f} ms, below {ALLOWED:.0%} for chunks of {empty / ALLOWED:.2f} s and longer")
         for length in LENGTHS:
             own, other = compared(length, here, there)
             say(f"{length} members a chunk: {own:.3f} s here, {other:.3f} s on the worker, {other / own - 1.0:+.1%}")

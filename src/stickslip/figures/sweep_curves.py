@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION, letter, panels
+from stickslip.figures.style import BLUE, GREEN, GREY, PURPLE, VERMILLION, letter, panels
 from stickslip.figures.varied import Shown, scaled, shown, value_text
 
 Floats = NDArray[np.float64]
 
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
+_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
 MOST_CURVES = len(_COLOURS)
 """An axis of at most so many values gives the curves of a family; one of more makes a map."""
 SEPARATE = 40
