@@ -77,9 +77,7 @@ def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     for i in range(count):
         try:
             _run_one(work, {name: column[i : i + 1].tolist()[0] for name, column in values.items()}, result, i)
-        except InputError as error:
-            _fail(result, i, BAD_PARAMETERS, str(error))
-        except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, AssertionError) as error:
+        except Exception as error:  # whatever it is, also in a function of the user's: it must stop nobody else
             _fail(result, i, ERROR, f"{type(error).__name__}: {error}")
     return result
 
@@ -92,7 +90,11 @@ def _nothing(work: Work, count: int) -> ChunkResult:
 
 
 def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:
-    solution = _solved(work.members.scenario(values))
+    try:
+        solution = _solved(work.members.scenario(values))
+    except InputError as error:
+        _fail(result, i, BAD_PARAMETERS, str(error))
+        return
     code = CODE_OF[solution.status.name]
     if code >= FIRST_FAILURE:
         status = solution.status

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -108,11 +110,27 @@ def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progres
     """Run what is missing of a plan. Raises InputError where the store cannot be used."""
     store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
     tally = Tally(store, progress)
-    with store, suppress(KeyboardInterrupt):  # what is there by then is valid, and says itself what is not
+    with store, ctrl_c_breaks_in(), suppress(KeyboardInterrupt):  # what is there by then is valid, and says itself what is not
         for chunk, result in run(plan.work, ((chunk, store.plan.values(chunk)) for chunk in store.missing())):
             store.write(chunk, result)
             tally.add(result)
     return store.dataset()
+
+
+@contextmanager
+def ctrl_c_breaks_in() -> Iterator[None]:
+    """Ctrl-C ends the sweep, not just the run of one member, which would take it for its own and might end just then anyway.
+
+    Handlers that are not Python's own stay as they are; so they do outside the main thread, where none can be set.
+    """
+    ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if ours:
+        signal.signal(signal.SIGINT, lambda number, frame: signal.default_int_handler(number, frame))
+    try:
+        yield
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def on_threads(threads: int | None) -> Runner:
@@ -140,7 +158,8 @@ class Tally:
         self.done = self.members - before[NOT_RUN]
         self.failed = sum(count for code, count in before.items() if code >= FIRST_FAILURE)
         self.tell, self.started, self.before = tell, time.monotonic(), self.done
-        self.report()
+        if self.done:
+            self.report()
 
     def add(self, result: ChunkResult) -> None:
         """Another chunk is done."""
