@@ -21,7 +21,7 @@ from stickslip.figures.varied import Shown
 
 Floats = NDArray[np.float64]
 
-FEW = 8
+FEW = 10
 """At most so many whole numbers have a colour each in a key; more have a scale."""
 TWO = ("#D6E6F4", ORANGE)
 """No and yes, or the only two numbers there are."""
@@ -46,9 +46,9 @@ class Colours:
         return self.cmap(self.norm(value))
 
 
-def colours_of(quantity: Shown) -> Colours:
-    """Colours for the numbers of a quantity: the same wherever they are drawn."""
-    known = quantity.known
+def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
+    """Colours for the numbers of a quantity, or for those of them that are drawn: the same in all panels."""
+    known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
     if quantity.is_flag:
         return _key(np.array([0.0, 1.0]), ("no", "yes"))
     different = np.unique(known)
@@ -87,7 +87,7 @@ def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: 
         heading = quantity.title if colours.key else None
         narrow = {"handlelength": 1.3, "columnspacing": 1.2, "handletextpad": 0.5}
         figure.legend(
-            handles=marks, title=heading, loc="outside lower center", ncols=min(len(marks), 10), title_fontsize=9.0, **narrow
+            handles=marks, title=heading, loc="outside lower center", ncols=min(len(marks), 12), title_fontsize=9.0, **narrow
         )
 
 

@@ -26,7 +26,7 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
     if dataset.attrs["quantity"] != recipe.quantity or len(names) not in (2, 3):
         return draw_members(dataset)
     quantity, cells = shown(dataset), cells_of(dataset)
-    colours, places = colours_of(quantity), axes_of(dataset)
+    colours, places = colours_of(quantity, cells.answer), axes_of(dataset)
     if len(names) == 2:
         figure, grid = panels(1, 1, (5.4, 4.4))
         _draw(grid[0, 0], quantity, colours, cells, places)
