@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip.errors import InputError
 from stickslip.evolution.solution import Solution
-from stickslip.evolution.status import STATUSES
+from stickslip.evolution.status import STATUSES, Status
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.axis import Values
 from stickslip.sweeps.keys import Key
@@ -70,19 +70,24 @@ def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None
     return None  # the place where `stickslip.batch` is plugged in
 
 
+def _of_member(values: Mapping[str, Values], i: int) -> dict[str, float | str]:
+    return {name: column[i : i + 1].tolist()[0] for name, column in values.items()}
+
+
 def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     """Each member as a run of its own. Raises KeyboardInterrupt on Ctrl-C."""
     count = len(next(iter(values.values())))
-    result = _nothing(work, count)
+    result = nothing(work, count)
     for i in range(count):
         try:
-            _run_one(work, {name: column[i : i + 1].tolist()[0] for name, column in values.items()}, result, i)
+            _run_one(work, _of_member(values, i), result, i)
         except Exception as error:  # whatever it is, also in a function of the user's: it must stop nobody else
             _fail(result, i, ERROR, f"{type(error).__name__}: {error}")
     return result
 
 
-def _nothing(work: Work, count: int) -> ChunkResult:
+def nothing(work: Work, count: int) -> ChunkResult:
+    """Room for the results of so many members: NaN, finished."""
     results = {one.name: np.full(count, np.nan) for one in work.quantities}
     if work.series:
         results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
@@ -97,13 +102,16 @@ def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i:
         return
     code = CODE_OF[solution.status.name]
     if code >= FIRST_FAILURE:
-        status = solution.status
-        _fail(result, i, code, f"{status.name} at {solution.history.duration:.9g} s: {status.message}")
+        _fail(result, i, code, _stopped(solution.status, solution.history.duration))
         return
     found: dict[str, Any] = {one.name: one.value(solution) for one in work.quantities}
     for name, value in (found | work.series.of(solution) if work.series else found).items():
         result.results[name][i] = value
     result.status[i] = code
+
+
+def _stopped(status: Status, end: float) -> str:
+    return f"{status.name} at {end:.9g} s: {status.message}"
 
 
 def _solved(scenario: Scenario) -> Solution:

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.sweeps.chunk import nothing
 from stickslip.sweeps.outcome import FIRST_FAILURE
 from stickslip.sweeps.plan import Plan
+from stickslip.sweeps.store import ResultStore
 from stickslip.sweeps.sweep import Runner
 
 LONG_ENOUGH = 2.0
@@ -49,7 +51,8 @@ def estimate(plan: Plan, run: Runner) -> Estimate:
             break
         wanted = min(2 * wanted, size)
     sampled = len(members)
-    return Estimate(size, plan.chunks, took / sampled * size, _bytes(plan, failed / sampled), sampled, failed, took)
+    seconds = took / sampled * size + plan.chunks * _writing(plan)
+    return Estimate(size, plan.chunks, seconds, _bytes(plan, failed / sampled), sampled, failed, took)
 
 
 def _spread(size: int, wanted: int) -> NDArray[np.intp]:
@@ -64,6 +67,17 @@ def _timed(plan: Plan, run: Runner, members: NDArray[np.intp]) -> tuple[float, i
     start = time.perf_counter()
     done = [result for _, result in run(plan.work, [(0, plan.design.values(members))])]
     return time.perf_counter() - start, sum(int((result.status >= FIRST_FAILURE).sum()) for result in done)
+
+
+def _writing(plan: Plan) -> float:
+    """Wall clock (s) of keeping a chunk, from the second that is kept in memory."""
+    store, kept = ResultStore.in_memory(plan), nothing(plan.work, len(plan.members(0)))
+    for values in kept.results.values():
+        values[...] = np.random.default_rng(0).random(values.shape)
+    for _ in range(2):
+        start = time.perf_counter()
+        store.write(0, kept)
+    return time.perf_counter() - start
 
 
 def _bytes(plan: Plan, failing: float) -> int:
