@@ -162,6 +162,14 @@ def test_the_scheduler_of_a_file(two_workers: Client, tmp_path: Path) -> None:
     assert found.slip.values.tobytes() == here.slip.values.tobytes()
 
 
+def test_a_map_is_refined_on_a_cluster(two_workers: Client, tmp_path: Path) -> None:
+    vary = {"friction.alpha": "0.05..0.4:3", "body.normal_stress": "50 MPa..200 MPa:3"}
+    for name, where in (("here", {"threads": 1}), ("there", {"scheduler": two_workers.scheduler.address})):
+        found = ss.refine("fig6-slab", vary, "events", depth=2, quantities="slip", chunk=4, out=tmp_path / f"{name}.zarr", **where)
+        assert found.sizes["member"] > 20
+    assert contents(tmp_path / "there.zarr") == contents(tmp_path / "here.zarr")
+
+
 def test_without_dask(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ss.InputError, match=r"needs dask\.distributed: pip install 'stickslip\[cluster\]'"):

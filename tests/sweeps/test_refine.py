@@ -114,6 +114,14 @@ def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
         refine(tmp_path / "map.zarr", depth=4)
 
 
+def test_it_ends_at_the_most_members_and_says_so() -> None:
+    assert refine().attrs["refinement_complete"] == 1
+    found = refine(most=20)
+    assert found.attrs["refinement_complete"] == 0
+    assert 9 < found.sizes["member"] <= 20
+    assert cells_of(found).changes.any()
+
+
 def test_what_has_no_answer_says_nothing() -> None:
     """Members that are refused are kept with their reason, and nothing is refined towards them."""
     vary = {"loading.far_stress_rate": [0.0, 1.0, 2.0], ALPHA: "0.05..2:5"}

@@ -188,11 +188,13 @@ def _refined(plan: Plan, vary: list[str] | None, options: dict[str, Any]) -> tup
     """The plan of all members of a refined map, and what came of them."""
     from stickslip.cli.show import progress_to
     from stickslip.sweeps.design import Design
-    from stickslip.sweeps.refine import refine
+    from stickslip.sweeps.refine import COMPLETE, refine
 
     with progress_to(f"{plan.scenario.name}:") as tell:
         kept = plan.work.quantities
         found = refine(plan.scenario, vary, quantities=kept, progress=lambda report: tell(so_far(report)), **options)
+    if not found.attrs[COMPLETE]:
+        typer.echo(f"stickslip: the refinement ended after {found.sizes['member']} members: the map is not complete", err=True)
     keys = plan.design.keys
     return replace(plan, design=Design("refined", keys, tuple(found[key.name].values for key in keys))), found
 

@@ -30,6 +30,8 @@ from stickslip.sweeps.sweep import Progress, Runner, carry_out, check_out, runne
 
 DEPTH = 6
 LEVEL = "level"
+COMPLETE = "refinement_complete"
+"""Attribute: 1 where the search came to its end, 0 where it was stopped or ran into the most members that were allowed."""
 
 
 class _StoppedError(Exception):
@@ -59,7 +61,8 @@ def refine(
     cells are halved around which it differs by more than that factor. Members that failed, or have no such number, say nothing.
     Ends early rather than run more than `most` members.
 
-    Returns the members, in the order in which they were run, along the dimension `member`, with their `level` (0: coarse grid);
+    Returns the members, in the order in which they were run, along the dimension `member`, with their `level` (0: coarse grid) and
+    the attribute `refinement_complete` (0 where it ended early); `stickslip.sweeps.recipe.cells_of` finds the cells in it again;
     all else is as for `stickslip.sweep`, also what goes on after a kill. Raises InputError like it.
     """
     chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
@@ -97,12 +100,12 @@ class _Search:
             return self.round(points, None if folder is None else folder / f"{len(self.rounds):03d}.zarr", run, progress)
 
         try:
-            refine_cells(self.recipe.lattice, evaluate, self.recipe.differ, self.recipe.most)
+            complete = refine_cells(self.recipe.lattice, evaluate, self.recipe.differ, self.recipe.most).complete
         except _StoppedError:
-            return self.together()
+            return self.together(complete=False)
         if place is None or folder is None:
-            return self.together()
-        together = self.together().drop_encoding()
+            return self.together(complete)
+        together = self.together(complete).drop_encoding()
         publish(place, lambda draft: together.to_zarr(draft, consolidated=False))
         shutil.rmtree(folder)
         return self.there(place)
@@ -128,9 +131,9 @@ class _Search:
         failed = sum(int((one.status >= FIRST_FAILURE).sum()) for one in self.rounds)
         return lambda now: tell(now._replace(done=now.done + done, failed=now.failed + failed, members=now.members + done))
 
-    def together(self) -> xr.Dataset:
+    def together(self, complete: bool) -> xr.Dataset:
         """The members of all rounds."""
-        return xr.concat(self.rounds, MEMBER).assign_attrs(self.attributes)
+        return xr.concat(self.rounds, MEMBER).assign_attrs(self.attributes, **{COMPLETE: int(complete)})
 
     @property
     def attributes(self) -> dict[str, Any]:
