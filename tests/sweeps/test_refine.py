@@ -92,6 +92,8 @@ def test_a_search_that_was_stopped_goes_on(error: type[BaseException], tmp_path:
         part = refine(out, progress=stop)
         there = part.status.values >= 0
         assert 20 < there.sum() < part.sizes["member"] < whole.sizes["member"]
+        assert part.attrs["refinement_complete"] == 0
+        assert 4 <= len(cells_of(part).answer) < len(cells_of(whole).answer)
         assert part.several.values[there].tolist() == whole.several.values[: len(there)][there].tolist()
     else:
         with pytest.raises(error):
@@ -116,10 +118,13 @@ def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
 
 def test_it_ends_at_the_most_members_and_says_so() -> None:
     assert refine().attrs["refinement_complete"] == 1
-    found = refine(most=20)
+    found = refine(most=40)
     assert found.attrs["refinement_complete"] == 0
-    assert 9 < found.sizes["member"] <= 20
-    assert cells_of(found).changes.any()
+    assert 9 < found.sizes["member"] <= 40
+    cells = cells_of(found)
+    assert (cells.high[STRESS] - cells.low[STRESS])[cells.changes].min() > 75e6 / 8.0
+    with pytest.raises(ss.InputError, match="coarse grid has 9 points, 8 are allowed"):
+        refine(most=8)
 
 
 def test_what_has_no_answer_says_nothing() -> None:

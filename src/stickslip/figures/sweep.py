@@ -46,7 +46,7 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     status = dataset["status"].transpose(*values.dims)
     kinds = [status.values >= FIRST_FAILURE, status.values == NOT_RUN, np.isnan(values.values)]
     state = xr.Variable(values.dims, np.select(kinds, [2, 3, 1], 0))
-    drawn = dataset[[name]].assign({name: values.where(state == 0), "state": state}).squeeze(drop=False)
+    drawn = dataset[[name, "status"]].assign({name: values.where(state == 0), "state": state}).squeeze(drop=False)
     if len(drawn[name].dims) > 3:
         raise InputError(f"plot_sweep: a grid of {len(drawn[name].dims)} keys: select some values first, dataset.sel(KEY=VALUE)")
     if not drawn[name].dims:
@@ -66,5 +66,6 @@ def draw(dataset: xr.Dataset) -> Figure:
     """The figure that fits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
-        return draw_cells(dataset) if ATTRIBUTE in dataset.attrs else draw_members(dataset)
+        whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()
+        return draw_cells(dataset) if whole else draw_members(dataset)
     return draw_curves(dataset) if len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES) else draw_maps(dataset)

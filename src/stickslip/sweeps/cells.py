@@ -166,23 +166,27 @@ def refine_cells(
     """Compute a coarse grid, then halve the cells where answers differ, down to the lattice's depth.
 
     `evaluate` takes points (n, axes) and returns n answers; NaN says nothing, and nothing is refined on its account.
-    `differ` compares the least and the most around cells. Ends early rather than compute more than `most` points.
+    `differ` compares the least and the most around cells. Ends before the round that would bring more than `most` points.
+    Raises InputError if the coarse grid alone has more.
     """
     points, answers = np.empty((0, len(lattice.coarse)), np.int64), np.empty(0)
     corners, fresh = (lattice.grid(tuple(count - less for count in lattice.coarse)) for less in (1, 0))
     cells = Cells.new(corners, np.zeros(len(corners), np.int64))
-    while len(points) + len(fresh) <= most:
+    if len(fresh) > most:
+        raise InputError(f"refinement: the coarse grid has {len(fresh)} points, {most} are allowed")
+    while True:
         found = np.asarray(evaluate(fresh), float) if len(fresh) else np.empty(0)
         points, answers = np.concatenate([points, fresh]), np.concatenate([answers, found])
         cells.learn(lattice, fresh, found)
-        halve = differ(cells.least, cells.most) & (cells.level < lattice.depth)
-        if not halve.any():
-            return Refined(lattice, points, answers, cells, differ(cells.least, cells.most), complete=True)
+        changes = differ(cells.least, cells.most)
+        halve = changes & (cells.level < lattice.depth)
         children = _halved(lattice, cells[halve])
+        fresh = _missing(lattice, children, points)
+        complete = not halve.any()
+        if complete or len(points) + len(fresh) > most:
+            return Refined(lattice, points, answers, cells, changes, complete)
         children.learn(lattice, points, answers)
         cells = cells[~halve] + children
-        fresh = _missing(lattice, children, points)
-    return Refined(lattice, points, answers, cells, differ(cells.least, cells.most), complete=False)
 
 
 def _halved(lattice: Lattice, cells: Cells) -> Cells:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from stickslip.errors import InputError
 from stickslip.sweeps.axis import Axis
 from stickslip.sweeps.cells import Differ, Floats, Integers, Lattice, Refined, apart, refine_cells, unequal
+from stickslip.sweeps.outcome import NOT_RUN
 
 ATTRIBUTE = "refinement"
 """Attribute of the dataset that holds the recipe (JSON)."""
@@ -102,9 +103,14 @@ class RefinedMap:
 
 
 def cells_of(dataset: xr.Dataset) -> RefinedMap:
-    """The cells of what `stickslip.refine` returns. Raises InputError for any other dataset."""
+    """The cells of what `stickslip.refine` returns; of a search that was stopped, those of the rounds that are complete.
+
+    Raises InputError for any other dataset, and where not even the coarse grid is complete.
+    """
     recipe = Recipe.read(dataset)
-    found = _again(recipe, np.asarray(dataset[recipe.quantity].values, float))
+    missing = np.flatnonzero(dataset["status"].values == NOT_RUN)
+    answers = np.asarray(dataset[recipe.quantity].values, float)[: missing[0] if missing.size else None]
+    found = _again(recipe, answers)
     cells = found.cells
     size = (2 ** (recipe.depth - cells.level))[:, np.newaxis]
     low, high = (dict(zip(recipe.columns, recipe.values(corner), strict=True)) for corner in (cells.corner, cells.corner + size))
@@ -112,13 +118,12 @@ def cells_of(dataset: xr.Dataset) -> RefinedMap:
 
 
 def _again(recipe: Recipe, answers: Floats) -> Refined:
-    """The same search with the answers that are there; one that was stopped has too few."""
+    """The same search, as far as there are answers."""
     place = 0
 
     def evaluate(points: Integers) -> Floats:
         nonlocal place
-        there = answers[place : place + len(points)]
         place += len(points)
-        return np.append(there, np.full(len(points) - len(there), np.nan))
+        return answers[place - len(points) : place]
 
-    return refine_cells(recipe.lattice, evaluate, recipe.differ, recipe.most)
+    return refine_cells(recipe.lattice, evaluate, recipe.differ, len(answers))
