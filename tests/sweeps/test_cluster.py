@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -152,6 +153,16 @@ def test_a_scheduler_that_does_not_answer(address: str, monkeypatch: pytest.Monk
     monkeypatch.setattr("stickslip.sweeps.cluster.PATIENCE", 0.2)
     with pytest.raises(ss.InputError, match=f"no dask scheduler answers at {address}"):
         ss.sweep("fig6-slab", VARY, scheduler=address)
+
+
+def test_inside_an_event_loop() -> None:
+    """As in a notebook."""
+
+    async def cell() -> None:
+        ss.sweep("fig6-slab", VARY, scheduler="nowhere")
+
+    with pytest.raises(ss.InputError, match="no dask scheduler answers at nowhere"):
+        asyncio.run(cell())
 
 
 def test_the_scheduler_of_a_file(two_workers: Client, tmp_path: Path) -> None:

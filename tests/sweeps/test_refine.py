@@ -109,9 +109,11 @@ def test_a_search_that_was_stopped_goes_on(error: type[BaseException], tmp_path:
 
 def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
     first, told = refine(tmp_path / "map.zarr"), []
+    (tmp_path / "map.rounds").mkdir()  # a kill between the last two steps
     second = refine(tmp_path / "map.zarr", progress=told.append)
     assert told == []
     assert second.identical(first)
+    assert [path.name for path in tmp_path.iterdir()] == ["map.zarr"]
     with pytest.raises(ss.InputError, match=r"map\.zarr: was made with another refinement"):
         refine(tmp_path / "map.zarr", depth=4)
 

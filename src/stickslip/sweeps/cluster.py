@@ -10,6 +10,7 @@ import asyncio
 import json
 import logging
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from itertools import islice
@@ -80,7 +81,8 @@ def _answering(scheduler: str) -> str:
 
     try:
         address = str(json.loads(Path(scheduler).read_text())["address"]) if Path(scheduler).is_file() else scheduler
-        asyncio.run(knock())
+        with ThreadPoolExecutor(1) as aside:  # a notebook has an event loop of its own in this thread
+            aside.submit(lambda: asyncio.run(knock())).result()
     except (OSError, ValueError, KeyError) as error:
         raise InputError(
             f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"

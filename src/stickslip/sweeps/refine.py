@@ -72,7 +72,9 @@ def refine(
     search = _Search(recipe, keys, lambda design: make_plan(chosen, design, quantities=kept, chunk=chunk))
     place = None if out is None else check_out(Path(out), "refine: out")
     if place is not None and place.exists():
-        return search.there(place)
+        found = search.there(place)
+        shutil.rmtree(_rounds_of(place), ignore_errors=True)  # of a search that was killed in its last moment
+        return found
     with runner_of(threads, workers, scheduler) as run:
         return search.carried_out(place, run, progress)
 
@@ -94,7 +96,7 @@ class _Search:
 
     def carried_out(self, place: Path | None, run: Runner, progress: Progress | None) -> xr.Dataset:
         """Every round, and their members together, at `place` when all are there."""
-        folder = None if place is None else _made(place.with_suffix(".rounds"))
+        folder = None if place is None else _made(_rounds_of(place))
 
         def evaluate(points: Integers) -> Floats:
             return self.round(points, None if folder is None else folder / f"{len(self.rounds):03d}.zarr", run, progress)
@@ -162,6 +164,10 @@ def _answers(found: xr.DataArray, factor: float | None) -> Floats:
     if factor is None and (known != np.rint(known)).any():
         raise InputError(f"refine: {found.name} is no whole number: say by which factor it must jump")
     return values
+
+
+def _rounds_of(place: Path) -> Path:
+    return place.with_suffix(".rounds")
 
 
 def _made(folder: Path) -> Path:
