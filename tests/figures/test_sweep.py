@@ -226,6 +226,17 @@ def test_cuts_through_three_keys() -> None:
             assert low >= critical or high <= critical
 
 
+@pytest.mark.parametrize("status", [FAILED, NOT_RUN, 0])
+def test_nothing_to_be_seen(status: int) -> None:
+    nothing = np.full((9, 13), np.nan)
+    assert len(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status)).axes) == 1  # no scale of nothing
+    assert not meshes(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status, units="s"), "answer"), 1).get_array().count()
+    ss.plot_sweep(grid(nothing[:, 0], ALPHA, status=status), "answer")
+    assert not scattered(
+        ss.plot_sweep(members(nothing[0], status, friction__alpha=AXES[THICKNESS], body__thickness=AXES[THICKNESS])).axes[0]
+    )[1:]
+
+
 def test_it_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
     ss.plot_sweep(refined, path=tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 10_000

@@ -81,10 +81,11 @@ def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: 
     marks += [Patch(facecolor=PALE, label="no such number")] if quantity.has(1) else []
     marks += [Patch(facecolor="white", edgecolor=GREY, linewidth=0.5, label="not run")] if quantity.has(3) else []
     marks += more
-    if not colours.key:
+    scale = not colours.key and quantity.known.size > 0
+    if scale:
         figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=quantity.title, pad=0.02, aspect=25)
     if marks:
-        heading = quantity.title if colours.key else None
+        heading = None if scale else quantity.title
         narrow = {"handlelength": 1.3, "columnspacing": 1.2, "handletextpad": 0.5}
         figure.legend(
             handles=marks, title=heading, loc="outside lower center", ncols=min(len(marks), 12), title_fontsize=9.0, **narrow

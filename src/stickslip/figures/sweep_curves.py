@@ -61,7 +61,9 @@ def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
 
 def show_ordinate(axes: Axes, quantity: Shown) -> None:
     """Label and scale of the quantity's axis."""
-    if quantity.is_flag:
+    if not quantity.known.size:
+        axes.set_yticks([])
+    elif quantity.is_flag:
         axes.set_yticks([0.0, 1.0], ["no", "yes"])
     elif quantity.is_wide:
         axes.set_yscale("log")

@@ -133,6 +133,7 @@ class Shown:
 def shown(dataset: xr.Dataset) -> Shown:
     """The quantity of a figure's dataset, in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
-    unit, size = unit_of(values.attrs.get("units", "1"), float(np.nanmax(np.abs(values), initial=0.0)))
+    known = np.abs(values.values[np.isfinite(values.values)])
+    unit, size = unit_of(values.attrs.get("units", "1"), float(known.max(initial=0.0)))
     title = textwrap.fill(values.attrs.get("long_name", str(values.name)) + (f" ({unit})" if unit != "1" else ""), LONG)
     return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs)
