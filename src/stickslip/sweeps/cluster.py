@@ -36,6 +36,8 @@ AHEAD = 2
 LEAST = 8
 """Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
 RETRIES = 2
+PROFILER = "distributed.worker.profile.enabled"
+"""What takes the most of dask's time on a worker, 5 % of everything, and nobody looks at here."""
 LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 """What workers that are started here do first: Ctrl-C reaches them too, but it is for the sweep to end them."""
 
@@ -51,6 +53,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
     Raises InputError where dask.distributed is not installed or the scheduler does not answer within 10 s.
     """
     try:
+        from dask import config
         from distributed import Client, LocalCluster
     except ImportError:
         raise InputError("sweep: a cluster needs dask.distributed: pip install 'stickslip[cluster]'") from None
@@ -59,7 +62,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
             yield client
     else:
         many = {"n_workers": _checked(workers), "threads_per_worker": 1}
-        local = LocalCluster(**many, dashboard_address=":0", silence_logs=logging.ERROR, preload=[LEAVE_CTRL_C])
+        with config.set({PROFILER: False}):
+            local = LocalCluster(**many, dashboard_address=":0", silence_logs=logging.ERROR, preload=[LEAVE_CTRL_C])
         with local, Client(local, set_as_default=False) as client:
             yield client
 
