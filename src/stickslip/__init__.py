@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stickslip.contact.uniqueness import uniqueness
     from stickslip.evolution.simulate import simulate
     from stickslip.evolution.solution import Solution
+    from stickslip.figures.sweep import plot_sweep
     from stickslip.long_runs.catalogue import catalogue, resume_catalogue
     from stickslip.long_runs.resume import resume
     from stickslip.observables.statistics import catalogue_statistics
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from stickslip.studies.analogy import Analogy, analogy
     from stickslip.studies.ensemble import Ensemble, ensemble
     from stickslip.studies.regularise import Regularisation, regularise
+    from stickslip.sweeps.refine import refine
     from stickslip.sweeps.sweep import sweep
 
 __version__ = "0.1.0"
@@ -54,7 +56,9 @@ _LATER = {
     "ensemble": "stickslip.studies.ensemble",
     "load": "stickslip.storage",
     "load_scenario": "stickslip.scenarios",
+    "plot_sweep": "stickslip.figures.sweep",
     "predictability": "stickslip.observables.predictability",
+    "refine": "stickslip.sweeps.refine",
     "regularise": "stickslip.studies.regularise",
     "resume": "stickslip.long_runs.resume",
     "resume_catalogue": "stickslip.long_runs.catalogue",
@@ -87,7 +91,9 @@ __all__ = [
     "load_scenario",
     "loading",
     "parameters",
+    "plot_sweep",
     "predictability",
+    "refine",
     "regularise",
     "resume",
     "resume_catalogue",

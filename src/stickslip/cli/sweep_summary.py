@@ -33,7 +33,7 @@ def show_estimate(plan: Plan, found: Estimate) -> None:
     screen.print(f"from a sample of {found.sampled}, which took {about_time(found.took)}{failed}")
 
 
-def show_sweep(plan: Plan, dataset: xr.Dataset, out: Path | None) -> int:
+def show_sweep(plan: Plan, dataset: xr.Dataset, *written: Path | None) -> int:
     """Print the summary on standard output. Returns the exit code; raises KeyboardInterrupt where members are missing."""
     from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
 
@@ -43,8 +43,8 @@ def show_sweep(plan: Plan, dataset: xr.Dataset, out: Path | None) -> int:
     _show_ends(status, dataset.reason.to_numpy().ravel())
     _show_quantities(plan, dataset)
     _show_changes(plan, dataset)
-    if out is not None:
-        console().print(f"written: {out}", soft_wrap=True)
+    for path in filter(None, written):
+        console().print(f"written: {path}", soft_wrap=True)
     if (status == NOT_RUN).any():
         raise KeyboardInterrupt
     return int((status >= FIRST_FAILURE).all())

@@ -69,7 +69,12 @@ class Design:
     def __str__(self) -> str:
         if self.is_grid:
             return f"{' x '.join(str(one) for one in self.shape)} = {self.size} members"
-        names = {"random": "drawn at random", "lhs": "drawn as a Latin hypercube", "list": "of a list"}
+        names = {
+            "random": "drawn at random",
+            "lhs": "drawn as a Latin hypercube",
+            "list": "of a list",
+            "refined": "of a refined map",
+        }
         return f"{self.size} members {names[self.kind]}"
 
 
@@ -88,7 +93,7 @@ def read_design(
         return vary
     if isinstance(vary, Path) or hasattr(vary, "columns"):
         return listed(scenario, read_csv(vary, where) if isinstance(vary, Path) else vary, where)
-    axes = _axes(scenario, vary, where)
+    axes = axes_of(scenario, vary, where)
     if kind not in KINDS:
         raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS)}")
     if kind == "grid":
@@ -98,7 +103,8 @@ def read_design(
     return sampled(axes, kind, members, seed, where)
 
 
-def _axes(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
+def axes_of(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
+    """The axes that are described. Raises InputError beginning with `where`."""
     if isinstance(vary, Mapping):
         axes = [axis_of(scenario, str(name), content, where) for name, content in vary.items()]
     else:

@@ -11,7 +11,7 @@ import errno
 import os
 import shutil
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -105,11 +105,15 @@ def writing(place: Path | MemoryStore) -> Iterator[None]:
 
 
 def _create(plan: Plan, path: Path) -> None:
-    """Whole or not at all."""
+    publish(path, lambda draft: lay_out(plan, draft))
+
+
+def publish(path: Path, fill: Callable[[Path], object]) -> None:
+    """Let `fill` make a store under another name, then give it its own: whole or not at all. Raises InputError."""
     draft = path.with_name(f".{uuid4().hex}{path.suffix}")
     try:
         with writing(path):
-            lay_out(plan, draft)
+            fill(draft)
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", category=UserWarning)  # not part of the format, but what xarray wishes
                 zarr.consolidate_metadata(draft)

@@ -52,6 +52,8 @@ def sweep(
     samples: int = SAMPLES,
     out: str | Path | None = None,
     threads: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
     chunk: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -68,6 +70,8 @@ def sweep(
 
     With out (a folder, .zarr) results are written there in chunks (of `chunk` members) as they come; called again it runs what is
     missing. Ctrl-C ends the sweep with what is there. Results depend neither on `threads` (default: all cores) nor on the order.
+    Instead of threads, a dask.distributed cluster may run the chunks: one of so many local `workers` (processes), or the one whose
+    `scheduler` answers at an address.
 
     Raises InputError for anything that cannot be used: a key, a value, a quantity, or an `out` of another sweep.
     """
@@ -82,7 +86,24 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    return carry_out(plan, out, on_threads(threads), progress)
+    with runner_of(threads, workers, scheduler) as run:
+        return carry_out(plan, out, run, progress)
+
+
+@contextmanager
+def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[Runner]:
+    """What runs the chunks: threads of this process, or a cluster where `workers` or a `scheduler` are given. Raises InputError."""
+    if workers is None and scheduler is None:
+        yield on_threads(threads)
+        return
+    from stickslip.sweeps.cluster import cluster, on_cluster
+
+    if threads is not None or (workers is not None and scheduler is not None):
+        raise InputError(
+            "sweep: give one of threads, workers (processes of a cluster of its own) and scheduler (of another cluster)"
+        )
+    with cluster(scheduler, workers) as client:
+        yield on_cluster(client)
 
 
 def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progress | None = None) -> xr.Dataset:

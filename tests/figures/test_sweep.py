@@ -1,0 +1,267 @@
+"""Figures of sweeps show the numbers of the dataset, in units in which they can be read, and what has no number."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection, PolyCollection, QuadMesh
+from matplotlib.colors import LogNorm, to_rgba
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import stickslip as ss
+from stickslip.figures.style import INK, PALE
+from stickslip.figures.varied import is_logarithmic
+
+mpl.use("Agg")
+
+Floats = NDArray[np.float64]
+ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"
+UNITS = {ALPHA: "s/m", THICKNESS: "m", STRESS: "Pa"}
+AXES = {ALPHA: np.linspace(0.1, 2.0, 9), THICKNESS: np.geomspace(1e3, 64e3, 13), STRESS: np.array([50e6, 100e6])}
+FAILED, NOT_RUN = 10, -1
+
+
+def grid(values: Floats, *names: str, status: Any = 0, **about: Any) -> xr.Dataset:
+    """What a sweep over these keys returns."""
+    coordinates = {
+        name: xr.Variable(name, AXES[name][:size], {"units": UNITS[name]}) for name, size in zip(names, values.shape, strict=True)
+    }
+    attributes = {"units": "1", "long_name": "pulses of all slip events"} | about
+    variables = {"answer": (names, values, attributes), "status": (names, np.broadcast_to(np.int8(status), values.shape).copy())}
+    design = {"design": json.dumps({"design": "grid", "keys": list(names)}), "title": "stickslip sweep: ElasticSlab, Coulomb"}
+    return xr.Dataset(variables, coords=coordinates, attrs=design)
+
+
+def members(answers: Floats, status: Any = 0, **columns: Floats) -> xr.Dataset:
+    """What a sweep over samples returns."""
+    named = {name.replace("__", "."): values for name, values in columns.items()}
+    coordinates = {name: xr.Variable("member", values, {"units": UNITS[name]}) for name, values in named.items()}
+    status = np.broadcast_to(np.int8(status), answers.shape).copy()
+    variables = {"answer": ("member", answers, {"units": "m", "long_name": "slip"}), "status": ("member", status)}
+    return xr.Dataset(variables, coords=coordinates, attrs={"design": json.dumps({"design": "lhs", "keys": list(named)})})
+
+
+def meshes(figure: Figure, which: int) -> QuadMesh:
+    """The mesh of areas without a number (0) or of the numbers (1)."""
+    found = [one for one in figure.axes[0].collections if isinstance(one, QuadMesh)]
+    return found[which]
+
+
+def legend(figure: Figure) -> list[str]:
+    return [text.get_text() for one in figure.legends for text in one.get_texts()]
+
+
+def test_a_map_shows_every_member_at_its_place() -> None:
+    values = np.add.outer(np.arange(9.0), np.arange(13.0) // 6)
+    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
+    axes, mesh = figure.axes[0], meshes(figure, 1)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("friction.alpha (s/m)", "body.thickness (km)")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
+    assert axes.get_title(loc="left") == "ElasticSlab, Coulomb"
+    assert np.array_equal(mesh.get_array(), values.T)
+    edges = np.asarray(mesh.get_coordinates())
+    assert edges[0, :2, 0] == pytest.approx([0.1 - 0.11875, 0.1 + 0.11875], rel=1e-12)
+    assert edges[:2, 0, 1] == pytest.approx([2.0**-0.25, 2.0**0.25], rel=1e-12)  # km, around 1 km in equal ratios
+
+
+def test_few_whole_numbers_have_a_colour_each_and_a_key() -> None:
+    values = np.add.outer(np.arange(9) % 2, 2.0 * (np.arange(13) % 2))
+    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
+    assert legend(figure) == ["0", "1", "2", "3"]
+    assert figure.legends[0].get_title().get_text() == "pulses of all slip events"
+    mesh = meshes(figure, 1)
+    shades = {tuple(mesh.to_rgba(np.array([value]))[0]) for value in range(4)}
+    assert len(shades) == 4
+    keys = {tuple(patch.get_facecolor()) for patch in figure.legends[0].get_patches()}
+    assert keys == shades
+
+
+def test_yes_and_no() -> None:
+    figure = ss.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS, flag_meanings="no yes"), "answer")
+    assert legend(figure) == ["no", "yes"]
+
+
+def test_what_has_no_number_is_told_apart() -> None:
+    values = np.ones((9, 13))
+    values[:3] = np.nan
+    status = np.zeros((9, 13))
+    status[1], status[2] = FAILED, NOT_RUN
+    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, status=status), "answer")
+    assert legend(figure) == ["1", "no such number", "not run", "failed"]
+    assert figure.axes[0].patch.get_hatch() == "////"
+    blank, mesh = meshes(figure, 0), meshes(figure, 1)
+    hidden = np.ma.getmaskarray(mesh.get_array())
+    assert hidden[:, :3].all()
+    assert not hidden[:, 3:].any()
+    drawn = np.ma.getmaskarray(blank.get_array())
+    assert [bool(drawn[:, k].all()) for k in range(4)] == [False, True, False, True]  # the failed lie open to the background
+    assert tuple(blank.to_rgba(np.array([1]))[0]) == to_rgba(PALE)
+    assert tuple(blank.to_rgba(np.array([3]))[0]) == to_rgba("white")
+
+
+def test_without_failures_there_is_no_hatching() -> None:
+    figure = ss.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS), "answer")
+    assert figure.axes[0].patch.get_hatch() is None
+    assert legend(figure) == ["1"]
+
+
+def test_numbers_over_decades_have_a_logarithmic_scale_in_a_readable_unit() -> None:
+    values = np.outer(np.geomspace(1.0, 1e4, 9), np.linspace(1.0, 2.0, 13)) * ss.YEAR
+    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, units="s", long_name="recurrence"), "answer")
+    bar = figure.axes[1]
+    assert bar.get_ylabel() == "recurrence (year)"
+    norm = meshes(figure, 1).norm
+    assert isinstance(norm, LogNorm)
+    assert (norm.vmin, norm.vmax) == pytest.approx((1.0, 2e4), rel=1e-12)
+
+
+def test_three_keys_are_maps_side_by_side_with_the_same_colours() -> None:
+    values = np.add.outer(np.add.outer(np.arange(9) % 2, np.arange(13) % 2), np.array([0.0, 2.0]))
+    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, STRESS), "answer")
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["normal stress 50 MPa", "normal stress 100 MPa"]
+    for k, axes in enumerate(figure.axes):
+        mesh = [one for one in axes.collections if isinstance(one, QuadMesh)][1]
+        assert np.array_equal(mesh.get_array(), values[:, :, k].T)
+        assert tuple(mesh.to_rgba(np.array([2.0]))[0]) == figure.legends[0].get_patches()[2].get_facecolor()
+
+
+def test_one_key_is_a_curve_with_gaps() -> None:
+    values = np.array([1.0, 2.0, np.nan, 4.0, 5.0])
+    figure = ss.plot_sweep(grid(values, ALPHA, status=[0, 0, FAILED, 0, 0]), "answer")
+    curve, cross = figure.axes[0].lines
+    assert np.array_equal(curve.get_ydata(), values, equal_nan=True)
+    assert cross.get_xdata().tolist() == [AXES[ALPHA][2]]
+    assert legend(figure) == ["failed"]
+    assert figure.axes[0].get_ylabel() == "pulses of all slip events"
+
+
+def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
+    values = np.add.outer(0.5 * np.arange(9), np.array([0.0, 10.0]))
+    figure = ss.plot_sweep(grid(values, ALPHA, STRESS), "answer")
+    assert legend(figure) == ["normal stress 50 MPa", "normal stress 100 MPa"]
+    for k, line in enumerate(figure.axes[0].lines):
+        assert np.array_equal(line.get_xydata(), np.stack([AXES[ALPHA], values[:, k]], axis=1))
+
+
+def test_words_have_their_place() -> None:
+    dataset = grid(np.arange(9.0), ALPHA).assign_coords({ALPHA: ("friction.alpha", [f"rule{k}" for k in range(9)])})
+    figure = ss.plot_sweep(dataset, "answer")
+    assert [text.get_text() for text in figure.axes[0].get_xticklabels()] == [f"rule{k}" for k in range(9)]
+
+
+def scattered(axes: Axes) -> list[PathCollection]:
+    return [one for one in axes.collections if isinstance(one, PathCollection) and len(one.get_offsets())]
+
+
+def test_samples_over_two_keys_are_points() -> None:
+    alpha, thickness = np.array([0.1, 0.5, 2.0, 1.0]), np.array([1e3, 2e3, 50e3, 4e3])
+    figure = ss.plot_sweep(
+        members(np.array([0.5, 1.5, 3.0, np.nan]), [0, 0, 0, FAILED], friction__alpha=alpha, body__thickness=thickness)
+    )
+    crosses, points = scattered(figure.axes[0])
+    assert np.asarray(points.get_offsets()) == pytest.approx(np.stack([alpha, thickness / 1e3], axis=1)[:3], rel=1e-15)
+    assert np.asarray(points.get_array()) == pytest.approx([0.5, 1.5, 3.0], rel=1e-15)
+    assert np.asarray(crosses.get_offsets()).tolist() == [[1.0, 4.0]]
+    assert legend(figure) == ["failed"]
+
+
+def test_samples_over_three_keys_are_drawn_over_each() -> None:
+    columns = {
+        "friction__alpha": AXES[ALPHA],
+        "body__thickness": AXES[THICKNESS][:9],
+        "body__normal_stress": np.linspace(5e7, 9e7, 9),
+    }
+    figure = ss.plot_sweep(members(np.arange(9.0) / 2.0, **columns), "answer")
+    assert [axes.get_xlabel() for axes in figure.axes] == [
+        "friction.alpha (s/m)",
+        "body.thickness (km)",
+        "body.normal_stress (MPa)",
+    ]
+    for axes, (values, size) in zip(figure.axes, zip(columns.values(), (1.0, 1e3, 1e6), strict=True), strict=True):
+        assert axes.lines[0].get_xydata() == pytest.approx(np.stack([values / size, np.arange(9.0) / 2.0], axis=1), rel=1e-15)
+
+
+@pytest.fixture(scope="module")
+def refined() -> xr.Dataset:
+    vary = {ALPHA: "0.05..2:3:log", STRESS: "50 MPa..200 MPa:3"}
+    return ss.refine("fig6-slab", vary, "irregular", depth=3, quantities=["slip"], threads=1)
+
+
+def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
+    figure = ss.plot_sweep(refined, "irregular")
+    axes = figure.axes[0]
+    assert legend(figure) == ["no", "yes", "it changes"]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert axes.get_ylim() == (50.0, 200.0)
+    known, changes = (one for one in axes.collections if isinstance(one, PolyCollection))
+    corners = np.array([path.vertices[:4] for path in changes.get_paths()])
+    assert (corners[:, 0].prod(axis=1) <= 19.6).all()  # alpha S in s/m MPa on the critical curve
+    assert (corners[:, 2].prod(axis=1) >= 19.6).all()
+    assert tuple(changes.get_facecolor()[0]) == to_rgba(INK)
+    middle = np.array([path.vertices[[0, 2]].mean(axis=0).prod() for path in known.get_paths()])
+    yes = figure.legends[0].get_patches()[1].get_facecolor()
+    assert [tuple(colour) == yes for colour in known.get_facecolor()] == (middle > 19.6).tolist()
+
+
+def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
+    points = scattered(ss.plot_sweep(refined, "slip").axes[0])[-1]
+    assert len(points.get_offsets()) == refined.sizes["member"]
+
+
+def test_cuts_through_three_keys() -> None:
+    vary = {ALPHA: "0.1..0.4:3", STRESS: "50 MPa..200 MPa:3", "body.wave_speed": "2 km/s, 5 km/s"}
+    figure = ss.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["wave speed 2000 m/s", "wave speed 5000 m/s"]
+    for axes, speed in zip(figure.axes, (2e3, 5e3), strict=True):
+        for cell in next(one for one in axes.collections if isinstance(one, PolyCollection)).get_paths():
+            (low, high), critical = cell.vertices[[0, 2]].prod(axis=1), 2800.0 * speed / 0.5e6
+            assert low >= critical or high <= critical
+
+
+@pytest.mark.parametrize("status", [FAILED, NOT_RUN, 0])
+def test_nothing_to_be_seen(status: int) -> None:
+    nothing = np.full((9, 13), np.nan)
+    assert len(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status)).axes) == 1  # no scale of nothing
+    assert not meshes(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status, units="s"), "answer"), 1).get_array().count()
+    ss.plot_sweep(grid(nothing[:, 0], ALPHA, status=status), "answer")
+    assert not scattered(
+        ss.plot_sweep(members(nothing[0], status, friction__alpha=AXES[THICKNESS], body__thickness=AXES[THICKNESS])).axes[0]
+    )[1:]
+
+
+def test_it_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
+    ss.plot_sweep(refined, path=tmp_path / "map.png")
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
+def test_what_cannot_be_drawn() -> None:
+    dataset = grid(np.ones((9, 13)), ALPHA, THICKNESS)
+    with pytest.raises(ss.InputError, match="'anser' is no quantity of this sweep; did you mean 'answer'"):
+        ss.plot_sweep(dataset, "anser")
+    with pytest.raises(ss.InputError, match="one member"):
+        ss.plot_sweep(grid(np.ones(1), ALPHA))
+    with pytest.raises(ss.InputError, match="a grid of 4 keys: select some values first"):
+        ss.plot_sweep(dataset.expand_dims({"a": 2, "b": 2}), "answer")
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        (np.geomspace(1.0, 50.0, 7), True),
+        (np.linspace(1.0, 50.0, 7), False),
+        (np.geomspace(1.0, 2.0, 7), False),
+        (np.linspace(-1.0, 5.0, 7), False),
+        (np.array([1.0, 100.0]), False),
+        (np.array([0.01, 0.1, 0.5, 2.0]), True),
+    ],
+)
+def test_axes_are_logarithmic_where_values_are_spread_so(values: Floats, expected: bool) -> None:
+    assert is_logarithmic(values) is expected

@@ -1,0 +1,193 @@
+"""Chunks on a cluster: nothing is lost with a worker or with the whole sweep, and the store is that of a sweep in one process."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+import stickslip as ss
+from stickslip.sweeps.cluster import ChunksLostError, cluster, on_cluster, stream
+from stickslip.sweeps.plan import Plan, make_plan
+from stickslip.sweeps.sweep import Report, carry_out
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+VARY = {"friction.alpha": "0.05..2:6", "loading.far_stress_rate": "0, 1 Pa/s", "run.selection": "maxwell,perfect-delay"}
+"""A rigid driver takes no far stress: half of the members fail."""
+
+
+def plan_of(chunk: int) -> Plan:
+    return make_plan("fig6-slab", VARY, quantities=["slip", "pulses"], series=["slip"], samples=5, chunk=chunk)
+
+
+def contents(store: Path) -> dict[str, bytes]:
+    """Every file of a store."""
+    return {str(path.relative_to(store)): path.read_bytes() for path in sorted(store.rglob("*")) if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def two_workers() -> Iterator[Client]:
+    with cluster(workers=2) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """The store of a sweep in one process, a member a chunk."""
+    out = tmp_path_factory.mktemp("undisturbed") / "map.zarr"
+    found = ss.sweep("fig6-slab", VARY, quantities=["slip", "pulses"], series=["slip"], samples=5, chunk=1, out=out, threads=1)
+    assert int((found.status >= 10).sum()) == 12
+    assert float(found.slip.max()) > 1.0
+    return contents(out)
+
+
+def test_a_killed_worker_changes_nothing(two_workers: Client, undisturbed: dict[str, bytes], tmp_path: Path) -> None:
+    killed = []
+
+    def kill_one(report: Report) -> None:
+        if report.done >= 3 and not killed:
+            killed.append(next(iter(two_workers.run(os.getpid).values())))
+            os.kill(killed[0], signal.SIGKILL)
+
+    found = carry_out(plan_of(1), tmp_path / "map.zarr", on_cluster(two_workers), kill_one)
+    assert killed
+    assert int((found.status < 0).sum()) == 0
+    assert contents(tmp_path / "map.zarr") == undisturbed
+
+
+def square(number: int) -> int:
+    """Of whole numbers below 100; 7 cannot be squared, and 5 kills."""
+    if number == 5:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if number == 7:
+        raise ArithmeticError("no square of 7")
+    return number**2
+
+
+def test_chunks_that_kill_their_workers_hold_up_no_others(two_workers: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(two_workers.cluster.scheduler, "allowed_failures", 0)
+    found: dict[int, int] = {}
+
+    def collect(numbers: Iterable[int]) -> None:
+        for number, result in stream(two_workers, square, ((number, number) for number in numbers)):
+            found[number] = result  # noqa: PERF403 - what came before the error is wanted
+
+    with pytest.raises(ChunksLostError, match=r"no worker finished chunk 5: it ended 1 worker.*the same command tries again"):
+        collect([5])
+    with pytest.raises(ChunksLostError, match="chunk 7: ArithmeticError: no square of 7"):
+        collect([*range(5), 7, *range(10, 40)])
+    assert found == {number: number**2 for number in (*range(5), *range(10, 40))}
+
+
+def test_few_chunks_are_in_flight(two_workers: Client) -> None:
+    asked = []
+
+    def chunks() -> Iterator[tuple[int, int]]:
+        for number in range(10, 60):
+            asked.append(number)
+            yield number, number
+
+    for done, _ in enumerate(stream(two_workers, square, chunks())):
+        assert len(asked) <= done + 8
+    assert len(asked) == 50
+
+
+def test_a_worker_of_another_version_is_refused(two_workers: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stickslip.sweeps.cluster.engine", lambda: "another")
+    with pytest.raises(ss.InputError, match="another version of stickslip"):
+        list(stream(two_workers, square, [(1, 1)]))
+
+
+SUICIDAL = """
+import os, signal, sys
+from stickslip.sweeps.sweep import carry_out, runner_of
+from tests.sweeps.test_cluster import plan_of
+
+def kill_all(report):
+    if report.done >= 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    with runner_of(None, 1, None) as run:
+        carry_out(plan_of(1), sys.argv[1], run, kill_all)
+"""
+
+
+def test_a_killed_sweep_goes_on(undisturbed: dict[str, bytes], tmp_path: Path) -> None:
+    """kill -9 while a local cluster works: its worker goes with it, and the rest is done in one process."""
+    out, script = tmp_path / "map.zarr", tmp_path / "suicidal.py"
+    script.write_text(SUICIDAL)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[2]), *sys.path])}
+    sweep = subprocess.Popen([sys.executable, str(script), str(out)], env=environment, start_new_session=True)
+    assert sweep.wait(timeout=120) == -signal.SIGKILL
+    assert sum(name.startswith("status/c.") for name in contents(out)) == 3
+    give_up = time.monotonic() + 20.0
+    while _alive(sweep.pid) and time.monotonic() < give_up:
+        time.sleep(0.05)
+    assert not _alive(sweep.pid)
+    ss.sweep("fig6-slab", VARY, quantities=["slip", "pulses"], series=["slip"], samples=5, chunk=1, out=out)
+    assert contents(out) == undisturbed
+
+
+def _alive(session: int) -> bool:
+    """Whether a process of that session is left."""
+    try:
+        os.killpg(session, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere"])
+def test_a_scheduler_that_does_not_answer(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stickslip.sweeps.cluster.PATIENCE", 0.2)
+    with pytest.raises(ss.InputError, match=f"no dask scheduler answers at {address}"):
+        ss.sweep("fig6-slab", VARY, scheduler=address)
+
+
+def test_inside_an_event_loop() -> None:
+    """As in a notebook."""
+
+    async def cell() -> None:
+        ss.sweep("fig6-slab", VARY, scheduler="nowhere")
+
+    with pytest.raises(ss.InputError, match="no dask scheduler answers at nowhere"):
+        asyncio.run(cell())
+
+
+def test_the_scheduler_of_a_file(two_workers: Client, tmp_path: Path) -> None:
+    file = tmp_path / "scheduler.json"
+    file.write_text(f'{{"address": "{two_workers.scheduler.address}"}}')
+    found = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip", scheduler=str(file))
+    here = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip")
+    assert found.slip.values.tobytes() == here.slip.values.tobytes()
+
+
+def test_a_map_is_refined_on_a_cluster(two_workers: Client, tmp_path: Path) -> None:
+    vary = {"friction.alpha": "0.05..0.4:3", "body.normal_stress": "50 MPa..200 MPa:3"}
+    for name, where in (("here", {"threads": 1}), ("there", {"scheduler": two_workers.scheduler.address})):
+        found = ss.refine("fig6-slab", vary, "events", depth=2, quantities="slip", chunk=4, out=tmp_path / f"{name}.zarr", **where)
+        assert found.sizes["member"] > 20
+    assert contents(tmp_path / "there.zarr") == contents(tmp_path / "here.zarr")
+
+
+def test_without_dask(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(ss.InputError, match=r"needs dask\.distributed: pip install 'stickslip\[cluster\]'"):
+        ss.sweep("fig6-slab", VARY, workers=2)
+
+
+@pytest.mark.parametrize("options", [{"workers": 0}, {"workers": 2, "threads": 2}, {"workers": 2, "scheduler": "a:1"}])
+def test_what_cannot_be(options: dict[str, int]) -> None:
+    with pytest.raises(ss.InputError, match="workers"):
+        ss.sweep("fig6-slab", VARY, **options)  # type: ignore[arg-type]

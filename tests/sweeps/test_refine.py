@@ -1,0 +1,179 @@
+"""Refined maps of a scenario: the critical curve in closed form, and searches that are stopped and taken up again."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import stickslip as ss
+from stickslip.contact.critical import margin
+from stickslip.sweeps.recipe import cells_of
+from stickslip.sweeps.sweep import Report
+
+ALPHA, STRESS = "friction.alpha", "body.normal_stress"
+IMPEDANCE = 2800.0 * 3500.0
+FEW = {"friction.alpha": "0.05..2:3:log", STRESS: "50 MPa..200 MPa:3"}
+
+
+def irregular(solution: ss.Solution) -> bool:
+    """The regime without all else that `stickslip.uniqueness` says."""
+    return margin(solution.problem) < 0.0
+
+
+def contents(store: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(store)): path.read_bytes() for path in sorted(store.rglob("*")) if path.is_file()}
+
+
+def refine(out: Path | None = None, **options: Any) -> xr.Dataset:
+    """A small map of regimes: 9 members of the coarse grid, and more along the critical curve."""
+    settings: dict[str, Any] = {"depth": 3, "quantities": [("several", "1", irregular)], "chunk": 4, "threads": 1}
+    return ss.refine("fig6-slab", FEW, "several", out=out, **settings | options)
+
+
+def test_the_critical_curve_to_a_ten_thousandth() -> None:
+    """alpha_c = Z/(S (muS - muD)), eq. (15), over alpha and S, where it crosses a corner: 5120 x 5120 cells were it a grid."""
+    low, high = np.array([0.05, 50e6]), np.array([0.0985, 200e6])
+    vary = {ALPHA: "0.05..0.0985:6", STRESS: "50 MPa..200 MPa:6"}
+    found = ss.refine("fig6-slab", vary, "several", depth=10, quantities=[("several", "1", irregular)])
+    cells = cells_of(found)
+    below, above = (np.stack([side[ALPHA], side[STRESS]], axis=1)[cells.changes] for side in (cells.low, cells.high))
+    critical = IMPEDANCE / 0.5  # alpha S on the curve
+    assert ((above - below) / 2.0 / (high - low)).max() < 1e-4  # the curve is nowhere farther from a cell's middle
+    assert (below.prod(axis=1) <= critical * (1.0 + 1e-12)).all()
+    assert (above.prod(axis=1) >= critical * (1.0 - 1e-12)).all()
+    stress = np.linspace(critical / 0.0985, 200e6, 300)[:-1]
+    for point in np.stack([critical / stress, stress], axis=1):
+        assert ((below <= point * (1.0 + 1e-12)) & (point <= above * (1.0 + 1e-12))).all(axis=1).any()
+    assert found.sizes["member"] < 2e-5 * 5121**2
+    assert np.array_equal(found.several, found[ALPHA] * found[STRESS] > critical)
+
+
+def test_members_lie_where_the_grid_would_have_them() -> None:
+    found = refine()
+    assert found.level.values.tolist() == sorted(found.level.values.tolist())
+    assert int((found.level == 0).sum()) == 9
+    ratio = np.log(found[ALPHA] / 0.05) / np.log(2.0 / 0.05) * 16.0
+    assert ratio.values == pytest.approx(np.rint(ratio.values), abs=1e-12)
+    coarse = found.isel(member=found.level == 0)
+    assert sorted(set(coarse[STRESS].values.tolist())) == [50e6, 125e6, 200e6]
+    assert found[ALPHA].attrs["units"] == "s/m"
+    pairs = set(zip(found[ALPHA].values.tolist(), found[STRESS].values.tolist(), strict=True))
+    assert len(pairs) == found.sizes["member"]
+
+
+def test_cells_tile_the_map() -> None:
+    found = refine()
+    cells = cells_of(found)
+    area = (np.log(cells.high[ALPHA] / cells.low[ALPHA]) * (cells.high[STRESS] - cells.low[STRESS])).sum()
+    assert area == pytest.approx(np.log(40.0) * 150e6, rel=1e-12)
+    assert np.isnan(cells.answer[cells.changes]).all()
+    answers = cells.answer[~cells.changes]
+    middle = (cells.low[ALPHA] * cells.low[STRESS])[~cells.changes][answers == 1.0]
+    assert (middle >= IMPEDANCE / 0.5).all()
+    assert set(answers.tolist()) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_a_search_that_was_stopped_goes_on(error: type[BaseException], tmp_path: Path) -> None:
+    """By Ctrl-C, or by whatever else in the middle of a round: what is done is not done again, and the store is the same."""
+    whole = refine(tmp_path / "whole.zarr")
+    out, told = tmp_path / "map.zarr", []
+
+    def stop(report: Report) -> None:
+        if report.done > 20:
+            raise error
+
+    if error is KeyboardInterrupt:
+        part = refine(out, progress=stop)
+        there = part.status.values >= 0
+        assert 20 < there.sum() < part.sizes["member"] < whole.sizes["member"]
+        assert part.attrs["refinement_complete"] == 0
+        assert 4 <= len(cells_of(part).answer) < len(cells_of(whole).answer)
+        assert part.several.values[there].tolist() == whole.several.values[: len(there)][there].tolist()
+    else:
+        with pytest.raises(error):
+            refine(out, progress=stop)
+    assert not out.exists()
+    again = refine(out, progress=told.append)
+    assert contents(out) == contents(tmp_path / "whole.zarr")
+    assert not (tmp_path / "map.rounds").exists()
+    assert again.identical(whole)
+    assert told[0].done == 9
+    assert sum(later.done > before.done for before, later in pairwise(told)) < whole.sizes["member"] / 4
+
+
+def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
+    first, told = refine(tmp_path / "map.zarr"), []
+    (tmp_path / "map.rounds").mkdir()  # a kill between the last two steps
+    second = refine(tmp_path / "map.zarr", progress=told.append)
+    assert told == []
+    assert second.identical(first)
+    assert [path.name for path in tmp_path.iterdir()] == ["map.zarr"]
+    with pytest.raises(ss.InputError, match=r"map\.zarr: was made with another refinement"):
+        refine(tmp_path / "map.zarr", depth=4)
+
+
+def test_it_ends_at_the_most_members_and_says_so() -> None:
+    assert refine().attrs["refinement_complete"] == 1
+    found = refine(most=40)
+    assert found.attrs["refinement_complete"] == 0
+    assert 9 < found.sizes["member"] <= 40
+    cells = cells_of(found)
+    assert (cells.high[STRESS] - cells.low[STRESS])[cells.changes].min() > 75e6 / 8.0
+    with pytest.raises(ss.InputError, match="coarse grid has 9 points, 8 are allowed"):
+        refine(most=8)
+
+
+def test_what_has_no_answer_says_nothing() -> None:
+    """Members that are refused are kept with their reason, and nothing is refined towards them."""
+    vary = {"loading.far_stress_rate": [0.0, 1.0, 2.0], ALPHA: "0.05..2:5"}
+    found = ss.refine("fig6-slab", vary, "several", depth=2, quantities=[("several", "1", irregular)])
+    refused = found["loading.far_stress_rate"] > 0.0
+    assert (found.status.values[refused] == 10).all()
+    assert "finite driver_impedance" in str(found.reason.values[refused][0])
+    assert np.isfinite(found.several.values[~refused]).all()
+
+
+def test_a_jump_by_a_factor() -> None:
+    """A number that grows slowly, but tenfold at alpha_c: one axis is a bisection."""
+
+    def jumping(solution: ss.Solution) -> float:
+        alpha = solution.problem.friction.alpha  # type: ignore[attr-defined]
+        return (1.0 + 0.1 * alpha) * (10.0 if irregular(solution) else 1.0)
+
+    found = ss.refine("fig6-slab", {ALPHA: "0.05..2:4"}, "jump", factor=5.0, depth=12, quantities=[("jump", "m", jumping)])
+    cells = cells_of(found)
+    ((low,), (high,)) = (side[ALPHA][cells.changes] for side in (cells.low, cells.high))
+    assert low <= IMPEDANCE / 0.5 / 100e6 <= high
+    assert high - low == pytest.approx(0.65 / 2**12, rel=1e-9)
+    assert found.sizes["member"] == 4 + 12
+    with pytest.raises(ss.InputError, match="slip is no whole number: say by which factor"):
+        ss.refine("fig6-slab", {ALPHA: "0.05..2:4"}, "slip")
+
+
+@pytest.mark.parametrize(
+    ("vary", "options", "message"),
+    [
+        ({ALPHA: "2,1"}, {}, "friction.alpha needs two or more numbers in ascending order"),
+        ({ALPHA: "1"}, {}, "friction.alpha needs two or more numbers"),
+        ({ALPHA: "0.05..2"}, {}, "friction.alpha needs two or more numbers"),
+        ({"run.selection": "maxwell,minimal"}, {}, "run.selection needs two or more numbers"),
+        ({ALPHA: "1,2"}, {"factor": 1.0}, "factor must be above 1"),
+        ({ALPHA: "1,2"}, {"depth": -1}, "depth must be 0 or more"),
+        ({ALPHA: "1,2"}, {"depth": 2.5}, "whole numbers"),
+        ({ALPHA: "1,2"}, {"quantities": ["pulse"]}, "did you mean 'pulses'"),
+    ],
+)
+def test_what_cannot_be_refined(vary: dict[str, str], options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ss.InputError, match=message):
+        ss.refine("fig6-slab", vary, "pulses", **options)
+
+
+def test_cells_of_a_plain_sweep() -> None:
+    with pytest.raises(ss.InputError, match=r"not made by stickslip\.refine"):
+        cells_of(ss.sweep("fig6-slab", {ALPHA: [1.0]}, quantities=["slip"]))
