@@ -104,10 +104,17 @@ class Problem:
         return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
 
     @property
-    def pull_rate_text(self) -> str:
-        """The pull rate in a word or two."""
-        rate = self.pull_rate
-        return f"{rate.kind}, {rate.first:.6g} m/s at first" if isinstance(rate, LoadingHistory) else f"{rate:.6g} m/s"
+    def loading_texts(self) -> dict[str, str]:
+        """How it is loaded, in a word or two each: pull rate, and far stress and its rate of change where there are such."""
+        return {
+            name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
+            for name, value, unit in (
+                ("pull_rate", self.pull_rate, "m/s"),
+                ("far_stress", self.far_stress, "Pa"),
+                ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
+            )
+            if value is not None
+        }
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """V (m/s) at times t (s since the start of the run)."""
