@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from stickslip.bodies import Body, ElasticSlab
 from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
-from stickslip.quantities import Quantity, check_quantities, quantity
+from stickslip.quantities import Quantity, check_quantities, quantities_of, quantity
 from stickslip.selection import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
@@ -60,15 +61,27 @@ class Problem:
             raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
         if not isinstance(self.friction, FrictionLaw):
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
+        self._check_varying()
         check_quantities(self, but=self._varying)
-        if len(self._varying) > 1:
-            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
         self._check_state()
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
+
+    def _check_varying(self) -> None:
+        for name in MAY_VARY:
+            value, unit = getattr(self, name), quantities_of(Problem)[name].unit
+            if not isinstance(value, Real | LoadingHistory) and (name == "pull_rate" or value is not None):
+                one = f"a number in {unit} or one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+                raise InputError(f"Problem: {name} must be {one}, got {ascii(value)[:60]}")
+        if len(self._varying) > 1:
+            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
+        if isinstance(self.far_stress_rate, LoadingHistory):
+            raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
+        for name in self._varying:
+            getattr(self, name).check()
 
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__
