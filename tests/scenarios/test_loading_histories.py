@@ -96,7 +96,10 @@ def test_every_kind_as_a_far_stress(kind: str) -> None:
             f"[loading.pull_rate] mean must be {RATE}, got '1 Pa': 'Pa' does not convert to m/s",
         ),
         (document(HOLDS.replace("[1]", "[]")), "[loading.pull_rate] hold_times must have 1 to 10000 numbers, got 0"),
-        (document(HOLDS.replace("slide_time = 1", "slide_time = 0")), "[loading.pull_rate] slide_time must be greater than 0 s, got 0"),
+        (
+            document(HOLDS.replace("slide_time = 1", "slide_time = 0")),
+            "[loading.pull_rate] slide_time must be greater than 0 s, got 0",
+        ),
         (document(STEPS.format("far_stress")), FAR),
         (
             document(PULL + STEPS.format("far_stress"), driver="driver_impedance = 1e6"),
@@ -125,7 +128,9 @@ def test_mistakes_in_a_table(text: str, message: str | None) -> None:
 
 def test_a_block_has_no_far_stress() -> None:
     text = template("block", pull="steps").replace("loading.pull_rate", "loading.far_stress").replace("# driver", "#")
-    with pytest.raises(InputError, match=r"^b: \[loading\] far_stress and far_stress_rate need a slab with a finite driver_impedance$"):
+    with pytest.raises(
+        InputError, match=r"^b: \[loading\] far_stress and far_stress_rate need a slab with a finite driver_impedance$"
+    ):
         read_scenario(text, "b")
 
 
