@@ -158,10 +158,8 @@ def history_dataset(solution: Solution) -> xr.Dataset:
     """The history, and where the engine stands behind it. Raises InputError for a loading that no file could be read back with."""
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
-            name = type(loading).__name__
-            raise InputError(
-                f'save: {name} is not known to files: stickslip.loading.HISTORIES["{loading.kind}"] = {name} tells them'
-            )
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
+            raise InputError(f"save: {name} is not known to files: {place} = {name} tells them")
     if solution.checkpoint is None:
         return _history(solution)
     return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")

@@ -14,7 +14,7 @@ from stickslip.scenarios.templates import template
 from tests.scenarios.test_bad_input import GOOD
 
 RATE = 'a number in m/s or a text with a unit such as "10 m/s"'
-KINDS = "piecewise-linear, sinusoidal, steps, hold-and-slide"
+TABLE = "what varies in time is a table [loading.pull_rate] of a kind: piecewise-linear, sinusoidal, steps, hold-and-slide"
 SORTED = "hold-and-slide, piecewise-linear, sinusoidal, steps"
 FAR = "[loading] far_stress and far_stress_rate need a slab with a finite driver_impedance"
 STEPS = '[loading.{}]\nkind = "steps"\ntimes = [0, 1]\nvalues = [1, 2]\n'
@@ -54,11 +54,11 @@ def test_every_kind_as_a_far_stress(kind: str) -> None:
     [
         (
             document('[loading]\npull_rate = "steps"\n'),
-            f"[loading] pull_rate must be {RATE}, got 'steps'; what varies in time is a table [loading.pull_rate] of a kind: {KINDS}",
+            f"[loading] pull_rate must be {RATE}, got 'steps'; {TABLE}",
         ),
         (
             document("[loading]\npull_rate = [1, 2]\n"),
-            f"[loading] pull_rate must be {RATE}, got [1, 2]; what varies in time is a table [loading.pull_rate] of a kind: {KINDS}",
+            f"[loading] pull_rate must be {RATE}, got [1, 2]; {TABLE}",
         ),
         (
             document('[loading]\nfar_stress_rate = {kind = "steps"}\n'),
@@ -127,11 +127,10 @@ def test_mistakes_in_a_table(text: str, message: str | None) -> None:
 
 
 def test_a_block_has_no_far_stress() -> None:
-    text = template("block", pull="steps").replace("loading.pull_rate", "loading.far_stress").replace("# driver", "#")
-    with pytest.raises(
-        InputError, match=r"^b: \[loading\] far_stress and far_stress_rate need a slab with a finite driver_impedance$"
-    ):
+    text = template("block", pull="steps").replace("loading.pull_rate", "loading.far_stress")
+    with pytest.raises(InputError) as caught:
         read_scenario(text, "b")
+    assert str(caught.value) == f"b: {FAR}"
 
 
 def read_csv(folder: Path, csv: str, loading: str = LINEAR, **more: str) -> object:

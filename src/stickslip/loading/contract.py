@@ -45,8 +45,8 @@ SILENT = Tone(0.0, 1.0, 0.0)
 class LoadingHistory(ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
-    Before the start it was what it is there. Its breaking points are met exactly. A subclass is a frozen dataclass with a `kind`; for
-    scenario files and saved runs its fields are declared as those here are, it has an `example`, and it stands in HISTORIES.
+    Before the start it was what it is there. Its breaking points are met exactly. A subclass is a frozen dataclass with a `kind`;
+    for scenario files and saved runs its fields are declared as those here are, it has an `example`, and it stands in HISTORIES.
     """
 
     kind: ClassVar[str]
