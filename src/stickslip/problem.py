@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from stickslip.bodies import Body, ElasticSlab
 from stickslip.errors import InputError
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
-from stickslip.quantities import Quantity, check_quantities, quantity
+from stickslip.quantities import Quantity, check_quantities, quantities_of, quantity
 from stickslip.selection import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
@@ -60,15 +61,27 @@ class Problem:
             raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
         if not isinstance(self.friction, FrictionLaw):
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
+        self._check_varying()
         check_quantities(self, but=self._varying)
-        if len(self._varying) > 1:
-            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
         self._check_state()
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
+
+    def _check_varying(self) -> None:
+        for name in MAY_VARY:
+            value, unit = getattr(self, name), quantities_of(Problem)[name].unit
+            if not isinstance(value, Real | LoadingHistory) and (name == "pull_rate" or value is not None):
+                one = f"a number in {unit} or one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+                raise InputError(f"Problem: {name} must be {one}, got {ascii(value)[:60]}")
+        if len(self._varying) > 1:
+            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
+        if isinstance(self.far_stress_rate, LoadingHistory):
+            raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
+        for name in self._varying:
+            getattr(self, name).check()
 
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__
@@ -104,10 +117,17 @@ class Problem:
         return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
 
     @property
-    def pull_rate_text(self) -> str:
-        """The pull rate in a word or two."""
-        rate = self.pull_rate
-        return f"{rate.kind}, {rate.first:.6g} m/s at first" if isinstance(rate, LoadingHistory) else f"{rate:.6g} m/s"
+    def loading_texts(self) -> dict[str, str]:
+        """How it is loaded, in a word or two each: pull rate, and far stress and its rate of change where there are such."""
+        return {
+            name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
+            for name, value, unit in (
+                ("pull_rate", self.pull_rate, "m/s"),
+                ("far_stress", self.far_stress, "Pa"),
+                ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
+            )
+            if value is not None
+        }
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """V (m/s) at times t (s since the start of the run)."""

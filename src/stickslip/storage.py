@@ -21,8 +21,10 @@ from stickslip.evolution.status import Status
 from stickslip.evolution.tables import EVENT_COLUMNS
 from stickslip.evolution.window import Window
 from stickslip.files import write_atomically
+from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.choices import choices
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
+from stickslip.problem import MAY_VARY
 from stickslip.scenarios import Scenario, read_scenario
 from stickslip.selection import names as rule_names
 
@@ -153,7 +155,11 @@ def write(dataset: xr.Dataset, path: Path) -> Path:
 
 
 def history_dataset(solution: Solution) -> xr.Dataset:
-    """The history, and where the engine stands behind it."""
+    """The history, and where the engine stands behind it. Raises InputError for a loading that no file could be read back with."""
+    for loading in (getattr(solution.problem, name) for name in MAY_VARY):
+        if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
+            raise InputError(f"save: {name} is not known to files: {place} = {name} tells them")
     if solution.checkpoint is None:
         return _history(solution)
     return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")

@@ -260,7 +260,7 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
     assert complete_scenario("s") == [name for name in library.names() if name.startswith("s")] + ["sub/"]
     assert complete_scenario("sub/") == ["sub/deep.toml"]
     assert complete_scenario("nowhere/") == []
-    request = {"_STICKSLIP_COMPLETE": "complete_bash", "COMP_WORDS": "stickslip new sl", "COMP_CWORD": "2"}
+    request = {"_STICKSLIP_COMPLETE": "complete_bash", "COMP_WORDS": "stickslip new sla", "COMP_CWORD": "2"}
     code = "from stickslip.cli.main import main; main()"
     done = subprocess.run([sys.executable, "-c", code], env=os.environ | request, capture_output=True, text=True, check=False)
     assert done.stdout.split() == ["slab"]

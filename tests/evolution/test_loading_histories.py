@@ -207,6 +207,21 @@ def test_the_energy_over_leaped_rest() -> None:
         assert len(run.events) >= 4
         assert np.diff(run.history.store.row).max() > 20
         assert np.abs(energy.balance).max() < 1e-11 * energy.heat.max()
+        assert (energy.radiated == 0.0).all()
+
+
+@pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6])
+def test_a_lossy_slab_rests_until_the_loading_changes(impedance: float) -> None:
+    """Leaped over once its waves have left; then it slips. Energies as above; what is radiated never shrinks."""
+    slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=impedance)
+    far = Steps((0.0, 10.0, 1e6), (5e7, 6e7, 9e7))
+    run = ss.simulate(ss.Problem(slab, COULOMB, far_stress=far, initial_load=5e7), 1e6 + 30.0)
+    assert run.status.ok
+    assert run.events.start.to_numpy() == pytest.approx([1e6 + 0.5 * ROUND], rel=1e-12)
+    assert np.diff(run.history.store.row).max() > 100_000 or impedance == 0.0
+    energy = run.energy(np.linspace(0.0, run.history.duration, 20))
+    assert np.abs(energy.balance).max() < 1e-11 * energy.heat.max()
+    assert (np.diff(energy.radiated) >= 0.0).all()
 
 
 def test_a_pull_that_stops_locks_the_contact() -> None:

@@ -41,6 +41,17 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
         20.0,
     ),
     "contact mass": (ss.Problem(replace(SLAB, contact_mass=1e6), F.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=1e5), 20.0),
+    "steps, slab": (
+        ss.Problem(
+            SLAB,
+            F.LinearSlipWeakening(0.6, 0.57, 0.5),
+            pull_rate=ss.loading.Steps([0.0, 10.0, 20.0, 31.0], [0.0, 0.5, 0.02, -0.1]),
+            initial_load=5.8e7,
+        ),
+        60.0,
+    ),
+    "tone, block": bundled("tides-block", 0.4),
+    "far stress, slab": bundled("stress-pulse-slab"),
     "locked for ever": (
         ss.Problem(replace(SLAB, driver_impedance=2e6), F.LinearSlipWeakening(0.8, 0.6, 0.1), initial_excess=1e5, far_stress=7e7),
         5000.0,

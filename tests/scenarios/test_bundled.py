@@ -13,7 +13,8 @@ ULP = 2.3e-16
 YEAR = 31_557_600.0
 
 
-OURS = ("block-or-slab", "cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
+VARYING = ("slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
+OURS = ("block-or-slab", "cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab", *VARYING)
 PAPERS = [name for name in library.names() if name not in OURS]
 
 

@@ -3,9 +3,12 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pandas as pd
 import pytest
 
+import stickslip as ss
+from stickslip.reference.bisection import bisect
 from stickslip.scenarios.scenario import load_scenario
 
 R = 2e4 / 3500
@@ -88,6 +91,68 @@ def test_the_cycles_of_the_slab() -> None:
     assert len(runs[0].history) < 5000
     energy = runs[0].energy([runs[0].duration])
     assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-8
+
+
+def peaks(solution: ss.Solution, low: float, high: float) -> float:
+    """Largest friction coefficient between two times (s)."""
+    time, traction = (np.asarray(one) for one in solution.curve("traction"))
+    return float(traction[(time >= low) & (time <= high)].max() / solution.problem.normal)
+
+
+def test_velocity_steps() -> None:
+    """Friction before each step is that of steady sliding, (a - b) ln 10 less a decade; the peaks are those of the description."""
+    run = load_scenario("velocity-steps-block").run()
+    law, pull = run.problem.friction, run.problem.pull_rate
+    for time, rate in zip((*pull.times[1:], run.duration), pull.values, strict=True):
+        coefficient = float(run.traction(time, side="left")) / run.problem.normal
+        assert coefficient == pytest.approx(0.6 - 0.003 * math.log(rate / 1e-6), rel=0, abs=1e-7), time
+        assert float(law.steady_coefficient(rate)) == pytest.approx(coefficient, rel=0, abs=1e-7)
+    assert peaks(run, 200.0, 250.0) - 0.6 == pytest.approx(0.017, rel=0, abs=5e-4)
+    assert peaks(run, 500.0, 510.0) - 0.6 == pytest.approx(0.038, rel=0, abs=5e-4)
+
+
+def test_holds_heal_friction() -> None:
+    """The peaks of the description; b ln 10 more for ten times longer; half as much under the slip law."""
+    scenario = load_scenario("slide-hold-slide-block")
+    sliding = 0.6 - 0.003 * math.log(10.0)
+    slip_law = replace(scenario.problem, friction=replace(scenario.problem.friction, evolution="slip"))
+    grown = {}
+    for name, run in (("ageing", scenario.run()), ("slip", replace(scenario, problem=slip_law).run())):
+        begins = [one.start for one in run.problem.pull_rate.segments][2::2]
+        grown[name] = [peaks(run, begin, begin + 30.0) - sliding for begin in begins]
+    assert grown["ageing"] == pytest.approx([0.024, 0.052, 0.082], rel=0, abs=5e-4)
+    assert grown["ageing"][2] - grown["ageing"][1] == pytest.approx(0.013 * math.log(10.0), rel=0.01, abs=0)
+    assert grown["slip"] == pytest.approx([0.5 * one for one in grown["ageing"]], rel=0.11, abs=0)
+
+
+def test_tides_choose_the_hour() -> None:
+    """The strength is reached when the spring's own load, in closed form, gets there first: a bisection says when."""
+    run = load_scenario("tides-block").run()
+    problem, events = run.problem, run.catalogue(event_rate=0.0)
+    pull, stiffness = problem.pull_rate, problem.body.stiffness
+    assert len(events) == 7
+    before = (0.5 * pull.period - events.start % pull.period) / 3600.0
+    assert before.between(0.35, 1.55).all()
+
+    def load(time: np.ndarray) -> np.ndarray:
+        swing = pull.amplitude * pull.period / math.pi * np.sin(math.pi * time / pull.period) ** 2
+        return stiffness * (pull.mean * time + swing)
+
+    grid = np.arange(0.0, 1.1 * events.start[0], 60.0)
+    first = grid[np.flatnonzero(load(grid) > 1e12)[0]]
+    exact = bisect(lambda time: float(load(np.asarray(time))) - 1e12, first - 60.0, first)
+    assert events.start[0] == pytest.approx(exact, rel=0, abs=1e-3)
+
+
+def test_each_crest_of_a_passing_wave_triggers_slip() -> None:
+    scenario = load_scenario("stress-pulse-slab")
+    run = scenario.run()
+    assert run.events.start.tolist() == pytest.approx([2.375, 6.499], rel=0, abs=5e-4)
+    assert run.events.start[0] == pytest.approx(2.375, rel=1e-13, abs=0)  # 0.7143 * 0.16 MPa/s from 1.5 s on
+    assert run.events.duration.tolist() == pytest.approx([1.0, 1.0], rel=1e-9, abs=0)  # until its echo is back
+    assert run.events.slip.tolist() == pytest.approx([0.075, 0.0705], rel=0, abs=5e-4)
+    alone = replace(scenario, problem=replace(scenario.problem, far_stress=None)).run()
+    assert alone.catalogue(event_rate=0.0).empty
 
 
 def _last_place(value: float) -> int:

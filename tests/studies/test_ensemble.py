@@ -114,6 +114,8 @@ def test_from_rest_all_is_the_same_but_earlier_or_later() -> None:
     assert found.note.startswith("the run begins at rest")
     assert found.note in repr(found)
     assert ensemble(SLOW, 1.0, members=1).note == ""
+    timed = replace(SLOW, pull_rate=ss.loading.Steps([0.0, 0.5], [0.0, 1e-3]), initial_excess=-1.0)  # the steps do not wait
+    assert ensemble(timed, 1.0, members=1).note == ""
 
 
 @pytest.mark.parametrize(

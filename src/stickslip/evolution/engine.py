@@ -15,7 +15,7 @@ from stickslip.evolution.echoes import FOREVER, NOTHING, end_trip, next_echo, pa
 from stickslip.evolution.fold import leave_fold_piece, leave_moving_branch
 from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
-from stickslip.evolution.loading import rows_withstood, take_part
+from stickslip.evolution.loading import has_faded, rows_withstood, take_part
 from stickslip.evolution.polynomial import fill, maximum, mean_of, total
 from stickslip.evolution.record import note_degree
 from stickslip.evolution.slip import slip, slip_implicitly
@@ -26,7 +26,6 @@ ROOM = 8
 LARGEST_STALL = 200
 LARGEST_STORM = 10_000
 """So many more slips that are too short to be resolved than others end a run: they would go on without end."""
-FORGOTTEN = 1e-17
 
 
 @inlined
@@ -151,11 +150,9 @@ def is_ramp(run: Run) -> bool:
     """Whether the load of the next round trips is that of the last one plus a ramp."""
     if run.counts[at.IS_BLOCK] == 1:
         return True
-    reflection = run.par[at.REFLECTION]
-    if reflection == -1.0:
+    if run.par[at.REFLECTION] == -1.0:
         return True
-    # what the last round trip differs from the next one by fades from there on: the first at rest still differs in full
-    return abs(reflection) ** (run.counts[at.STUCK_ROWS] - 1) < FORGOTTEN
+    return has_faded(run)
 
 
 @kernel

@@ -184,8 +184,7 @@ def rows_withstood(run: Run, limit: float) -> int:
     room = run.from_row[following] - run.counts[at.ROW] - 1.0 if following < run.segments else float(at.NEVER)
     is_dead = run.from_slope[segment] == 0.0 and run.par[at.TONE] == 0.0
     if run.counts[at.IS_BLOCK] == 0 and run.par[at.REFLECTION] != -1.0:
-        faded = abs(run.par[at.REFLECTION]) ** (run.counts[at.STUCK_ROWS] - 1) < FORGOTTEN
-        return int(max(room, 0.0)) if is_dead and run.counts[at.STUCK_ROWS] > 0 and faded else 0
+        return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.from_value[segment] == 0.0:
         return int(max(room, 0.0))
     top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.par[at.REFERENCE] - tops(run, -1.0)
@@ -202,6 +201,12 @@ def rows_withstood(run: Run, limit: float) -> int:
 
 
 FORGOTTEN = 1e-17
+
+
+@inlined
+def has_faded(run: Run) -> bool:
+    """Whether the round trips of a slab at rest are the same from here on: what they differ by fades from the first one on."""
+    return run.counts[at.STUCK_ROWS] > 0 and abs(run.par[at.REFLECTION]) ** (run.counts[at.STUCK_ROWS] - 1) < FORGOTTEN
 
 
 @inlined

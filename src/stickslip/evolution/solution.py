@@ -143,11 +143,12 @@ class Solution(Readings):
 
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
+        loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
         largest = f", largest slip {events.slip.max():.6g} m, peak rate {events.peak_rate.max():.6g} m/s" if len(events) else ""
         return [
             ("body", repr(problem.body)),
             ("friction", repr(problem.friction)),
-            ("loading", f"pull rate {problem.pull_rate_text}, initial load {problem.load:.9g} {problem.load_unit}"),
+            ("loading", f"{loading}, initial load {problem.load:.9g} {problem.load_unit}"),
             ("run", f"{self.duration:.6g} s, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),
             ("events", f"{len(events)}{largest}"),

@@ -86,7 +86,7 @@ def _about(run: Readings, series: Series, problem: str, station: str, fields: tu
     yield f"code_version={stickslip.__version__}"
     yield f"body={run.problem.body!r}"
     yield f"friction={run.problem.friction!r}"
-    yield f"pull_rate={run.problem.pull_rate_text}"
+    yield from (f"{name}={text}" for name, text in run.problem.loading_texts.items())
     yield f"initial_load={run.problem.load!r} {run.problem.load_unit}"
     yield f"selection_rule={run.problem.rule}"
     yield f"rtol={solution.rtol:g}"  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""The default plot of a run: slip, slip rate, traction and load, one above the other."""
+"""The default plot of a run: slip, slip rate, traction and load, one above the other, and a loading that varies below."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip.evolution.readings import Curve, Readings
 from stickslip.figures.curves import nearly_flat
+from stickslip.figures.loading import draw_loading
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, time_unit, zero_line
 
 MANY = 60
@@ -27,26 +28,35 @@ def plot_run(solution: Readings, start: float | None = None, end: float | None =
     start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
     unit, size = time_unit(end - start)
     of_event = "event_slip" in solution.curves
-    figure = pyplot.figure(figsize=(6.4, 5.6), layout="constrained")
-    axes: Any = figure.subplots(3, 1, sharex=True)
+    axes: Any = _sheet(solution)
     drawn: tuple[tuple[Axes, Curve, str], ...] = ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN))
     for panel, name, colour in drawn:
         time, values = solution.curve(name, start, end)
         panel.plot(time / size, values, color=colour)
     _draw_stress(axes[2], solution, start, end, size)
+    if solution.problem.varies:
+        draw_loading(axes[3], solution, start, end, size)
     if not solution.problem.friction.sticks:
         _draw_every_size(axes[1], *solution.curve("slip_rate", start, end), size)
-    for panel in axes:
+    for panel in axes[:3]:
         if panel.get_yscale() == "linear":
             zero_line(panel)
         for at in _shock_times(solution, start, end):
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
     axes[0].set_ylabel("slip in the event (m)" if of_event else "slip $u$ (m)")
     axes[1].set_ylabel("slip rate $v$ (m/s)")
-    axes[2].set_xlabel(f"time since the event began ({unit})" if of_event else f"time $t$ ({unit})")
+    axes[-1].set_xlabel(f"time since the event began ({unit})" if of_event else f"time $t$ ({unit})")
     letter(axes[0], title or _title(solution))
+    figure: Figure = axes[0].figure
     figure.align_ylabels()
     return figure
+
+
+def _sheet(solution: Readings) -> Any:
+    """Panels of a new figure, one more and lower where the loading varies."""
+    heights = [3, 3, 3, 2] if solution.problem.varies else [1, 1, 1]
+    figure = pyplot.figure(figsize=(6.4, 6.8 if solution.problem.varies else 5.6), layout="constrained")
+    return figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
 
 
 def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.float64], size: float) -> None:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from dataclasses import is_dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.errors import InputError
 from stickslip.friction.fields import check_fields
 
 VARYING = "m/s or Pa"
@@ -42,7 +45,8 @@ SILENT = Tone(0.0, 1.0, 0.0)
 class LoadingHistory(ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
-    Before the start it was what it is there. Its breaking points are met exactly.
+    Before the start it was what it is there. Its breaking points are met exactly. A subclass is a frozen dataclass with a `kind`;
+    for scenario files and saved runs its fields are declared as those here are, it has an `example`, and it stands in HISTORIES.
     """
 
     kind: ClassVar[str]
@@ -60,6 +64,16 @@ class LoadingHistory(ABC):
     def tone(self) -> Tone:
         """What swings on top of them; silent by default."""
         return SILENT
+
+    def check(self) -> None:
+        """Raises InputError where it cannot be followed: only one of your own can fail."""
+        name, starts = type(self).__name__, [one.start for one in self.segments]
+        if not is_dataclass(self) or type(self).__hash__ is None or not hasattr(self, "kind"):
+            raise InputError(f"{name}: a loading history must be a frozen dataclass with a kind")
+        if not starts or starts[0] != 0.0 or any(not one < following for one, following in pairwise(starts)):
+            raise InputError(f"{name}: segments must begin with one at 0 s and ascend, got starts {ascii(starts)[:60]}")
+        if not np.isfinite([*self.segments, self.tone]).all() or not self.tone.frequency > 0.0:
+            raise InputError(f"{name}: segments and tone must be finite, and the tone's frequency above 0 rad/s")
 
     @cached_property
     def _table(self) -> NDArray[np.float64]:

@@ -249,6 +249,10 @@ class Radiation(Waves):
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
         return np.asarray(self.body.driver_impedance * behind**2)
 
+    def _at_rest(self, first: int, past: int) -> float:
+        """As `Waves._at_rest`; nothing leaves through a rigid driver."""
+        return 0.0 if self.body.reflection == -1.0 else super()._at_rest(first, past)
+
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Echoes at rest move the driver alike."""
         return np.zeros(len(leaving))

@@ -128,11 +128,12 @@ def _derived(problem: Problem) -> list[Fact]:
         start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
     start += _steady(problem)
+    first = ", at first" if problem.varies else ""
     if isinstance(body, SpringBlock):
         return [
             Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
             Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "what a slip rate costs: plays Z's part"),
-            Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", "rate of loading while stuck"),
+            Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", f"rate of loading while stuck{first}"),
             *start,
         ]
     return [
@@ -152,10 +153,11 @@ def _steady(problem: Problem) -> list[Fact]:
     law, rate = problem.friction, problem.first_pull_rate
     if not isinstance(law, RateAndState) or rate <= 0.0:
         return []
+    pull = "first pull rate" if problem.varies else "pull rate"
     friction, state = problem.normal * float(law.steady_coefficient(rate)), float(law.steady_state(rate))
     return [
-        Fact("steady friction", friction, problem.load_unit, "friction of steady sliding at the pull rate"),
-        Fact("steady state", state, "s", "state theta of steady sliding at the pull rate"),
+        Fact("steady friction", friction, problem.load_unit, f"friction of steady sliding at the {pull}"),
+        Fact("steady state", state, "s", f"state theta of steady sliding at the {pull}"),
         Fact("b - a", law.b - law.a, "1", "steady friction falls with slip rate where this is positive"),
     ]
 
@@ -200,7 +202,7 @@ def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     problem, found = scenario.problem, []
     steady = isinstance(problem.body, SpringBlock) or math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
-    if held and steady and wait_of(problem) > scenario.duration:
+    if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if isinstance(problem.body, ElasticSlab):
         found += _slab_warnings(scenario, problem.body, contact)

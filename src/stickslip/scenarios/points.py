@@ -81,6 +81,8 @@ def _wanted(header: list[str], columns: Mapping[str, str], value: str, place: st
 
 
 def _close(column: str, header: list[str]) -> str:
+    if len(header) == 1 and any(mark in header[0] for mark in ";\t"):
+        return "columns are separated by commas"
     hint = nearest(column, [cell for cell in header if cell])
     return f"rename {show(hint[14:-2])}?" if hint.startswith("did") and hint[14:-2] != column else "values are in SI"
 

@@ -121,9 +121,21 @@ def _reader(table: str, name: str, declared: Quantity | LawField) -> Any:
         source: Source = info.context["source"]  # type: ignore[index] # always given, in _validate
         if table == "loading" and name in MAY_VARY and isinstance(value, dict):
             return _history(value, source, f"{table}.{name}")
-        return read_entry(value, declared, source, table, name, _nested)
+        try:
+            return read_entry(value, declared, source, table, name, _nested)
+        except InputError as error:
+            raise InputError(f"{error}{_as_history(table, name, value)}") from None
 
     return read
+
+
+def _as_history(table: str, name: str, value: Any) -> str:
+    """A hint where something that varies in time was meant, and not given as a table."""
+    if table != "loading" or not (isinstance(value, list | dict) or value in HISTORIES):
+        return ""
+    if name in MAY_VARY:
+        return f"; what varies in time is a table [loading.{name}] of a kind: {', '.join(HISTORIES)}"
+    return f"; only {' or '.join(MAY_VARY)} may vary in time"
 
 
 def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:

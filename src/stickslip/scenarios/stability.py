@@ -38,7 +38,8 @@ def start_of(problem: Problem) -> str:
     if rate > 0.0:
         return f"slips at once, because the rule '{problem.rule}' leaves stick below the static strength{jump}"
     if excess == 0:
-        return "stays stuck: the load is the static strength"
+        held = "stuck until the load grows" if problem.varies else "stays stuck"
+        return f"{held}: the load is the static strength"
     wait = wait_of(problem)
     when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
     return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
@@ -85,9 +86,9 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 def _steady_sliding(problem: Problem, law: RateAndState) -> str:
     """Whether sliding at the pull rate is stable: the stiffness against the critical one, and how a disturbance grows."""
-    body, rate = problem.body, problem.first_pull_rate
+    body, rate, pull = problem.body, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
     if rate <= 0.0:
-        return "not pulled: it creeps to a halt, ever more slowly"
+        return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
     numbers = (problem.normal, law.a, law.b, law.distance, rate)
     if isinstance(body, SpringBlock):
         critical = critical_stiffness(*numbers, body.mass, body.damping)
@@ -101,5 +102,5 @@ def _steady_sliding(problem: Problem, law: RateAndState) -> str:
         return f"critical stiffness of slow sliding S (b - a) / Dc = {critical_stiffness(*numbers):.6g} Pa/m"
     against = f"{text} against the critical {critical:.6g} {unit}"
     if growth.real <= 0.0:
-        return f"steady sliding at the pull rate is stable: {against}; a small disturbance fades at {-growth.real:.6g} /s"
-    return f"steady sliding at the pull rate is unstable: {against}; a small disturbance grows at {growth.real:.6g} /s"
+        return f"steady sliding at the {pull} is stable: {against}; a small disturbance fades at {-growth.real:.6g} /s"
+    return f"steady sliding at the {pull} is unstable: {against}; a small disturbance grows at {growth.real:.6g} /s"

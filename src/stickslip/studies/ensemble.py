@@ -60,7 +60,8 @@ class Ensemble:
     def note(self) -> str:
         """Where a disturbance of the initial load cannot do anything but make all earlier or later; else empty."""
         problem = self.problem
-        if problem.friction.state is not None or is_lossy(problem) or not -2.0 * problem.strength < problem.excess < 0.0:
+        shifted = problem.friction.state is None and not is_lossy(problem) and not problem.varies
+        if not (shifted and -2.0 * problem.strength < problem.excess < 0.0):
             return ""
         return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 
