@@ -124,3 +124,15 @@ def test_why_not_of_other_laws() -> None:
     heals = ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1, memory="since-arrest")
     scenario = Scenario(ss.Problem(SLAB, heals, PULL, initial_excess=0.0), 1.0)
     assert "memory 'since-arrest'" in why_not(scenario, ("friction.static",), ("slip",))
+
+
+def test_loads_next_to_the_strength_are_the_strength() -> None:
+    scenario = CASES["rate"].scenario
+    strength = scenario.problem.strength
+    ulp = float(np.spacing(strength))
+    load = np.array([sign * strength + n * ulp for sign in (1, -1) for n in (-5, -4, -1, 0, 1, 4, 5)] + [0.0, 8.5e7])
+    setups = set_up(scenario, {"initial.load": load})
+    alone = [one(Case(scenario, {}), {"initial.load": load}, n).problem.excess for n in range(len(load))]
+    assert setups.excess.tolist() == alone
+    assert {0.0, -2.0 * strength} < set(alone)
+    assert len(set(alone)) == 8

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.reduction import POINTS_PER_PIECE, Points, new_points
+from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.setups import Setups
 from stickslip.evolution import layout as at
 from stickslip.evolution.echoes import Echoes, new_echoes

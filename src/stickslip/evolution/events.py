@@ -46,10 +46,7 @@ def turning_points(
         if begins:
             found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
             above = True
-        way = 1.0 if p[1] >= 0.0 else -1.0
-        for k in range(TERMS - 1):
-            slope[k] = way * (k + 1) * p[k + 1]
-        turns_not, last = keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope)), total(p)
+        turns_not, last = is_monotone(p, slope), total(p)
         p[0] -= threshold
         stays = turns_not and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
         crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
@@ -65,6 +62,15 @@ def turning_points(
         if above:
             found = _note(piece, xi, rate, kind, found, n, 1.0, last, 0)
     return found
+
+
+@kernel
+def is_monotone(p: Floats, slope: Floats) -> bool:
+    """Whether bounds show at once that p only rises or only falls on (0, 1]; `slope` receives its derivative or minus that."""
+    way = 1.0 if p[1] >= 0.0 else -1.0
+    for k in range(TERMS - 1):
+        slope[k] = way * (k + 1) * p[k + 1]
+    return keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope))
 
 
 @kernel

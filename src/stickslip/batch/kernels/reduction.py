@@ -7,16 +7,14 @@ compiled code.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
+from stickslip.batch.kernels.points import Points
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import friction_of
 from stickslip.evolution.compiled import inlined, kernel
-from stickslip.evolution.events import NOT_YET, count_pulses, highest, rises_over, turning_points
+from stickslip.evolution.events import rises_over
 from stickslip.evolution.history import ROUNDING
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.evolution.layout import Floats, Store
 from stickslip.evolution.polynomial import evaluate, integral
 from stickslip.evolution.workspace import Run
 
@@ -62,28 +60,6 @@ COLUMNS = (
 ) = range(len(COLUMNS))
 OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, RECURRENCE_CV + 1)))
 """Quantities for which slip events must be found."""
-POINTS_PER_PIECE = 8
-"""Turning points for which there is room at first."""
-
-
-class Points(NamedTuple):
-    """Room for the turning points of a slip rate, in order of time, and for the events made of them."""
-
-    piece: Integers
-    xi: Floats
-    rate: Floats
-    kind: Integers
-    begin: Integers
-    past: Integers
-    top: Integers
-    pulses: Integers
-
-
-def new_points(capacity: int) -> Points:
-    """Room for so many."""
-    whole = [np.empty(capacity, np.int64) for _ in range(6)]
-    return Points(whole[0], np.empty(capacity), np.empty(capacity), *whole[1:])
-
 
 # ---- places in a history ----------------------------------------------------------------------------------------------------
 
@@ -212,51 +188,7 @@ def friction_after(run: Run, store: Store, length: int, piece: int, xi: float) -
 
 
 @kernel
-def put_in_order(points: Points, found: int) -> None:
-    """By piece, place in it, and at one place first what rises: as `events.walk`, whose order of pieces is right already."""
-    for n in range(1, found):
-        piece, xi, rate, kind = points.piece[n], points.xi[n], points.rate[n], points.kind[n]
-        k = n - 1
-        while k >= 0 and points.piece[k] == piece and comes_later(points.xi[k], points.kind[k], xi, kind):
-            move(points, k, k + 1)
-            k -= 1
-        points.piece[k + 1], points.xi[k + 1], points.rate[k + 1], points.kind[k + 1] = piece, xi, rate, kind
-
-
-@inlined
-def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
-    """Whether a point comes behind another one of the same piece."""
-    return xi > other_xi or (xi == other_xi and xi < 1.0 and kind < other_kind)
-
-
-@inlined
-def move(points: Points, source: int, target: int) -> None:
-    """A point to another place in the order."""
-    points.piece[target], points.xi[target] = points.piece[source], points.xi[source]
-    points.rate[target], points.kind[target] = points.rate[source], points.kind[source]
-
-
-@kernel
-def find_events(store: Store, length: int, threshold: float, points: Points) -> int:
-    """Slip events: where each begins, is fastest and ends among the points. Returns how many; NOT_YET if there is no room."""
-    found = turning_points(store, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
-    if found < 0:
-        return NOT_YET
-    put_in_order(points, found)
-    events = 0
-    for n in range(found):
-        if points.kind[n] == 1:
-            points.begin[events] = n
-            events += 1
-    for n in range(events):
-        points.past[n] = points.begin[n + 1] if n + 1 < events else found
-    highest(points.rate, points.begin[:events], points.past[:events], points.top)
-    count_pulses(points.rate, points.begin[:events], points.past[:events], points.pulses)
-    return events
-
-
-@kernel
-def fold_events(run: Run, store: Store, length: int, points: Points, events: int, out: Floats) -> None:
+def fold_events(run: Run, store: Store, points: Points, events: int, out: Floats) -> None:
     """Numbers of all events, and how they recur."""
     out[EVENTS], out[PULSES] = events, 0.0
     out[PEAK_RATE : RECURRENCE_CV + 1] = math.nan

@@ -8,13 +8,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from stickslip.batch.kernels.engine import advance_at
-from stickslip.batch.kernels.reduction import find_events, fold_events, fold_first, fold_whole, reached
+from stickslip.batch.kernels.points import find_events
+from stickslip.batch.kernels.reduction import fold_events, fold_first, fold_whole, reached
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.events import NOT_YET
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.status import BAD_PARAMETERS
-from stickslip.evolution.workspace import BRANCHES, borrow
+from stickslip.evolution.workspace import BRANCHES, Run, borrow
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups
@@ -55,7 +57,7 @@ def run_group(
     Returns the number of members when all are done, else that at which there is no room (where says how to go on); less when
     `stop` is set.
     """
-    state, count, scratch, store, points = work.state, work.counts, work.scratch, work.store, work.points
+    state, count, scratch = work.state, work.counts, work.scratch
     table = base.copy()
     for n in range(where[0], len(codes)):
         for k in range(len(base)):
@@ -71,24 +73,27 @@ def run_group(
             if where[2] == at.FULL or where[2] == OUT_OF_BUDGET:
                 where[0], where[1] = n, UNDER_WAY
                 return n
-        codes[n] = where[2]
-        length = count[at.LENGTH]
-        if length > 0:
-            run = borrow(table)
-            if wants_events:
-                events = find_events(store, length, setups.threshold[n], points)
-                if events < 0:
-                    where[0], where[1] = n, AT_END
-                    return n
-                fold_events(run, store, length, points, events, out[n])
-                if events > 0:
-                    fold_first(run, store, length, points, setups.excess[n], setups.stiffness[n], out[n])
-            end = reached(setups.duration[n], codes[n], setups.par[n, at.ROW_TIME], store, length)
-            fold_whole(run, store, length, end, out[n])
-        else:
-            codes[n] = BAD_PARAMETERS
+        codes[n] = where[2] if count[at.LENGTH] > 0 else BAD_PARAMETERS
+        if count[at.LENGTH] > 0 and not fold_member(borrow(table), setups, n, work, wants_events, codes[n], out[n]):
+            where[0], where[1] = n, AT_END
+            return n
         where[1] = AT_START
     return len(codes)
+
+
+@kernel
+def fold_member(run: Run, setups: Setups, n: int, work: Workspace, wants_events: bool, code: int, out: Floats) -> bool:
+    """Fold a run that has ended with a code; False where there is no room for its turning points."""
+    store, length = work.store, run.counts[at.LENGTH]
+    if wants_events:
+        events = find_events(store, length, setups.threshold[n], work.points)
+        if events == NOT_YET:
+            return False
+        fold_events(run, store, work.points, events, out)
+        if events > 0:
+            fold_first(run, store, length, work.points, setups.excess[n], setups.stiffness[n], out)
+    fold_whole(run, store, length, reached(setups.duration[n], code, run.par[at.ROW_TIME], store, length), out)
+    return True
 
 
 @kernel
