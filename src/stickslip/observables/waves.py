@@ -120,10 +120,11 @@ class Waves:
         """Work of what left in whole rows that were leaped over. Nothing is lost in them: a rigid driver's work is in the slab."""
         if past <= first:
             return 0.0
-        row = partial(self._in_row, past - 1, high=self.round, integrand=self._of(self.power))
-        if self.body.reflection != -1.0:
-            return (past - first) * row(low=0.0)  # nothing changes, or no row is leaped over
-        return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + row(low=self.half)
+        of_row = partial(self._in_row, high=self.round, integrand=self._of(self.power))
+        if self.body.reflection == -1.0:
+            return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + of_row(past - 1, low=self.half)
+        # nothing changes in these rows; what the driver sends back of the last one may meet another loading
+        return (past - first - 1) * of_row(first, low=0.0) + of_row(past - 1, low=0.0)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
