@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from distributed import Client
 
 EMPTY = 200
-CHUNKS, LENGTH = 8, 40
+CHUNKS, LENGTH = 4, 200_000
 """Chunks that are compared, and their members: rate-law slabs, two round trips each."""
 REPEATS = 5
-PLAN = make_plan("fig6-slab", {"friction.alpha": f"0.2..2:{CHUNKS * LENGTH}"}, quantities=["slip", "pulses"], chunk=LENGTH)
+PLAN = make_plan("fig6-slab", {"friction.alpha": f"0.5..2:{CHUNKS * LENGTH}"}, quantities=["slip", "pulses"], chunk=LENGTH)
 
 
 def nothing(work: Work, values: Mapping[str, Values]) -> Mapping[str, Values]:

@@ -11,7 +11,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import SOURCES
 from stickslip.evolution.layout import Floats, Integers
 
-DECIDE = ("bodies", "contact", "evolution", "friction")
+DECIDE = ("batch", "bodies", "contact", "evolution", "friction", "loading")
 """Folders of the package whose code decides what a run gives."""
 
 

@@ -36,6 +36,8 @@ AHEAD = 2
 LEAST = 8
 """Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
 RETRIES = 2
+GONE_AGAIN = ("lost", "pending")
+"""A result that was ready went with its worker before it was fetched: dask works it out anew."""
 PROFILER = "distributed.worker.profile.enabled"
 """What takes the most of dask's time on a worker, 5 % of everything, and nobody looks at here."""
 LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
@@ -119,6 +121,9 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
 
     ready = as_completed(send(), loop=client.loop)
     for future in ready:
+        if future.status in GONE_AGAIN:
+            ready.add(future)
+            continue
         number = numbers.pop(future)
         if future.status == "finished":
             yield number, future.result()

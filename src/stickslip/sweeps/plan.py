@@ -18,8 +18,8 @@ from stickslip.sweeps.design import Design, read_design
 from stickslip.sweeps.quantities import DEFAULT, Wanted, quantities_named
 from stickslip.sweeps.series import read_series
 
-CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK = 64, 16, 4096
-"""Into how many chunks a sweep is cut, and their sizes: what is lost when it is killed, and what the threads share."""
+CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
+"""Into how many chunks a sweep is cut, and their sizes, one by one and in the compiled batch: what is lost when it is killed."""
 SAMPLES = 200
 
 
@@ -81,12 +81,12 @@ def make_plan(
     members_of = read_design(chosen, vary, design, members, seed, where)
     kept = quantities_named(quantities)
     work = Work(chosen.to_toml(), members_of.keys, kept, read_series(chosen, members_of, series, samples))
-    return Plan(chosen, members_of, work, tile_of(members_of.shape, _chunk_size(members_of.size, chunk)))
+    return Plan(chosen, members_of, work, tile_of(members_of.shape, _chunk_size(members_of.size, chunk, work)))
 
 
-def _chunk_size(members: int, chunk: int | None) -> int:
+def _chunk_size(members: int, chunk: int | None, work: Work) -> int:
     if chunk is None:
-        return min(max(members // CHUNKS, SMALLEST_CHUNK), LARGEST_CHUNK)
+        return min(max(members // CHUNKS, SMALLEST_CHUNK), LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH)
     if not (isinstance(chunk, int) and chunk > 0):
         raise InputError(f"sweep: chunk must be a whole number of members above 0, got {chunk!r}")
     return chunk
