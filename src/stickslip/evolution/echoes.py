@@ -281,7 +281,7 @@ def end_trip(run: Run) -> None:
     run.counts[at.MOVED] = 0
 
 
-@inlined
+@kernel
 def pays(run: Run) -> bool:
     """Whether to meet only what breaks from here on: the round trip was at rest, or, if it had many pieces, almost."""
     if run.par[at.REFLECTION] != -1.0 or run.counts[at.IS_BLOCK] == 1 or run.counts[at.HAS_STATE] == 1:

@@ -34,7 +34,7 @@ def rows_leaped(run: Run, n: int) -> int:
     return run.counts[at.ROW] - run.whole[WHOLE * n + at.S_ROW] - 1
 
 
-@inlined
+@kernel
 def first_piece(run: Run) -> bool:
     """The next piece of load of a first round trip, or of any period of a block; False when there is none left."""
     source = run.counts[at.SOURCE]
@@ -64,7 +64,7 @@ def first_piece(run: Run) -> bool:
     return True
 
 
-@inlined
+@kernel
 def echo_piece(run: Run) -> bool:
     """The next piece of load that returns from the driver; False when the round trip is complete."""
     if run.counts[at.SPARSE] == 1:
@@ -107,7 +107,7 @@ def lump(run: Run) -> None:
     run.load[0] = mean
 
 
-@inlined
+@kernel
 def next_piece(run: Run) -> bool:
     """Bring the next piece of load; False at the end of the round trip."""
     first = run.counts[at.IS_BLOCK] == 1 or run.counts[at.ROW] == 0
@@ -124,7 +124,7 @@ def next_piece(run: Run) -> bool:
     return True
 
 
-@inlined
+@kernel
 def rows_at_rest(run: Run, limit: float) -> int:
     """Whole round trips that a contact at rest stays there for certain, judged from the one just past."""
     par = run.par
@@ -145,7 +145,7 @@ def rows_at_rest(run: Run, limit: float) -> int:
     return min(max(int(rows), 0), FOREVER) if rows < 9e18 else FOREVER
 
 
-@inlined
+@kernel
 def is_ramp(run: Run) -> bool:
     """Whether the load of the next round trips is that of the last one plus a ramp."""
     if run.counts[at.IS_BLOCK] == 1:
@@ -155,7 +155,7 @@ def is_ramp(run: Run) -> bool:
     return has_faded(run)
 
 
-@inlined
+@kernel
 def swings_for_ever(run: Run) -> bool:
     """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
     return (
@@ -163,7 +163,7 @@ def swings_for_ever(run: Run) -> bool:
     )
 
 
-@inlined
+@kernel
 def end_row(run: Run, limit: float, last_row: int) -> bool:
     """Close a round trip; leap over the following ones while nothing can happen in them.
 
@@ -204,7 +204,7 @@ def ended(run: Run) -> int:
     return at.LOCKED if run.counts[at.IS_LOCKED] == 1 else at.FINISHED
 
 
-@inlined
+@kernel
 def xi_at(run: Run, theta: float) -> float:
     """Where in the present piece the offset theta lies."""
     rest = theta - run.state[at.THETA_FROM]
