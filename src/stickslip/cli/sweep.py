@@ -58,7 +58,7 @@ def sweep(
     threads: Annotated[int | None, typer.Option(help="Threads (default: all cores).", show_default=False)] = None,
     chunk: Annotated[
         int | None,
-        typer.Option(help="Members that are run and saved together (default: 1/64, from 16 to 4096).", show_default=False),
+        typer.Option(help="Members that are run and saved together (default: 1/64 of all).", show_default=False),
     ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Processes of a dask cluster to be started here, instead of threads.", show_default=False)

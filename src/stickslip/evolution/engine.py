@@ -17,7 +17,7 @@ from stickslip.evolution.implicit import is_implicit
 from stickslip.evolution.layout import TERMS, Integers
 from stickslip.evolution.loading import has_faded, rows_withstood, take_part
 from stickslip.evolution.polynomial import fill, maximum, mean_of, total
-from stickslip.evolution.record import note_degree
+from stickslip.evolution.record import note_degree, xi_at
 from stickslip.evolution.slip import slip, slip_implicitly
 from stickslip.evolution.stick import arrive, stick
 from stickslip.evolution.workspace import EXIT, REAL, WHOLE, Run, borrow
@@ -114,7 +114,7 @@ def next_piece(run: Run) -> bool:
     if not (first_piece(run) if first else echo_piece(run)):
         return False
     if run.counts[at.VARIES] == 1:
-        take_part(run, run.state[at.THETA_FROM])
+        take_part(run)
     else:
         run.counts[at.SOURCE] += 1
     run.state[at.XI], run.state[EXIT] = 0.0, math.nan
@@ -202,15 +202,6 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
 def ended(run: Run) -> int:
     """What to say at the end of the run."""
     return at.LOCKED if run.counts[at.IS_LOCKED] == 1 else at.FINISHED
-
-
-@kernel
-def xi_at(run: Run, theta: float) -> float:
-    """Where in the present piece the offset theta lies."""
-    rest = theta - run.state[at.THETA_FROM]
-    root = math.sqrt(max(run.state[at.SPEED] * run.state[at.SPEED] + 4.0 * run.state[at.BEND] * rest, 0.0))
-    pace = run.state[at.SPEED] + root
-    return 2.0 * rest / pace if pace > 0.0 else 0.0
 
 
 @kernel

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
+from stickslip.evolution.loading import dirichlet
 from stickslip.loading import LoadingHistory, Segment, Tone
 from stickslip.loading.contract import SILENT
 from stickslip.problem import Problem
@@ -64,7 +65,7 @@ class Inflow:
         straight = rows * (self.value[n] + self.slope[n] * (middle - self.start[n]))
         if self.tone is SILENT:
             return np.asarray(straight)
-        return np.asarray(straight + dirichlet(rows, self.tone.frequency * self.row_time) * self._swing(middle))
+        return np.asarray(straight + self._summed(rows) * self._swing(middle))
 
     def breaks(self) -> list[tuple[int, float]]:
         """Rows and offsets (s) at which segments begin; the edges of rows are offset 0 of the later one."""
@@ -90,6 +91,10 @@ class Inflow:
         since = time - self.start[n]
         return np.asarray(whole[n] + since * (self.value[n] + 0.5 * self.slope[n] * since))
 
+    def _summed(self, rows: Floats) -> Floats:
+        """By how much the tones of so many rows are larger than that at their mean time."""
+        return np.array([dirichlet(count, self.tone.frequency * self.row_time) for count in rows.tolist()])
+
     def _swing(self, time: Floats) -> Floats:
         return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))
 
@@ -114,14 +119,6 @@ def row_time(problem: Problem) -> float:
 
 EDGE = 1e-13
 """Breaks nearer to the edge of a row, as a share of it, lie on it."""
-
-
-def dirichlet(count: Floats, step: float) -> Floats:
-    """Sum of so many unit phasors, a step (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
-    turns = round(step / (2.0 * np.pi))
-    rest = 0.5 * step - turns * np.pi  # in [-pi/2, pi/2]
-    kernel = np.sin(count * rest) / np.sin(rest) if rest != 0.0 else count
-    return np.asarray(kernel * np.where((turns * (count - 1.0)) % 2.0 == 1.0, -1.0, 1.0))
 
 
 def steady_inflow(problem: Problem) -> tuple[float, float]:

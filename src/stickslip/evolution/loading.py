@@ -13,6 +13,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.layout import TERMS
 from stickslip.evolution.polynomial import RECIPROCAL, copy, maximum, restrict, total
+from stickslip.evolution.record import xi_at
 from stickslip.evolution.workspace import WHOLE, Run
 
 TIE = 1e-13
@@ -20,21 +21,18 @@ TIE = 1e-13
 
 
 @kernel
-def take_part(run: Run, theta_whole: float) -> None:
-    """Of the source of load just brought, and not yet taken, the part up to the next break of the loading, with what it adds.
-
-    `theta_whole` is where the source itself begins.
-    """
+def take_part(run: Run) -> None:
+    """Of the source of load just brought, and not yet taken, the part up to the next break of the loading, with what it adds."""
     begin = run.state[at.TAKEN]
     if begin > 0.0:
         run.counts[at.ARRIVING] = at.NO_CAUSE
-    theta = run.state[at.TAKEN_TO_THETA] if begin > 0.0 else theta_whole
+    theta = run.state[at.TAKEN_TO_THETA] if begin > 0.0 else run.state[at.THETA_FROM]
     if enter_segment(run, theta):
         run.counts[at.ARRIVING] = at.LOADING
     end, theta_to = 1.0, run.state[at.THETA_TO]
     change = next_change(run)
     if change < theta_to - TIE * run.par[at.ROW_TIME]:
-        end, theta_to = place_of(run, change), change
+        end, theta_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, theta, theta_to)
     add_loading(run)
@@ -60,14 +58,6 @@ def next_change(run: Run) -> float:
     if following >= run.segments or run.from_row[following] > run.counts[at.ROW]:
         return math.inf
     return run.from_offset[following] if run.from_row[following] == run.counts[at.ROW] else -math.inf
-
-
-@inlined
-def place_of(run: Run, theta: float) -> float:
-    """Where in the whole source (xi) an offset lies."""
-    rest = theta - run.state[at.THETA_FROM]
-    root = math.sqrt(max(run.state[at.SPEED] * run.state[at.SPEED] + 4.0 * run.state[at.BEND] * rest, 0.0))
-    return min(2.0 * rest / (run.state[at.SPEED] + root), 1.0)
 
 
 @inlined
@@ -105,19 +95,19 @@ def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
     run.load[1] += slope * run.state[at.SPEED]
     run.load[2] += slope * run.state[at.BEND]
     if run.par[at.TONE] != 0.0:
-        weight = kernel_of_rows(rows, run.par[at.TONE_FREQUENCY] * run.par[at.ROW_TIME])
+        weight = dirichlet(rows, run.par[at.TONE_FREQUENCY] * run.par[at.ROW_TIME])
         tone_series(run, weight * run.par[at.TONE], mean_row * run.par[at.ROW_TIME] + run.state[at.THETA_FROM])
         for k in range(TERMS):
             run.load[k] += run.spare[k]
 
 
-@inlined
-def kernel_of_rows(rows: float, step: float) -> float:
-    """Dirichlet's kernel: the sum of so many phasors a step (rad) apart, along their mean (see `inflow.dirichlet`)."""
+@kernel
+def dirichlet(count: float, step: float) -> float:
+    """Sum of so many unit phasors, a step (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
     turns = math.floor(step / (2.0 * math.pi) + 0.5)
-    rest = 0.5 * step - turns * math.pi
-    value = rows if rest == 0.0 else math.sin(rows * rest) / math.sin(rest)
-    return -value if (turns * (rows - 1.0)) % 2.0 == 1.0 else value
+    rest = 0.5 * step - turns * math.pi  # in [-pi/2, pi/2]
+    value = count if rest == 0.0 else math.sin(count * rest) / math.sin(rest)
+    return -value if (turns * (count - 1.0)) % 2.0 == 1.0 else value
 
 
 @kernel

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, inlined
+from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.polynomial import degree, fill
 from stickslip.evolution.workspace import DEGREE, REAL, WHOLE, Run
 
@@ -15,6 +17,15 @@ RESOLVED = 1e-12
 def theta_at(run: Run, xi: float) -> float:
     """Offset in the round trip at a place in the present piece of load."""
     return run.state[at.THETA_TO] if xi >= 1.0 else run.state[at.THETA_FROM] + xi * (run.state[at.SPEED] + xi * run.state[at.BEND])
+
+
+@kernel
+def xi_at(run: Run, theta: float) -> float:
+    """Where in the present piece the offset theta lies."""
+    rest = theta - run.state[at.THETA_FROM]
+    root = math.sqrt(max(run.state[at.SPEED] * run.state[at.SPEED] + 4.0 * run.state[at.BEND] * rest, 0.0))
+    pace = run.state[at.SPEED] + root
+    return 2.0 * rest / pace if pace > 0.0 else 0.0
 
 
 @inlined
