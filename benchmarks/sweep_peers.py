@@ -24,6 +24,7 @@ from stickslip.batch.many import member
 from stickslip.batch.setups import set_up
 from stickslip.batch.workspace import new_workspace, table_of
 from stickslip.bodies import ElasticSlab
+from stickslip.evolution.lanes import WIDTH
 from stickslip.friction import SinusoidalSlip
 from stickslip.scenarios.scenario import Scenario
 
@@ -63,13 +64,14 @@ def ours(task: Task, members: int, quantities: tuple[str, ...] = ("slip",)) -> R
 
 def setups_given(task: Task, members: int) -> Run:
     """The batch's kernel alone, on one thread: as C, it gets the setups as a gift."""
-    setups, work = set_up(task.scenario, {task.key: task.numbers(members)}), new_workspace()
+    setups = set_up(task.scenario, {task.key: task.numbers(members)})
+    work = new_workspace().ready_for(setups.constants.shape[2])
     base, stride = table_of(setups, work)
     codes, out, stop = np.empty(members, np.int64), np.empty((members, len(QUANTITIES))), np.zeros(1, np.int64)
 
     def run(threads: int) -> Floats:
-        done = run_group(engine_address(), setups, base, stride, work, np.zeros(3, np.int64), False, stop, codes, out)
-        assert done == members
+        work.upcoming[:] = 0
+        assert run_group(engine_address(), setups, base, stride, work, False, stop, codes, out) == WIDTH
         return out[:, QUANTITIES.index("slip")]
 
     return run
@@ -85,7 +87,8 @@ def in_c(task: Task, members: int) -> Run:
     law = task.case.problem.friction
     (formula,) = law.trees()
     kernel = c_peer.library(formula, law.parameters()).run_members
-    setups, work = set_up(task.scenario, {task.key: task.numbers(members)}), new_workspace()
+    setups = set_up(task.scenario, {task.key: task.numbers(members)})
+    work = new_workspace().ready_for(setups.constants.shape[2])
     base, stride = table_of(setups, work)
     kept = (setups, work, base, stride)
     given = (setups.branches, setups.state, setups.counts, setups.last_row, setups.last_theta)
@@ -93,7 +96,7 @@ def in_c(task: Task, members: int) -> Run:
     def run(threads: int) -> Floats:
         slip = np.empty(members)
         pointers = [array.ctypes.data for array in (*kept[2:], *given)]
-        failed = kernel(*pointers[:2], len(base), *pointers[2:], members, threads, slip.ctypes.data)
+        failed = kernel(*pointers[:2], len(stride), *pointers[2:], members, threads, slip.ctypes.data)
         assert failed == 0, f"{failed} members in C did not finish"
         return slip
 

@@ -12,13 +12,13 @@ import numpy as np
 from stickslip.batch.conditions import why_not
 from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
-from stickslip.batch.kernels.runs import AT_START, run_group
+from stickslip.batch.kernels.runs import AT_END, FREE, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.many import Values, are_fine, groups, member
 from stickslip.batch.setups import set_up
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.errors import InputError
-from stickslip.evolution import layout as at
+from stickslip.evolution.lanes import WIDTH
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
 from stickslip.scenarios.scenario import Scenario
@@ -129,19 +129,19 @@ class _Batch:
         """Run members that are alike but for their numbers; `places` says where they stand in the batch."""
         setups = set_up(self.scenario, values)
         codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
-        where = np.array([0, AT_START, 0])
+        work = work.ready_for(setups.constants.shape[2])
         while True:
             base, stride = table_of(setups, work)
-            done = run_group(self.engine, setups, base, stride, work, where, self.wants_events, self.stop, codes, out)
-            if done == len(places) or self.stop[0] != 0:
+            lane = run_group(self.engine, setups, base, stride, work, self.wants_events, self.stop, codes, out)
+            if lane == WIDTH or self.stop[0] != 0:
                 break
-            if where[2] != at.FULL:
+            if work.stage[lane] == AT_END:
                 work = work.with_more_points()
             elif work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
-                codes[done] = run_alone(self.member(places[done]), LARGEST_CAPACITY, self.stop, out[done])
-                where[:] = done + 1, AT_START, 0
+                n, work.stage[lane] = work.member[lane], FREE
+                codes[n] = run_alone(self.member(places[n]), LARGEST_CAPACITY, self.stop, out[n])
         out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes

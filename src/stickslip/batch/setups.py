@@ -12,9 +12,9 @@ from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.many import Values, many, member
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import compile_formula
+from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Floats, Integers
-from stickslip.evolution.moving_branches import branch_rows, is_algebraic
+from stickslip.evolution.moving_branches import branch_rows, has_inertia, is_algebraic
 from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of
 from stickslip.evolution.tables import default_event_rate
 from stickslip.friction import FrictionLaw
@@ -33,6 +33,7 @@ class Setups(NamedTuple):
 
     par: Floats  # (members, PARAMETERS)
     address: Integers  # (3, pieces), the same for all
+    jets: Integers  # (pieces,): the formulas' series for lanes; (0,) where members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Floats  # (members, 3, pieces)
     branch: Floats  # (members, 6 MOST_BRANCHES), of which the first 6 branches[n] are filled
@@ -57,13 +58,14 @@ def set_up(scenario: Scenario, values: Values) -> Setups:
     duration = np.broadcast_to(np.asarray(values.get("run.duration", scenario.duration)), (count,))
     par = parameters_of(problem)
     set_tolerance(par, values.get("run.rtol", scenario.rtol), scenario.shortest_event)
-    address, constants, law = formulas(problem, first, count)
+    address, jets, constants, law = formulas(problem, first, count)
     branch, branches, irregular, par[at.STICK_TO] = branches_of(problem, first, address, constants, count)
     state, counts = start_of(first)
     last_row, last_theta = split_times(duration, par[at.ROW_TIME])
     return Setups(
         par=rows(par),
         address=address,
+        jets=jets,
         constants=constants,
         law=law,
         branch=branch,
@@ -103,14 +105,15 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 # ---- the law ----------------------------------------------------------------------------------------------------------------
 
 
-def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Floats, Floats]:
-    """Addresses of the law's functions, their constants, and shifts, offsets and knots: as in `evolution.setup`."""
+def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Integers, Floats, Floats]:
+    """Addresses of the law's functions, alone and in lanes, their constants, and shifts, offsets, knots: as in `evolution.setup`."""
     law, start = problem.friction, problem.law_slip
     home = int(first.friction.piece_at(first.law_slip))
     with LOADING:
         compiled = [compile_formula(tree, first.friction.parameters(), None) for tree in first.friction.trees()]
         address = np.array([addresses_of(formula, first) for formula in compiled], np.int64).T.copy()
         prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
+        jets = np.array([] if steps_alone(first) else [jets_of(formula, first) for formula in compiled], np.int64)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(compiled))]
     references = near if law.knot_variable == "slip" else [start] * len(compiled)
     static = law.pieces[home](law, start, 0.0) + law.static_excess
@@ -121,7 +124,17 @@ def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Fl
     numbers = np.stack([spread(getattr(law, name), count) for name in law.parameters()], axis=1)
     constants = np.zeros((count, len(compiled), max(formula.size for formula in compiled)))
     fill_constants(prepare, numbers, np.stack([spread(x, count) for x in references], axis=1), constants)
-    return address, constants, rows(np.stack(table).reshape(3, len(compiled), count))
+    return address, jets, constants, rows(np.stack(table).reshape(3, len(compiled), count))
+
+
+def steps_alone(problem: Problem) -> bool:
+    """Whether a run's steps are not for lanes: the slip rate is a root of the contact equation, or has knots."""
+    return is_algebraic(problem) or (len(problem.friction.knots) > 0 and problem.friction.knot_variable == "rate")
+
+
+def jets_of(formula: CompiledFormula, problem: Problem) -> int:
+    """Address of a formula's series for lanes."""
+    return formula.motion_jets if has_inertia(problem) else formula.rate_jets
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------

@@ -1,16 +1,18 @@
-"""What a thread of a batch works in: one state, one history, whatever members come."""
+"""What a thread of a batch works in: lanes, each with a state and a history, whatever members come."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from stickslip.batch.kernels.lanes import AWAY, CONSTANTS
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
+from stickslip.batch.kernels.runs import FREE
 from stickslip.batch.setups import Setups
 from stickslip.evolution import layout as at
 from stickslip.evolution.echoes import Echoes, new_echoes
-from stickslip.evolution.echoes import resized as with_room
+from stickslip.evolution.lanes import WIDTH
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.setup import NOT_VARYING
 from stickslip.evolution.workspace import (
@@ -26,11 +28,13 @@ from stickslip.evolution.workspace import (
 )
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
-"""Pieces of history for which a thread has room; a member that needs more is run by itself."""
+"""Pieces of history for which a lane has room; a member that needs more is run by itself."""
+ALIGNED = 64
+"""Bytes: addresses of lanes are multiples of it."""
 
 
 class Workspace(NamedTuple):
-    """What one thread needs, whatever members come."""
+    """What one thread needs, whatever members come: of each table, one for each lane."""
 
     state: Floats
     counts: Integers
@@ -38,16 +42,31 @@ class Workspace(NamedTuple):
     store: Store
     echoes: Echoes
     points: Points
+    numbers: Floats  # room for the block of `kernels.lanes`, and the block's address
+    block: Integers
+    stage: Integers  # of each lane, see `kernels.runs`
+    waits: Integers
+    member: Integers  # the one in each lane
+    code: Integers  # what its run has come to
+    upcoming: Integers  # the next member to be taken
 
     @property
     def capacity(self) -> int:
-        """Pieces of history for which there is room."""
-        return len(self.store.whole)
+        """Pieces of history for which each lane has room."""
+        return self.store.whole.shape[1]
+
+    def ready_for(self, constants: int) -> Workspace:
+        """All lanes free, for members from the first one on of a law with so many constants."""
+        self.stage[:], self.waits[:], self.upcoming[:] = FREE, AWAY, 0
+        numbers, block = new_block(constants)
+        return self._replace(numbers=numbers, block=block)
 
     def larger(self) -> Workspace:
-        """With room for four times as many pieces; the history so far is kept."""
-        length, capacity = int(self.counts[at.LENGTH]), min(4 * self.capacity, LARGEST_CAPACITY)
-        store, echoes = at.resized(self.store, length, capacity), with_room(self.echoes, length, capacity)
+        """With room for four times as many pieces; the histories so far are kept."""
+        capacity = min(4 * self.capacity, LARGEST_CAPACITY)
+        store, echoes = in_lanes(at.new_store(WIDTH * capacity)), in_lanes(new_echoes(WIDTH * capacity))
+        for old, new in zip((*self.store, *self.echoes), (*store, *echoes), strict=True):
+            new[:, : old.shape[1]] = old
         return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
 
     def with_more_points(self) -> Workspace:
@@ -55,19 +74,53 @@ class Workspace(NamedTuple):
         return self._replace(points=new_points(2 * len(self.points.xi)))
 
 
+Tables = TypeVar("Tables", Store, Echoes)
+
+
+def in_lanes(tables: Tables) -> Tables:
+    """The rows of tables, shared out among the lanes."""
+    return tables._make(table.reshape(WIDTH, len(table) // WIDTH, table.shape[1]) for table in tables)
+
+
+def lane_of(tables: Tables, n: int) -> Tables:
+    """The tables of one lane."""
+    return tables._make(table[n] for table in tables)
+
+
+def new_block(constants: int) -> tuple[Floats, Integers]:
+    """For a law of so many constants: see `Workspace.numbers`."""
+    numbers = np.zeros(WIDTH * (CONSTANTS + constants) + ALIGNED // 8)
+    return numbers, np.array([-(-numbers.ctypes.data // ALIGNED) * ALIGNED])
+
+
 def new_workspace() -> Workspace:
     """For one thread."""
-    store, points = at.new_store(FIRST_CAPACITY), new_points(POINTS_PER_PIECE * FIRST_CAPACITY)
-    scratch = np.zeros((WORK_ROWS, at.TERMS))
-    return Workspace(np.zeros(STATES), np.zeros(COUNTS, np.int64), scratch, store, new_echoes(FIRST_CAPACITY), points)
+    stage, waits, member, code = (np.zeros(WIDTH, np.int64) for _ in range(4))
+    return Workspace(
+        np.zeros((WIDTH, STATES)),
+        np.zeros((WIDTH, COUNTS), np.int64),
+        np.zeros((WIDTH, WORK_ROWS, at.TERMS)),
+        in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
+        in_lanes(new_echoes(WIDTH * FIRST_CAPACITY)),
+        new_points(POINTS_PER_PIECE * FIRST_CAPACITY),
+        *new_block(0),
+        stage,
+        waits,
+        member,
+        code,
+        np.zeros(1, np.int64),
+    )
 
 
 def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
-    """The engine's table for the first member, and what to add to it from one member to the next."""
+    """The engine's table of each lane for the first member, and what to add to it from one member to the next."""
     own = Setup(setups.par[0], setups.address, setups.constants[0], setups.law[0], setups.branch[:1], setups.first[0], NOT_VARYING)
-    table = lend(own, work.state, work.counts, work.scratch, work.store, work.echoes)
-    stride = np.zeros(len(table), np.int64)
+    tables = []
+    for n in range(WIDTH):
+        store, echoes = lane_of(work.store, n), lane_of(work.echoes, n)
+        tables.append(lend(own, work.state[n], work.counts[n], work.scratch[n], store, echoes))
+    stride = np.zeros(len(tables[0]), np.int64)
     own_rows = {PAR_AT: setups.par, CONSTANTS_AT: setups.constants, LAW_AT: setups.law, BRANCH_AT: setups.branch}
     for place, rows in (own_rows | {FIRST_AT: setups.first}).items():
         stride[place] = rows.strides[0]
-    return table, stride
+    return np.stack(tables), stride

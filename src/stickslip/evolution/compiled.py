@@ -80,14 +80,9 @@ def inlined(function: F) -> F:
     return _compiled(function, forceinline=True)
 
 
-def reduction(function: F) -> F:
-    """As `inlined`, for sums whose terms may be added in any order, several at a time."""
-    return _compiled(function, fastmath=("contract", "reassoc", "nsz"), forceinline=True)
-
-
-def _compiled(function: F, fastmath: tuple[str, ...] = ("contract",), **options: bool) -> F:
+def _compiled(function: F, **options: bool) -> F:
     with _cached_on_disk():
-        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath=set(fastmath), **options)(function)
+        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
     return compiled
 
 
@@ -148,6 +143,16 @@ class CompiledFormula:
     def motion_jet(self) -> int:
         """Address of motion_jet(c, k, L, s)."""
         return int(self._function("motion_jet").address)
+
+    @cached_property
+    def rate_jets(self) -> int:
+        """Address of rate_jet for lanes."""
+        return int(self._function("rate_jets").address)
+
+    @cached_property
+    def motion_jets(self) -> int:
+        """Address of motion_jet for lanes."""
+        return int(self._function("motion_jets").address)
 
 
 @cache

@@ -211,7 +211,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
     NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. END_AHEAD: what
     comes next depends on where the run ends; the caller sets TO_THE_END and goes on. Up to there a longer run is the same.
-    PAUSED: row PAUSE_AT, or one behind it, comes next.
+    PAUSED: row PAUSE_AT, or one behind it, comes next. SLIPS: a run that WAITS is to take an explicit step of slip.
 
     `table` comes from `workspace.lend`. Its scratch array is kept between calls.
     """
@@ -257,6 +257,9 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 stick(run, xi_to)
             elif is_implicit(run):
                 slip_implicitly(run, xi_to)
+            elif run.counts[at.WAITS] == 1:
+                run.state[at.TARGET] = xi_to
+                return at.SLIPS
             else:
                 slip(run, xi_to)
             if not math.isfinite(run.state[at.RATE_NOW]):

@@ -7,6 +7,7 @@ value      mu(x, s) - mu(x_ref, 0) with its derivatives with respect to s and x
 state_value  mu(x, s, w) - mu(x_ref, 0, 0) with its derivatives with respect to s, x and the state w, and the same of dw/dt
 rate_jet   massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
 motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
+rate_jets, motion_jets  the same for several runs side by side (see `lanes`)
 
 Friction is kept as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
 released from the very edge of equilibrium keeps its digits. s >= 0 is the magnitude of the slip rate, q its integral, and
@@ -32,6 +33,8 @@ SIGNATURES = {
     "state_value": ("c[]", "dx", "s", "w", "out[]"),
     "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jet": ("c[]", "k[]", "L[]", "s[]"),
+    "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
+    "motion_jets": ("c[]", "k[]", "L[]", "s[]"),
 }
 """Arguments of the functions: arrays where marked, else numbers."""
 
@@ -71,6 +74,19 @@ def arcsinh_difference(base, step):
     return asinh(step * (root - base * (2.0 * base + step) / (root + other)))
 
 '''
+
+SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
+
+LANES_HEADER = """
+from stickslip.evolution.lanes import POINTER as _array
+from stickslip.evolution.lanes import lane_by_lane
+
+exp_difference = lane_by_lane(exp_difference)
+power_difference = lane_by_lane(power_difference)
+exp_value = lane_by_lane(exp_value)
+arcsinh_difference = lane_by_lane(arcsinh_difference)
+
+"""
 
 
 def describe(node: Expression) -> str:
@@ -169,6 +185,8 @@ class FormulaWriter(Recurrences):
             "state_value": self.state_value,
             "rate_jet": self.rate_jet,
             "motion_jet": self.motion_jet,
+            "rate_jets": self.rate_jet,
+            "motion_jets": self.motion_jet,
         }
         return write[part]()
 
@@ -178,7 +196,8 @@ class FormulaWriter(Recurrences):
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
         head = f"@cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
-        return MODULE_HEADER.format(formula=describe(self.formula)) + head + body
+        header = MODULE_HEADER.format(formula=describe(self.formula)) + (LANES_HEADER if part in SIDE_BY_SIDE else "")
+        return header + head + body
 
 
 def _integral(name: str, k: int) -> str:

@@ -37,7 +37,8 @@ AMPLIFIED, GAIN = 15, 16  # what has become of an error of the load in the prese
 SLIP_SINCE = 17  # offset at which slip began
 KEPT = 18  # of these, what is set aside where another piece comes in between
 TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brought, in its xi and as an offset
-STATES = 20
+TARGET = 20  # xi up to which a run may slip that waits for others, to take its step side by side with them
+STATES = 21
 assert KEPT <= TERMS  # it is set aside in a row of scratch space
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
@@ -49,7 +50,8 @@ SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are me
 LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip began; slips beyond resolution, less others
 PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
 VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now, and at the end of the row before
-COUNTS = 44
+WAITS = 44  # explicit steps of slip are left to the caller
+COUNTS = 45
 
 NEVER = 2**62
 """No row."""
@@ -62,7 +64,7 @@ MET, BROUGHT = 1, 2
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED = range(8)
+FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED, SLIPS = range(9)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------

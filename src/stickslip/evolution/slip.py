@@ -34,6 +34,7 @@ from stickslip.evolution.polynomial import (
     first_descent,
     integral,
     magnitude,
+    multiply,
     powers_of,
     total,
 )
@@ -56,6 +57,14 @@ def first_guess(run: Run, left: float) -> float:
 @inlined
 def series(run: Run, guess: float) -> None:
     """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
+    prepare_series(run, guess)
+    piece = run.counts[at.PIECE]
+    call_jet(run.jet_at[piece], constants_of(run, piece), run.k, run.seen, run.jet)
+
+
+@inlined
+def prepare_series(run: Run, guess: float) -> None:
+    """What the series is made of: the load ahead (run.seen), and run.k."""
     direction, par, k = run.counts[at.MODE], run.par, run.k
     load_ahead(run, guess)
     k[at.K_RATE] = abs(run.state[at.RATE_NOW])
@@ -74,15 +83,13 @@ def series(run: Run, guess: float) -> None:
     k[at.K_SLIP], k[at.K_OFFSET] = run.state[at.LAW_SLIP] + run.slip_shift[piece], run.offset[piece]
     k[at.K_FREE] = 0.0 if edge else 1.0
     k[at.K_FORCE] = par[at.NORMAL] * par[at.STATIC_EXCESS] if edge else 0.0
-    call_jet(run.jet_at[piece], constants_of(run, piece), k, run.seen, run.jet)
 
 
 @inlined
 def stretch(run: Run, length: float, rate: Floats) -> None:
     """The slip rate's magnitude over a step of so many guesses, on [0, 1]."""
     powers_of(length, run.powers)
-    for k in range(at.TERMS):
-        rate[k] = run.jet[k] * run.powers[k]
+    multiply(run.jet, run.powers, rate)
 
 
 @inlined
@@ -227,6 +234,14 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 @inlined
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     """Choose the length of an explicit step, and go."""
+    length, reached = choose_length(run, target, guess)
+    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
+    finish_step(run, target, guess, length, reached, leaves, False)
+
+
+@inlined
+def choose_length(run: Run, target: float, guess: float) -> tuple[float, bool]:
+    """Length of an explicit step (in guesses), and whether it reaches the target. Of run.jet it needs the first and last terms."""
     limit = (target - run.state[at.XI]) / guess
     length = usable_length(run.jet, run.par[at.TOLERANCE])
     # as the tolerance would have it: what events and ends of pieces cut off says nothing of the next step's length
@@ -236,8 +251,7 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         length = limit
     elif length > 0.5 * limit:
         length = 0.5 * limit
-    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
-    finish_step(run, target, guess, length, reached, leaves, False)
+    return length, reached
 
 
 @inlined
@@ -269,12 +283,15 @@ def finish_step(run: Run, target: float, guess: float, length: float, reached: b
 @inlined
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     """Record the step, which ends at xi = to, and move the state there."""
+    multiply(run.local, run.powers, ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH]))
+    move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
+
+
+@inlined
+def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
+    """Record the step, of which load and rate (as a magnitude) stand in the next free row, and the slip is known; move there."""
     direction = run.counts[at.MODE]
-    grown = growth(run, rate, length, 1.0)
-    rate_end = total(rate)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
-    for k in range(at.TERMS):
-        load[k] = run.local[k] * run.powers[k]
     speed, bend = run.k[at.K_SPEED] * length, run.k[at.K_BEND] * length * length
     if run.counts[at.IS_BLOCK] == 1:
         unload_spring(direction * run.par[at.STIFFNESS] * speed, direction * run.par[at.STIFFNESS] * bend, rate, load)
@@ -282,7 +299,7 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]
-    note_gain(run, evaluate(rate, 0.5))
+    note_gain(run, rate)
     record(run, to)
     run.counts[at.MOVED], run.counts[at.EDGE] = 1, 0
     run.state[at.SLIP_NOW] += direction * grown
@@ -291,13 +308,13 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
 
 
 @inlined
-def note_gain(run: Run, rate: float) -> None:
+def note_gain(run: Run, rate: Floats) -> None:
     """By how much slip multiplies an error of the load (Z v + S mu(v) = load, and 2 Z v - load goes back): |2 Z / g'(v) - 1|.
 
     Where slip, inertia or a state decide with it, what becomes of an error is no matter of its phase alone.
     """
     if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.FOLDS_MOVE] == 0:
-        friction_at(run, run.state[at.LAW_SLIP], abs(rate), run.value)
+        friction_at(run, run.state[at.LAW_SLIP], abs(evaluate(rate, 0.5)), run.value)
         run.state[at.GAIN] = abs(2.0 * run.par[at.IMPEDANCE] / (run.par[at.IMPEDANCE] + run.value[1]) - 1.0)
     else:
         run.state[at.GAIN] = math.nan

@@ -1,0 +1,170 @@
+"""Eight numbers side by side, on which the processor works at once: a type of compiled code, with its arithmetic.
+
+What is written for a float holds for lanes as well: the same functions, compiled for the other type, do in each lane what they do
+for a float, bit for bit. What decides (if, while) is not for lanes.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import llvmlite.ir as ir
+from numba import njit, types
+from numba.core.cgutils import get_or_insert_function
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
+
+WIDTH = 8
+"""Lanes: what fills the widest registers of today's processors; where they are narrower, several serve."""
+
+Writer = Callable[[Any, Any, list[Any]], Any]
+"""Writes the code of a function: from the compiler's context and builder, and the arguments, to the result."""
+
+VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
+INDEX = ir.IntType(32)
+
+
+class Lanes(types.Type):  # type: ignore[misc] # numba
+    """The type of `WIDTH` floats side by side."""
+
+    def __init__(self) -> None:
+        super().__init__("Lanes")
+
+
+LANES = Lanes()
+POINTER = types.CPointer(LANES)
+
+
+@register_model(Lanes)
+class LanesModel(models.PrimitiveModel):  # type: ignore[misc] # numba
+    """A vector register."""
+
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, VECTOR)
+
+
+def _in_every_lane(builder: Any, number: Any) -> Any:
+    first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), number, ir.Constant(INDEX, 0))
+    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(INDEX, WIDTH), [0] * WIDTH))
+
+
+@lower_cast(types.Float, LANES)
+def _cast(context: Any, builder: Any, from_type: Any, to_type: Any, number: Any) -> Any:
+    return _in_every_lane(builder, context.cast(builder, number, from_type, types.float64))
+
+
+def _define(function: Any, arguments: int, write: Writer) -> None:
+    """Teach the compiler a function of lanes; numbers among its arguments hold in every lane."""
+
+    def generic(self: Any, args: tuple[Any, ...], keywords: Any) -> Any:
+        known = all(kind == LANES or isinstance(kind, (types.Float, types.Integer)) for kind in args)
+        if len(args) != arguments or LANES not in args or not known:
+            return None
+        return signature(LANES, *(kind if kind == LANES else types.float64 for kind in args))
+
+    infer_global(function)(type(f"Lanes_{function.__name__}", (AbstractTemplate,), {"generic": generic}))
+
+    def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        lanes = [x if kind == LANES else _in_every_lane(builder, x) for x, kind in zip(args, sig.args, strict=True)]
+        return write(context, builder, lanes)
+
+    for which in range(1, 2**arguments):
+        lower_builtin(function, *(LANES if which >> n & 1 else types.float64 for n in range(arguments)))(lower)
+
+
+def _instruction(name: str) -> Writer:
+    return lambda context, builder, args: getattr(builder, name)(*args)
+
+
+def _of_the_processor(name: str) -> Writer:
+    kind = ir.FunctionType(VECTOR, [VECTOR])
+
+    def write(context: Any, builder: Any, args: list[Any]) -> Any:
+        return builder.call(get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64"), args)
+
+    return write
+
+
+def _smaller(context: Any, builder: Any, args: list[Any]) -> Any:
+    return builder.select(builder.fcmp_ordered("<", args[1], args[0]), args[1], args[0])
+
+
+def _each_by_itself(function: Any) -> Writer:
+    of_float = signature(types.float64, types.float64)
+
+    def write(context: Any, builder: Any, args: list[Any]) -> Any:
+        result = ir.Constant(VECTOR, ir.Undefined)
+        for n in range(WIDTH):
+            place = ir.Constant(INDEX, n)
+            one = context.compile_internal(builder, lambda x: function(x), of_float, [builder.extract_element(args[0], place)])
+            result = builder.insert_element(result, one, place)
+        return result
+
+    return write
+
+
+for _operators, _name in (
+    ((operator.add, operator.iadd), "fadd"),
+    ((operator.sub, operator.isub), "fsub"),
+    ((operator.mul, operator.imul), "fmul"),
+    ((operator.truediv, operator.itruediv), "fdiv"),
+):
+    for _operator in _operators:
+        _define(_operator, 2, _instruction(_name))
+_define(operator.neg, 1, _instruction("fneg"))
+_define(abs, 1, _of_the_processor("fabs"))
+_define(math.sqrt, 1, _of_the_processor("sqrt"))
+_define(min, 2, _smaller)
+for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p, math.tanh, math.asinh):
+    _define(_function, 1, _each_by_itself(_function))
+
+
+@intrinsic
+def _lane(typingctx: Any, numbers: Any, n: Any) -> Any:
+    """Of numbers and lanes, what they are in the lane n."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        given = [builder.extract_value(args[0], i) for i in range(len(numbers))]
+        own = [builder.extract_element(x, args[1]) if kind == LANES else x for x, kind in zip(given, numbers, strict=True)]
+        return context.make_tuple(builder, signature.return_type, own)
+
+    return types.UniTuple(types.float64, len(numbers))(numbers, types.int64), codegen
+
+
+@intrinsic
+def _joined(typingctx: Any, numbers: Any) -> Any:
+    """So many floats as lanes."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        result = ir.Constant(VECTOR, ir.Undefined)
+        for n in range(WIDTH):
+            result = builder.insert_element(result, builder.extract_value(args[0], n), ir.Constant(INDEX, n))
+        return result
+
+    return LANES(numbers), codegen
+
+
+def lane_by_lane(function: Any) -> Any:
+    """A compiled function of floats as one of lanes."""
+
+    @njit
+    def of_lanes(*numbers: Any) -> Any:
+        return _joined((
+            function(*_lane(numbers, 0)), function(*_lane(numbers, 1)), function(*_lane(numbers, 2)), function(*_lane(numbers, 3)),
+            function(*_lane(numbers, 4)), function(*_lane(numbers, 5)), function(*_lane(numbers, 6)), function(*_lane(numbers, 7)),
+        ))  # fmt: skip
+
+    return of_lanes
+
+
+@intrinsic
+def lanes_at(typingctx: Any, address: Any) -> Any:
+    """An address, of which 64 is a factor, as a pointer to lanes, which is indexed like an array."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
+
+    return POINTER(types.int64), codegen
