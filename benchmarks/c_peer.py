@@ -22,6 +22,10 @@ SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
 FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp", "-Wl,-Bsymbolic")
 
 
+SINES = ("#define sine(e) (2.0 * sin(0.5 * (e)) * cos(0.5 * (e)))", "#define versine(e) (2.0 * sin(0.5 * (e)) * sin(0.5 * (e)))")
+"""What `evolution.sines` does, by the C library: the compiler makes one call of all."""
+
+
 def c_function(writer: FormulaWriter, part: str) -> str:
     """The straight-line statements of a formula's function as C: what is missing is declarations and semicolons."""
     arguments = ", ".join(f"double *restrict {name[:-2]}" if name.endswith("[]") else f"double {name}" for name in SIGNATURES[part])
@@ -39,7 +43,9 @@ def header(writer: FormulaWriter) -> str:
     """law.h: the layout's names as numbers, and the law."""
     names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
-    return "\n".join(defines) + "\n\n" + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+    return (
+        "\n".join([*defines, *SINES]) + "\n\n" + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+    )
 
 
 @cache

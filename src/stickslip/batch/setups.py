@@ -106,7 +106,7 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 
 
 def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Integers, Floats, Floats]:
-    """Addresses of the law's functions, alone and in lanes, their constants, and shifts, offsets, knots: as in `evolution.setup`."""
+    """Addresses of the law's functions, alone and in lanes, their constants, shifts, offsets and knots: as in `evolution.setup`."""
     law, start = problem.friction, problem.law_slip
     home = int(first.friction.piece_at(first.law_slip))
     with LOADING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -19,10 +19,20 @@ from stickslip.evolution.workspace import (
     BRANCH_AT,
     CONSTANTS_AT,
     COUNTS,
+    COUNTS_AT,
     FIRST_AT,
+    HEIGHTS_AT,
     LAW_AT,
+    LOAD_AT,
+    NODE_AT,
     PAR_AT,
+    RATE_AT,
+    REAL_AT,
+    SCRATCH_AT,
     STATES,
+    STATES_AT,
+    STORED_STATE_AT,
+    WHOLE_AT,
     WORK_ROWS,
     lend,
 )
@@ -79,12 +89,13 @@ Tables = TypeVar("Tables", Store, Echoes)
 
 def in_lanes(tables: Tables) -> Tables:
     """The rows of tables, shared out among the lanes."""
-    return tables._make(table.reshape(WIDTH, len(table) // WIDTH, table.shape[1]) for table in tables)
+    shared: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, table.shape[1]) for table in tables]
+    return type(tables)(*shared)
 
 
 def lane_of(tables: Tables, n: int) -> Tables:
     """The tables of one lane."""
-    return tables._make(table[n] for table in tables)
+    return type(tables)(*[table[n] for table in tables])
 
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
@@ -115,12 +126,14 @@ def new_workspace() -> Workspace:
 def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     """The engine's table of each lane for the first member, and what to add to it from one member to the next."""
     own = Setup(setups.par[0], setups.address, setups.constants[0], setups.law[0], setups.branch[:1], setups.first[0], NOT_VARYING)
-    tables = []
-    for n in range(WIDTH):
-        store, echoes = lane_of(work.store, n), lane_of(work.echoes, n)
-        tables.append(lend(own, work.state[n], work.counts[n], work.scratch[n], store, echoes))
-    stride = np.zeros(len(tables[0]), np.int64)
+    table = lend(own, work.state[0], work.counts[0], work.scratch[0], lane_of(work.store, 0), lane_of(work.echoes, 0))
+    to_next = np.zeros(len(table), np.int64)
+    arrays = (work.state, work.counts, work.scratch, *work.store, *work.echoes)
+    to_next[[STATES_AT, COUNTS_AT, SCRATCH_AT, WHOLE_AT, REAL_AT, LOAD_AT, RATE_AT, STORED_STATE_AT, NODE_AT, HEIGHTS_AT]] = [
+        array.strides[0] for array in arrays
+    ]
+    stride = np.zeros(len(table), np.int64)
     own_rows = {PAR_AT: setups.par, CONSTANTS_AT: setups.constants, LAW_AT: setups.law, BRANCH_AT: setups.branch}
     for place, rows in (own_rows | {FIRST_AT: setups.first}).items():
         stride[place] = rows.strides[0]
-    return np.stack(tables), stride
+    return table + np.arange(WIDTH)[:, None] * to_next, stride

@@ -44,6 +44,8 @@ from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
 
 from numba import cfunc, njit, types
 
+from stickslip.evolution.sines import sine, versine
+
 _array = types.CPointer(types.float64)
 _options = dict(cache=True, nopython=True, error_model="numpy", fastmath={{"contract"}})
 

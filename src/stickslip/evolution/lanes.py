@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 import llvmlite.ir as ir
+import numpy as np
 from numba import njit, types
 from numba.core.cgutils import get_or_insert_function
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
@@ -24,6 +25,8 @@ Writer = Callable[[Any, Any, list[Any]], Any]
 """Writes the code of a function: from the compiler's context and builder, and the arguments, to the result."""
 
 VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
+WHOLE = ir.IntType(64)
+WHOLES = ir.VectorType(WHOLE, WIDTH)
 INDEX = ir.IntType(32)
 
 
@@ -92,6 +95,10 @@ def _smaller(context: Any, builder: Any, args: list[Any]) -> Any:
     return builder.select(builder.fcmp_ordered("<", args[1], args[0]), args[1], args[0])
 
 
+def _larger(context: Any, builder: Any, args: list[Any]) -> Any:
+    return builder.select(builder.fcmp_ordered(">", args[1], args[0]), args[1], args[0])
+
+
 def _each_by_itself(function: Any) -> Writer:
     of_float = signature(types.float64, types.float64)
 
@@ -117,9 +124,37 @@ for _operators, _name in (
 _define(operator.neg, 1, _instruction("fneg"))
 _define(abs, 1, _of_the_processor("fabs"))
 _define(math.sqrt, 1, _of_the_processor("sqrt"))
+_define(np.floor, 1, _of_the_processor("floor"))
 _define(min, 2, _smaller)
+_define(max, 2, _larger)
 for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p, math.tanh, math.asinh):
     _define(_function, 1, _each_by_itself(_function))
+
+
+@intrinsic
+def bits_as_number(typingctx: Any, x: Any) -> Any:
+    """The 64 bits of a float, or of lanes, as a whole number."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.sitofp(builder.bitcast(args[0], WHOLES if x == LANES else WHOLE), args[0].type)
+
+    return x(x), codegen
+
+
+@intrinsic
+def power_of_two(typingctx: Any, n: Any) -> Any:
+    """2^n, of a whole number as a float, or of lanes of such."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        kind = WHOLES if n == LANES else WHOLE
+        biased = builder.add(builder.fptosi(args[0], kind), _constant(kind, 1023))
+        return builder.bitcast(builder.shl(biased, _constant(kind, 52)), args[0].type)
+
+    return n(n), codegen
+
+
+def _constant(kind: Any, number: int) -> Any:
+    return ir.Constant(kind, [number] * WIDTH if kind == WHOLES else number)
 
 
 @intrinsic

@@ -122,14 +122,14 @@ class Recurrences:
     def order_zero(self) -> list[str]:
         """Differences from the reference and values of every node at dx, s_0."""
         lines = [f"x_0 = {self.reference(SLIP)} + dx"]
-        halves: set[Expression] = set()
+        turned_by: set[Expression] = set()
         for node in self.dynamic:
             i = self.index[node]
-            if node.operation in ("sin", "cos") and node.arguments[0] not in halves:
-                halves.add(node.arguments[0])
+            if node.operation in ("sin", "cos") and node.arguments[0] not in turned_by:
+                turned_by.add(node.arguments[0])
                 j = self.index[node.arguments[0]]
-                half = f"0.5 * {self.difference(node.arguments[0])}"
-                lines += [f"h{j} = sin({half})", f"g{j} = 2.0 * h{j} * cos({half})", f"h{j} = 2.0 * h{j} * h{j}"]
+                turned = self.difference(node.arguments[0])
+                lines += [f"g{j} = sine({turned})", f"h{j} = versine({turned})"]
             lines.append(f"e{i} = {self._difference_rule(node)}")
             lines.append(f"n{i}_0 = {self._value_rule(node)}")
         return lines

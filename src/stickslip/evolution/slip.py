@@ -234,16 +234,15 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 @inlined
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     """Choose the length of an explicit step, and go."""
-    length, reached = choose_length(run, target, guess)
+    length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par[at.TOLERANCE]))
     stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
     finish_step(run, target, guess, length, reached, leaves, False)
 
 
 @inlined
-def choose_length(run: Run, target: float, guess: float) -> tuple[float, bool]:
-    """Length of an explicit step (in guesses), and whether it reaches the target. Of run.jet it needs the first and last terms."""
+def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
+    """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
     limit = (target - run.state[at.XI]) / guess
-    length = usable_length(run.jet, run.par[at.TOLERANCE])
     # as the tolerance would have it: what events and ends of pieces cut off says nothing of the next step's length
     run.state[at.LAST_STEP] = length * abs(run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * min(length, 1.0))
     reached = length >= limit

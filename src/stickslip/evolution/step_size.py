@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.evolution.compiled import bits_of, float_of, inlined
+import numpy as np
+
+from stickslip.evolution.compiled import inlined
+from stickslip.evolution.lanes import bits_as_number, power_of_two
 from stickslip.evolution.layout import TERMS, Floats
 
 UNITS = 2.0**52
@@ -15,16 +18,16 @@ FAR_FROM_GUESS = 0.2
 @inlined
 def quick_log2(x: float) -> float:
     """log2 |x| to 0.09, straight from the bits; -1023 for zero. A step's length needs an 18th of that."""
-    return (bits_of(abs(x))) / UNITS - BIAS
+    return bits_as_number(abs(x)) * (1.0 / UNITS) - BIAS
 
 
 @inlined
 def quick_exp2(x: float) -> float:
     """2^x to 0.3 %, between 2^-1000 and 2^1000."""
     x = min(max(x, -1000.0), 1000.0)
-    whole = math.floor(x)
+    whole = np.floor(x)
     part = x - whole
-    return float_of((int(whole) + 1023) << 52) * (1.0 + part * (0.6565 + 0.3435 * part))
+    return power_of_two(whole) * (1.0 + part * (0.6565 + 0.3435 * part))
 
 
 @inlined
@@ -34,6 +37,8 @@ def usable_length(jet: Floats, tolerance: float) -> float:
     The guess is usually twice the step. Where it is much longer (a first step, the way from a fold) the rate's size over the
     step is not that over the guess, which may be larger by orders of magnitude: then it is looked at again.
     """
+    if jet[TERMS - 1] == 0.0 and jet[TERMS - 2] == 0.0:
+        return math.inf
     length = length_at(jet, tolerance, 0.5)
     if length < FAR_FROM_GUESS:
         for _ in range(3):
@@ -43,12 +48,10 @@ def usable_length(jet: Floats, tolerance: float) -> float:
 
 @inlined
 def length_at(jet: Floats, tolerance: float, expected: float) -> float:
-    """The usable length if the rate is as large as it is over a step of the expected length."""
+    """The usable length if the rate is as large as it is over a step of the expected length. For lanes, too."""
     slow = max(abs(jet[0]), expected * abs(jet[1]))
     size = max(slow, expected * expected * max(abs(jet[2]), expected * abs(jet[3])))
     n = TERMS - 1
-    if jet[n] == 0.0 and jet[n - 1] == 0.0:
-        return math.inf
     allowed = quick_log2(tolerance * size)
     last, before = allowed - quick_log2(jet[n]), allowed - quick_log2(jet[n - 1])
     return quick_exp2(min(last * (1.0 / n), before * (1.0 / (n - 1))))

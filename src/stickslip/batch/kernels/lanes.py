@@ -1,9 +1,9 @@
 """One explicit step of slip for several members at once, side by side in lanes of the processor's registers.
 
 A step's series is a long chain in which each coefficient waits for those before it: one run alone leaves most of a processor idle.
-What decides (how long, what next) is done run by run, by the functions of single runs; what only calculates is done in lanes, by the
-same functions, which for lanes do the same to the last bit. A step in which slip may end, or a knot of the law is met, is left to
-the engine.
+What decides (how long, what next) is done run by run, by the functions of single runs; what only calculates is done in lanes, by
+the same functions, which for lanes do the same to the last bit. A step in which slip may end, or a knot of the law is met, is left
+to the engine.
 """
 
 from __future__ import annotations
@@ -12,19 +12,20 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
-from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, kernel
+from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, integers, kernel
 from stickslip.evolution.engine import ROOM
 from stickslip.evolution.implicit import judge_stiffness
 from stickslip.evolution.lanes import WIDTH, lanes_at
 from stickslip.evolution.layout import TERMS, Floats, Integers
-from stickslip.evolution.polynomial import NONE, bound_below, moment, multiply, powers_of, total
+from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
+from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.evolution.workspace import DEGREE, Run, borrow
 
-BLOCK_K, SEEN, LOCAL, JET, POWERS, RATE, LOAD = (0, *(at.K_FORCE + 1 + n * TERMS for n in range(6)))
-LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP = range(LOAD + TERMS, LOAD + TERMS + 7)
-CONSTANTS = LAST_STEP + 1
-"""Rows of the block, of `WIDTH` numbers each; a law's constants fill the last ones."""
+SEEN, LOCAL, JET, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(6))
+LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
+CONSTANTS = TOLERANCE + 1
+"""Rows of the block, of `WIDTH` numbers each: behind those of `run.k`; a law's constants fill the last ones."""
 
 AWAY, FRESH, SLIPPING, ALONE = range(4)
 """What a lane waits for: nothing; the first step on a piece of load; another one; a step that the engine must take."""
@@ -35,9 +36,10 @@ def step_side_by_side(tables: Integers, waits: Integers, jets: Integers, block: 
     """A step for each lane that waits for one, under the formula at which the first of them is."""
     address = 0
     column, rows = floats(block), lanes_at(block)
+    table, places = integers(tables.ctypes.data), tables.shape[1]
     for lane in range(WIDTH):
         if waits[lane] == FRESH or waits[lane] == SLIPPING:
-            run = borrow(tables[lane])
+            run = borrow(ahead(table, lane * places))
             own = jets[run.counts[at.PIECE]]
             address = own if address == 0 else address
             if own == address:
@@ -46,13 +48,14 @@ def step_side_by_side(tables: Integers, waits: Integers, jets: Integers, block: 
             else:
                 waits[lane] = -waits[lane]  # later
     call_jet(address, floats(block + 64 * CONSTANTS), column, floats(block + 64 * SEEN), floats(block + 64 * JET))
+    rows[LENGTH] = length_at(ahead(rows, JET), rows[TOLERANCE], 0.5)
     for lane in range(WIDTH):
         if waits[lane] == SLIPPING:
-            take_length(borrow(tables[lane]), ahead(column, lane))
+            take_length(borrow(ahead(table, lane * places)), ahead(column, lane))
     calculate(rows)
     for lane in range(WIDTH):
         if waits[lane] == SLIPPING:
-            waits[lane] = take_out(borrow(tables[lane]), ahead(column, lane))
+            waits[lane] = take_out(borrow(ahead(table, lane * places)), ahead(column, lane))
         waits[lane] = abs(waits[lane])
 
 
@@ -62,11 +65,14 @@ def put_in(run: Run, own: Floats, fresh: bool) -> None:
     guess = first_guess(run, run.state[at.TARGET] - run.state[at.XI])
     prepare_series(run, guess)
     own[WIDTH * GUESS] = guess
-    for k in range(at.K_FORCE + 1):
-        own[WIDTH * (BLOCK_K + k)] = run.k[k]
+    for k in (at.K_SPEED, at.K_BEND, at.K_SLIP, at.K_RATE, at.K_FREE, at.K_FORCE):
+        own[WIDTH * k] = run.k[k]
     last = run.counts[DEGREE]
     if fresh:
         constants, last = constants_of(run, run.counts[at.PIECE]), TERMS - 1
+        for k in range(at.K_FORCE + 1):
+            own[WIDTH * k] = run.k[k]
+        own[WIDTH * TOLERANCE] = run.par[at.TOLERANCE]
         for k in range(run.size):
             own[WIDTH * (CONSTANTS + k)] = constants[k]
     for k in range(last + 1):
@@ -76,11 +82,14 @@ def put_in(run: Run, own: Floats, fresh: bool) -> None:
 
 @inlined
 def take_length(run: Run, own: Floats) -> None:
-    """How long the step is, from the first and last terms of its series."""
-    for k in (0, 1, 2, 3, TERMS - 2, TERMS - 1):
-        run.jet[k] = own[WIDTH * (JET + k)]
+    """How long the step is."""
+    usable = own[WIDTH * LENGTH]
+    if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # not for lanes
+        for k in range(TERMS):
+            run.jet[k] = own[WIDTH * (JET + k)]
+        usable = usable_length(run.jet, run.par[at.TOLERANCE])
     own[WIDTH * LAST_STEP] = run.state[at.LAST_STEP]
-    length, reached = choose_length(run, run.state[at.TARGET], own[WIDTH * GUESS])
+    length, reached = choose_length(run, run.state[at.TARGET], own[WIDTH * GUESS], usable)
     own[WIDTH * LENGTH], own[WIDTH * REACHED] = length, 1.0 if reached else 0.0
 
 
@@ -105,11 +114,17 @@ def take_out(run: Run, own: Floats) -> int:
     load = ahead(run.stored_load, TERMS * run.counts[at.LENGTH])
     for k in range(TERMS):
         rate[k] = own[WIDTH * (RATE + k)]
-        load[k] = own[WIDTH * (LOAD + k)]
+    if run.counts[DEGREE] == 1:
+        fill(load, 0.0)
+        load[0], load[1] = own[WIDTH * LOAD], own[WIDTH * (LOAD + 1)]
+    else:
+        for k in range(TERMS):
+            load[k] = own[WIDTH * (LOAD + k)]
     simple = rate[0] > 0.0 and own[WIDTH * BOUND] > 0.0 and math.isfinite(own[WIDTH * LAST])
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length) != NONE):
         run.state[at.LAST_STEP] = own[WIDTH * LAST_STEP]
         return ALONE
+    run.jet[0] = own[WIDTH * JET]
     note_shock(run)
     to = target if own[WIDTH * REACHED] == 1.0 else run.state[at.XI] + length * own[WIDTH * GUESS]
     move(run, rate, length, own[WIDTH * GROWN], own[WIDTH * LAST], to)

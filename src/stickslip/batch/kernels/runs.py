@@ -48,20 +48,20 @@ def run_group(
 
     Returns WIDTH when all are done, or `stop` is set; else the lane that has no room. Called again, it goes on from there.
     """
-    tables = base.copy()
+    tables, waits, jets, block = base.copy(), work.waits, setups.jets, work.block[0]
     for lane in range(WIDTH):
         if work.stage[lane] != FREE:
             point_at(tables[lane], base[lane], stride, setups, work.member[lane])
     while True:
         waiting = 0
         for lane in range(WIDTH):
-            if work.waits[lane] == AWAY or work.waits[lane] == ALONE:
-                if not bring_on(engine, tables[lane], base[lane], stride, setups, work, lane, wants_events, stop, codes, out):
-                    return lane
-            waiting += work.waits[lane] != AWAY
+            due = waits[lane] == AWAY or waits[lane] == ALONE
+            if due and not bring_on(engine, tables[lane], base[lane], stride, setups, work, lane, wants_events, stop, codes, out):
+                return lane
+            waiting += waits[lane] != AWAY
         if waiting == 0 or stop[0] != 0:
             return WIDTH
-        step_side_by_side(tables, work.waits, setups.jets, work.block[0])
+        step_side_by_side(tables, waits, jets, block)
 
 
 @kernel
