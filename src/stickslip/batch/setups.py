@@ -146,7 +146,10 @@ def branches_of(
     impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
     table, irregular, stick_to = np.empty((count, 6 * MOST_BRANCHES)), np.empty(count), np.empty(count)
     kind = (first.friction.bends_one_way, RULES.index(first.rule))
-    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        near = law.rate_at_slope(-impedance / normal)
+    near = spread(np.nan if near is None else near, count)
+    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
     branch_tables(*contact, *kind, table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 

@@ -282,7 +282,7 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]
-    note_gain(run, evaluate(rate, 0.5))
+    note_gain(run, rate)
     record(run, to)
     run.counts[at.MOVED], run.counts[at.EDGE] = 1, 0
     run.state[at.SLIP_NOW] += direction * grown
@@ -291,13 +291,13 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
 
 
 @inlined
-def note_gain(run: Run, rate: float) -> None:
+def note_gain(run: Run, rate: Floats) -> None:
     """By how much slip multiplies an error of the load (Z v + S mu(v) = load, and 2 Z v - load goes back): |2 Z / g'(v) - 1|.
 
     Where slip, inertia or a state decide with it, what becomes of an error is no matter of its phase alone.
     """
     if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.FOLDS_MOVE] == 0:
-        friction_at(run, run.state[at.LAW_SLIP], abs(rate), run.value)
+        friction_at(run, run.state[at.LAW_SLIP], abs(evaluate(rate, 0.5)), run.value)
         run.state[at.GAIN] = abs(2.0 * run.par[at.IMPEDANCE] / (run.par[at.IMPEDANCE] + run.value[1]) - 1.0)
     else:
         run.state[at.GAIN] = math.nan

@@ -25,6 +25,8 @@ BELOW, ABOVE = 1e-8, 1e4
 ROUNDS, BETWEEN = 3, 17
 """The grid is refined so often where g' nearly touches zero, with so many rates between two neighbours."""
 NEVER_RISES, TOO_MANY = 0, -1
+NEARBY = 1e-14
+"""Rounding of where a law says that the turn is, relative."""
 OCTAVE, STEPS = 2**52, 16
 """A factor of two between slip rates, by their bits, and steps of false position behind which the bits are halved again."""
 
@@ -79,9 +81,12 @@ def share_kept(value: float, last: float) -> float:
 
 @kernel
 def turns_once(
-    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any
+    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, near: float, ends: Floats, out: Any
 ) -> int:
-    """Ends of the branches of a resistance whose slope only rises, or only falls. Returns how many branches there are."""
+    """Ends of the branches of a resistance whose slope only rises, or only falls. Returns how many branches there are.
+
+    near: where the turn may be, if that is known.
+    """
     low, high = 0.0, ABOVE * fastest
     at_high = slope_at(address, c, impedance, normal, high, out)
     if not at_high > 0.0:
@@ -90,12 +95,13 @@ def turns_once(
     ends[0], ends[1] = 0.0, math.inf
     if at_low > 0.0 or (at_low == 0.0 and slope_at(address, c, impedance, normal, BELOW * slowest, out) > 0.0):
         return 1
-    for rate in (slowest, fastest):
-        slope = slope_at(address, c, impedance, normal, rate, out)
-        if slope > 0.0:
-            high, at_high = rate, slope
-            break
-        low, at_low = rate, slope
+    for rate in (near * (1.0 - NEARBY), near * (1.0 + NEARBY), slowest, fastest):
+        if low < rate < high:
+            slope = slope_at(address, c, impedance, normal, rate, out)
+            if slope > 0.0:
+                high, at_high = rate, slope
+            else:
+                low, at_low = rate, slope
     ends[0] = turn_between(address, c, impedance, normal, low, high, at_low, at_high, out)
     return 1
 
@@ -179,6 +185,7 @@ def branch_tables(
     start: Floats,
     slowest: Floats,
     fastest: Floats,
+    near: Floats,
     one_way: bool,
     rule: int,
     table: Floats,
@@ -192,7 +199,7 @@ def branch_tables(
     for n in range(len(table)):
         c, z, s = ahead(floats(constants.ctypes.data), n * size), impedance[n], normal[n]
         if one_way:
-            found = turns_once(address, c, z, s, slowest[n], fastest[n], ends, out)
+            found = turns_once(address, c, z, s, slowest[n], fastest[n], near[n], ends, out)
         else:
             found = turns(address, c, z, s, slowest[n], fastest[n], ends, out)
         branches[n], irregular[n], stick_to[n] = found, 0.0, 0.0
