@@ -25,10 +25,15 @@ LEVEL = 4e-16
 """Of the strength: rounding of loads at the ends of branches."""
 
 
+def row_of(table: at.Floats, n: int) -> at.Floats:
+    """The row of a member; all have the same one where they do not differ."""
+    return table[n if len(table) > 1 else 0]
+
+
 def branch_of(setups: Setups, n: int) -> at.Floats:
     """The table of a member."""
     count = int(setups.branches[n])
-    return setups.branch[n, : 6 * count].reshape(6, count)
+    return row_of(setups.branch, n)[: 6 * count].reshape(6, count)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -41,13 +46,13 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
             alone = one(case, drawn, place)
             problem = alone.problem
             setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
-            assert setups.par[n, at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
+            assert row_of(setups.par, n)[at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
             others = np.arange(at.PARAMETERS) != at.STICK_TO
-            assert np.array_equal(setups.par[n, others], setup.par[others])
+            assert np.array_equal(row_of(setups.par, n)[others], setup.par[others])
             assert np.array_equal(setups.address, setup.address)
-            assert np.array_equal(setups.constants[n], setup.constants)
-            assert np.array_equal(setups.law[n], setup.law)
-            assert np.array_equal(setups.first[n], setup.first)
+            assert np.array_equal(row_of(setups.constants, n), setup.constants)
+            assert np.array_equal(row_of(setups.law, n), setup.law)
+            assert np.array_equal(row_of(setups.first, n), setup.first)
             assert np.array_equal(setups.state, state)
             assert np.array_equal(setups.counts, count)
             assert setups.threshold[n] == default_event_rate(problem)
@@ -78,7 +83,7 @@ def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> Non
         assert setups.irregular[n] == (contact.regime == "irregular")
         assert branch_of(setups, n)[:2] == pytest.approx(setup.branch[:2], rel=1e-9, abs=0)
         assert branch_of(setups, n)[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
-        assert setups.par[n, at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
+        assert row_of(setups.par, n)[at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
 
 
 @pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
@@ -93,6 +98,16 @@ def test_laws_that_bend_one_way_do(kind: str) -> None:
     assert one_way or not law.bends_one_way
     if kind in ("exponential-stribeck", "power-stribeck"):
         assert not replace(law, exponent=2.0).bends_one_way
+
+
+@pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
+def test_laws_know_where_friction_has_a_slope(kind: str) -> None:
+    law = CASES_OF_KIND[kind]
+    rates, step = np.geomspace(1e-3, 1.0, 31), 1e-30
+    slope = law.piece_coefficient(0, 0.1, rates + 1j * step).imag / step if law.bends_one_way else np.nan
+    found = law.rate_at_slope(slope)
+    assert found is None or found == pytest.approx(rates, rel=1e-12, abs=0)
+    assert (found is not None) == (kind in ("hyperbolic-rate", "exponential-stribeck"))
 
 
 CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}

@@ -104,8 +104,5 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
     watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
-    row = row_time(problem)
-    end = of.reached(scenario.duration, code, row, run.store, run.length)
-    out[of.END_TIME], out[of.ARRESTED] = end, of.rests_at(run.store, run.length, row, end)
-    out[of.SLIP] = of.slipped(run.store, run.length, row, end)
+    of.fold_end(run.store, run.length, row_time(problem), scenario.duration, code, out)
     return code

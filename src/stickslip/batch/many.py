@@ -90,17 +90,23 @@ def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
 
 
 def many(scenario: Scenario, values: Values) -> Problem:
-    """The problem with arrays where it is varied. `strength` and `excess` are arrays of one number a member."""
-    numbers, count = Numbers.of(values), len(next(iter(values.values())))
+    """The problem with arrays where it is varied; `strength` and `excess` follow suit."""
+    numbers = Numbers.of(values)
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     problem = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem)
     home = int(pieces_at_start(problem).flat[0])
-    static = law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess
-    strength = np.broadcast_to(problem.normal * static, (count,))
-    return with_numbers(problem, {"strength": strength, "excess": np.broadcast_to(excess_of(problem, strength), (count,))})
+    static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
+    strength = problem.normal * static
+    return with_numbers(problem, {"strength": strength, "excess": excess_of(problem, strength)})
 
 
-def excess_of(problem: Problem, strength: Floats) -> Any:
+def shared(numbers: Any) -> Any:
+    """A single number where all members have the same one: what is made of it need not be made for each."""
+    found = np.asarray(numbers)
+    return found.flat[0] if found.ndim and (found == found.flat[0]).all() else numbers
+
+
+def excess_of(problem: Problem, strength: Any) -> Any:
     """As `Problem.excess`."""
     if problem.initial_excess is not None:
         return problem.initial_excess

@@ -9,13 +9,13 @@ import numpy as np
 
 from stickslip.batch.kernels.constants import fill_constants
 from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
-from stickslip.batch.many import Values, many, member
+from stickslip.batch.many import Values, many, member, shared
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import branch_rows, has_inertia, is_algebraic
-from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of
+from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of, together
 from stickslip.evolution.tables import default_event_rate
 from stickslip.friction import FrictionLaw
 from stickslip.problem import Problem
@@ -29,7 +29,7 @@ FASTEST = 1e9
 
 
 class Setups(NamedTuple):
-    """Members that are alike but for their numbers, each table with a row a member."""
+    """Members that are alike but for their numbers. The engine's tables have a row a member, or one for all of them."""
 
     par: Floats  # (members, PARAMETERS)
     address: Integers  # (3, pieces), the same for all
@@ -55,43 +55,47 @@ def set_up(scenario: Scenario, values: Values) -> Setups:
     count = len(next(iter(values.values())))
     first = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
     problem = many(scenario, values)
-    duration = np.broadcast_to(np.asarray(values.get("run.duration", scenario.duration)), (count,))
-    par = parameters_of(problem)
-    set_tolerance(par, values.get("run.rtol", scenario.rtol), scenario.shortest_event)
-    address, jets, constants, law = formulas(problem, first, count)
-    branch, branches, irregular, par[at.STICK_TO] = branches_of(problem, first, address, constants, count)
+    duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
+    last_row, last_theta = split_times(duration, spread(par[at.ROW_TIME], count))
+    address, jets, constants, law = formulas(problem, first)
+    branch, branches, irregular, stick_to = branches_of(problem, first, address, constants, count)
+    rtol = values.get("run.rtol", scenario.rtol)
+    if par.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
+        par = spread(par[:, None], count)
+    set_tolerance(par, rtol, scenario.shortest_event)
+    if par.ndim > 1:
+        par[at.STICK_TO] = stick_to
     state, counts = start_of(first)
-    last_row, last_theta = split_times(duration, par[at.ROW_TIME])
     return Setups(
-        par=rows(par),
+        par=rows(par, 1),
         address=address,
         jets=jets,
         constants=constants,
-        law=law,
+        law=rows(law, 2),
         branch=branch,
-        first=rows(first_load(problem)),
+        first=rows(first_load(problem), 2),
         branches=branches,
         irregular=irregular,
         state=state,
         counts=counts,
         last_row=last_row,
         last_theta=last_theta,
-        duration=np.ascontiguousarray(duration, float),
+        duration=duration,
         threshold=spread(default_event_rate(problem), count),
         stiffness=spread(problem.body.stiffness, count),
         excess=spread(problem.excess, count),
     )
 
 
-def rows(table: Floats) -> Floats:
-    """With the members first."""
-    return np.ascontiguousarray(np.moveaxis(table, -1, 0))
+def rows(table: Floats, axes: int) -> Floats:
+    """With the members first, behind which so many axes come; one row where they do not differ."""
+    return np.ascontiguousarray(np.moveaxis(table, -1, 0) if table.ndim > axes else table[None])
 
 
 def spread(numbers: Any, count: int) -> Floats:
     """One number a member, also where all have the same; of a table, along a last axis."""
     found = np.asarray(numbers, float)
-    return np.ascontiguousarray(np.broadcast_to(found, (*found.shape[: max(found.ndim - 1, 0)], count)))
+    return np.array(np.broadcast_to(found, (*found.shape[: max(found.ndim - 1, 0)], count)), order="C")
 
 
 def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
@@ -105,7 +109,7 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 # ---- the law ----------------------------------------------------------------------------------------------------------------
 
 
-def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, Integers, Floats, Floats]:
+def formulas(problem: Problem, first: Problem) -> tuple[Integers, Integers, Floats, Floats]:
     """Addresses of the law's functions, alone and in lanes, their constants, shifts, offsets and knots: as in `evolution.setup`."""
     law, start = problem.friction, problem.law_slip
     home = int(first.friction.piece_at(first.law_slip))
@@ -116,15 +120,16 @@ def formulas(problem: Problem, first: Problem, count: int) -> tuple[Integers, In
         jets = np.array([] if steps_alone(first) else [jets_of(formula, first) for formula in compiled], np.int64)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(compiled))]
     references = near if law.knot_variable == "slip" else [start] * len(compiled)
-    static = law.pieces[home](law, start, 0.0) + law.static_excess
-    at_reference = [law.pieces[i](law, x, 0.0) for i, x in enumerate(references)]
+    static = shared(law.pieces[home](law, start, 0.0) + law.static_excess)
+    at_reference = [shared(law.pieces[i](law, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
     knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
-    table = [spread(number, count) for number in (*(start - reference for reference in references), *offsets, *knots)]
-    numbers = np.stack([spread(getattr(law, name), count) for name in law.parameters()], axis=1)
-    constants = np.zeros((count, len(compiled), max(formula.size for formula in compiled)))
-    fill_constants(prepare, numbers, np.stack([spread(x, count) for x in references], axis=1), constants)
-    return address, jets, constants, rows(np.stack(table).reshape(3, len(compiled), count))
+    table = together([*(start - reference for reference in references), *offsets, *knots])
+    numbers = together([*(getattr(law, name) for name in law.parameters()), *references])
+    rows_of = rows(numbers, 1)
+    constants = np.zeros((len(rows_of), len(compiled), max(formula.size for formula in compiled)))
+    fill_constants(prepare, rows_of, constants)
+    return address, jets, constants, table.reshape(3, len(compiled), *table.shape[1:])
 
 
 def steps_alone(problem: Problem) -> bool:
@@ -144,18 +149,20 @@ def branches_of(
     problem: Problem, first: Problem, address: Integers, constants: Floats, count: int
 ) -> tuple[Floats, Integers, Floats, Floats]:
     """Branches of each member's resistance, how many, whether some loads have several solutions, and where stick is left."""
-    table, branches = np.empty((count, 6 * MOST_BRANCHES)), np.ones(count, np.int64)
+    branches = np.ones(count, np.int64)
     if not is_algebraic(first):
-        table[:, :6] = branch_rows(first, 0.0)[0][:, 0]
-        return table, branches, np.zeros(count), np.zeros(count)
+        return branch_rows(first, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
     assert isinstance(body, ElasticSlab)
     own = problem.normal * law.variation / body.impedance
     slowest, fastest = scales(law, spread(own, count), count)
     impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
-    irregular, stick_to = np.empty(count), np.empty(count)
+    table, irregular, stick_to = np.empty((count, 6 * MOST_BRANCHES)), np.empty(count), np.empty(count)
     kind = (first.friction.bends_one_way, RULES.index(first.rule))
-    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        near = law.rate_at_slope(-impedance / normal)
+    near = spread(np.nan if near is None else near, count)
+    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
     branch_tables(*contact, *kind, table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 

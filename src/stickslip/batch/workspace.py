@@ -135,5 +135,5 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     stride = np.zeros(len(table), np.int64)
     own_rows = {PAR_AT: setups.par, CONSTANTS_AT: setups.constants, LAW_AT: setups.law, BRANCH_AT: setups.branch}
     for place, rows in (own_rows | {FIRST_AT: setups.first}).items():
-        stride[place] = rows.strides[0]
+        stride[place] = rows.strides[0] if len(rows) > 1 else 0
     return table + np.arange(WIDTH)[:, None] * to_next, stride

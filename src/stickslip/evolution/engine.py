@@ -34,7 +34,7 @@ def rows_leaped(run: Run, n: int) -> int:
     return run.counts[at.ROW] - run.whole[WHOLE * n + at.S_ROW] - 1
 
 
-@kernel
+@inlined
 def first_piece(run: Run) -> bool:
     """The next piece of load of a first round trip, or of any period of a block; False when there is none left."""
     source = run.counts[at.SOURCE]
@@ -64,7 +64,7 @@ def first_piece(run: Run) -> bool:
     return True
 
 
-@kernel
+@inlined
 def echo_piece(run: Run) -> bool:
     """The next piece of load that returns from the driver; False when the round trip is complete."""
     if run.counts[at.SPARSE] == 1:
@@ -107,7 +107,7 @@ def lump(run: Run) -> None:
     run.load[0] = mean
 
 
-@kernel
+@inlined
 def next_piece(run: Run) -> bool:
     """Bring the next piece of load; False at the end of the round trip."""
     first = run.counts[at.IS_BLOCK] == 1 or run.counts[at.ROW] == 0
@@ -163,7 +163,7 @@ def swings_for_ever(run: Run) -> bool:
     )
 
 
-@kernel
+@inlined
 def end_row(run: Run, limit: float, last_row: int) -> bool:
     """Close a round trip; leap over the following ones while nothing can happen in them.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -51,9 +52,9 @@ def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.
 
 
 def parameters_of(problem: Problem) -> at.Floats:
-    """`Setup.par` but for what the tolerance says; with a column a member where the numbers of the problem are arrays."""
+    """`Setup.par` but for what the tolerance says; with a column a member where any of the problem's numbers is an array."""
     body, law = problem.body, problem.friction
-    par = np.zeros((at.PARAMETERS, *np.shape(problem.strength)))
+    par: list[Any] = [0.0] * at.PARAMETERS
     par[at.ROW_TIME] = row_time(problem)
     par[at.NORMAL] = problem.normal
     par[at.REFERENCE] = problem.strength
@@ -76,7 +77,14 @@ def parameters_of(problem: Problem) -> at.Floats:
     else:
         par[at.INFLOW], par[at.INFLOW_RATE] = steady_inflow(problem)
         par[at.RAMP] = par[at.INFLOW] if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
-    return par
+    return together(par)
+
+
+def together(numbers: Sequence[Any]) -> at.Floats:
+    """One table of numbers; with a column a member where any of them is an array."""
+    if any(np.ndim(number) for number in numbers):
+        return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
+    return np.array(numbers, float)
 
 
 SMALLEST, SLOWEST = 1e-300, 1e-12
@@ -151,8 +159,7 @@ def loading_of(problem: Problem) -> at.Floats:
 
 
 def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
-    rows = [*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0]
-    table = np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*rows)])
+    table = together([*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
     return table.reshape(4, len(theta), *table.shape[1:])
 
 

@@ -128,6 +128,14 @@ class FrictionLaw(ABC):
         """
         return None
 
+    def rate_at_slope(self, slope: Any) -> Any:
+        """Slip rate (m/s) at which dmu/dv (s/m) has a value, for a law that `bends_one_way`; None where that has no closed form.
+
+        NaN, or anything else, where it never has. A batch looks there first for the fold of Z v + S mu(v): a rate that is wrong
+        costs time, no digits.
+        """
+        return None
+
     # ---- state --------------------------------------------------------------------------------------------------------------
 
     @property

@@ -51,6 +51,12 @@ class ExponentialStribeck(FrictionLaw):
         high = math.inf if self.viscosity > 0.0 else np.maximum(self.static, self.dynamic)
         return np.minimum(self.static, self.dynamic), high
 
+    def rate_at_slope(self, slope: Any) -> Any:
+        """The root of viscosity - (static - dynamic) exp(-v / rate) / rate = slope, for exponent 1."""
+        if self.exponent != 1.0:
+            return None
+        return self.rate * np.log((self.static - self.dynamic) / (self.rate * (self.viscosity - slope)))
+
     @property
     def bends_one_way(self) -> bool:
         return self.exponent == 1.0

@@ -36,6 +36,10 @@ class HyperbolicRate(FrictionLaw):
         fall = normal * (self.static - self.dynamic)
         return ("alpha", impedance / fall) if fall > 0.0 else None
 
+    def rate_at_slope(self, slope: Any) -> Any:
+        """The root of -(muS - muD) alpha / (1 + alpha v)^2 = slope."""
+        return (np.sqrt((self.dynamic - self.static) * self.alpha / slope) - 1.0) / self.alpha
+
     @property
     def bends_one_way(self) -> bool:
         return True

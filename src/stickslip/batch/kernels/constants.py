@@ -7,11 +7,11 @@ from stickslip.evolution.layout import Floats, Integers
 
 
 @kernel
-def fill_constants(prepare: Integers, numbers: Floats, references: Floats, constants: Floats) -> None:
-    """What `prepare` of each piece of the law says for each member."""
+def fill_constants(prepare: Integers, numbers: Floats, constants: Floats) -> None:
+    """What `prepare` of each piece of the law says for each member; its numbers are the law's and the pieces' references."""
     members, pieces, size = constants.shape
-    source, target = floats(numbers.ctypes.data), floats(constants.ctypes.data)
+    source, target, parameters = floats(numbers.ctypes.data), floats(constants.ctypes.data), numbers.shape[1] - pieces
     for n in range(members):
         for i in range(pieces):
-            c = ahead(target, (n * pieces + i) * size)
-            call_prepare(prepare[i], ahead(source, n * numbers.shape[1]), references[n, i], c)
+            c, own = ahead(target, (n * pieces + i) * size), ahead(source, n * numbers.shape[1])
+            call_prepare(prepare[i], own, own[parameters + i], c)

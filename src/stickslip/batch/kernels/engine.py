@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from numba import types
@@ -13,6 +14,7 @@ ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types
 """Of `engine.advance`: table, last row, last theta, budget."""
 
 
+@cache
 def engine_address() -> int:
     """Where the machine code of `engine.advance` is; compiles it where no single run has done so."""
     advance.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba

@@ -12,7 +12,7 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
-from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, integers, kernel
+from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, kernel
 from stickslip.evolution.engine import ROOM
 from stickslip.evolution.implicit import judge_stiffness
 from stickslip.evolution.lanes import WIDTH, lanes_at
@@ -32,11 +32,13 @@ AWAY, FRESH, SLIPPING, ALONE = range(4)
 
 
 @kernel
-def step_side_by_side(tables: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """A step for each lane that waits for one, under the formula at which the first of them is."""
+def step_side_by_side(table: Integers, places: int, waits: Integers, jets: Integers, block: int) -> None:
+    """A step for each lane that waits for one, under the formula at which the first of them is.
+
+    table: the engine's tables of the lanes, each of so many places; jets: addresses of the formulas' series, by piece of the law.
+    """
     address = 0
     column, rows = floats(block), lanes_at(block)
-    table, places = integers(tables.ctypes.data), tables.shape[1]
     for lane in range(WIDTH):
         if waits[lane] == FRESH or waits[lane] == SLIPPING:
             run = borrow(ahead(table, lane * places))

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 
+from stickslip.batch.kernels.pieces import Pieces, load_of, pieces_of, rate_of, real_of, whole_of
 from stickslip.batch.kernels.points import Points
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import friction_of
-from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.compiled import floats, inlined, kernel
 from stickslip.evolution.events import rises_over
 from stickslip.evolution.history import ROUNDING
 from stickslip.evolution.layout import Floats, Store
@@ -65,66 +66,67 @@ OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, REC
 
 
 @inlined
-def offset_at(store: Store, piece: int, xi: float) -> float:
+def offset_at(store: Pieces, piece: int, xi: float) -> float:
     """Offset in the row (s) of a place in a piece: as `History.placed`."""
+    real = real_of(store, piece)
     if xi == 1.0:
-        return store.real[piece, at.S_THETA_TO]
-    return store.real[piece, at.S_THETA_FROM] + xi * (store.real[piece, at.S_SPEED] + xi * store.real[piece, at.S_BEND])
+        return real[at.S_THETA_TO]
+    return real[at.S_THETA_FROM] + xi * (real[at.S_SPEED] + xi * real[at.S_BEND])
 
 
 @inlined
-def time_between(store: Store, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
+def time_between(store: Pieces, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
     """From one place to another, s."""
-    rows = store.whole[later, at.S_ROW] - store.whole[piece, at.S_ROW]
+    rows = whole_of(store, later)[at.S_ROW] - whole_of(store, piece)[at.S_ROW]
     return rows * row_time + (offset_at(store, later, later_xi) - offset_at(store, piece, xi))
 
 
 @inlined
-def time_at(store: Store, row_time: float, piece: int, xi: float) -> float:
+def time_at(store: Pieces, row_time: float, piece: int, xi: float) -> float:
     """Of a place, since the start of the run, s."""
-    return store.whole[piece, at.S_ROW] * row_time + offset_at(store, piece, xi)
+    return whole_of(store, piece)[at.S_ROW] * row_time + offset_at(store, piece, xi)
 
 
 @inlined
-def place_of(store: Store, piece: int, local: float) -> float:
+def place_of(store: Pieces, piece: int, local: float) -> float:
     """Place in [0, 1] of a time `local` s after the start of a piece: as `History.xi`."""
-    speed, bend = store.real[piece, at.S_SPEED], store.real[piece, at.S_BEND]
+    speed, bend = real_of(store, piece)[at.S_SPEED], real_of(store, piece)[at.S_BEND]
     pace = speed + math.sqrt(max(speed * speed + 4.0 * bend * local, 0.0))
     return min(max(2.0 * local / (pace if pace > 0.0 else 1.0), 0.0), 1.0)
 
 
 @kernel
-def grown(store: Store, piece: int, xi: float) -> float:
+def grown(store: Pieces, piece: int, xi: float) -> float:
     """Slip since the start of the piece, m: as `History.grown`."""
-    rate, bend = store.rate[piece], store.real[piece, at.S_BEND]
-    straight = store.real[piece, at.S_SPEED] * integral(rate, xi, 1)
+    rate, bend = rate_of(store, piece), real_of(store, piece)[at.S_BEND]
+    straight = real_of(store, piece)[at.S_SPEED] * integral(rate, xi, 1)
     return straight if bend == 0.0 else straight + 2.0 * bend * integral(rate, xi, 2)
 
 
 @kernel
-def reached(run_end: float, code: int, row_time: float, store: Store, length: int) -> float:
+def reached(run_end: float, code: int, row_time: float, store: Pieces, length: int) -> float:
     """Up to where (s) a run that ended with a code has come."""
     return run_end if code in (at.FINISHED, at.LOCKED) else time_at(store, row_time, length - 1, 1.0)
 
 
 @kernel
-def rests_at(store: Store, length: int, row_time: float, end: float) -> bool:
+def rests_at(store: Pieces, length: int, row_time: float, end: float) -> bool:
     """Whether the contact is at rest at the end of the run."""
     recorded = time_at(store, row_time, length - 1, 1.0)
-    return store.whole[length - 1, at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
+    return whole_of(store, length - 1)[at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
 
 
 @kernel
-def slipped(store: Store, length: int, row_time: float, end: float) -> float:
+def slipped(store: Pieces, length: int, row_time: float, end: float) -> float:
     """Slip from the start of the run to its end, m."""
     last = length - 1
     while last > 0 and time_at(store, row_time, last, 0.0) > end:
         last -= 1
-    return store.real[last, at.S_SLIP] + grown(store, last, place_of(store, last, end - time_at(store, row_time, last, 0.0)))
+    return real_of(store, last)[at.S_SLIP] + grown(store, last, place_of(store, last, end - time_at(store, row_time, last, 0.0)))
 
 
 @kernel
-def slipped_between(store: Store, piece: int, xi: float, later: int, later_xi: float) -> float:
+def slipped_between(store: Pieces, piece: int, xi: float, later: int, later_xi: float) -> float:
     """Slip from one place to a later one, m: as `History.slipped_within`."""
     whole = 0.0
     for n in range(piece, later):
@@ -136,48 +138,48 @@ def slipped_between(store: Store, piece: int, xi: float, later: int, later_xi: f
 
 
 @kernel
-def friction_in(run: Run, store: Store, piece: int, xi: float) -> float:
+def friction_in(run: Run, store: Pieces, piece: int, xi: float) -> float:
     """Friction minus the reference strength at a place in slip or at rest: as `History.friction`."""
-    excess, rate, mode = evaluate(store.load[piece], xi), evaluate(store.rate[piece], xi), store.whole[piece, at.S_MODE]
+    excess, rate, mode = evaluate(load_of(store, piece), xi), evaluate(rate_of(store, piece), xi), whole_of(store, piece)[at.S_MODE]
     if run.counts[at.HAS_INERTIA] == 0:
         return excess - run.par[at.IMPEDANCE] * rate
     if mode == 0:
         return excess
     walked = grown(store, piece, xi) * (1 if run.par[at.COUNTS_NET] == 1.0 else mode)
-    friction_of(run, store.whole[piece, at.S_PIECE], store.real[piece, at.S_LAW_SLIP] + walked, abs(rate), run.value)
+    friction_of(run, whole_of(store, piece)[at.S_PIECE], real_of(store, piece)[at.S_LAW_SLIP] + walked, abs(rate), run.value)
     return run.value[0] if mode > 0 else -run.value[0] - 2.0 * run.par[at.REFERENCE]
 
 
 @kernel
-def friction_before(run: Run, store: Store, piece: int, excess: float) -> float:
+def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float:
     """Its left limit where a piece starts: at rest before the first one, or behind rows that nothing was recorded of."""
     if piece == 0:
         return excess
     row_time, last = run.par[at.ROW_TIME], piece - 1
     if not time_between(store, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
         return friction_in(run, store, last, 1.0)
-    row, phase = store.whole[piece, at.S_ROW], store.real[piece, at.S_THETA_FROM]
+    row, phase = whole_of(store, piece)[at.S_ROW], real_of(store, piece)[at.S_THETA_FROM]
     if phase == 0.0:
         row, phase = row - 1, row_time
-    while last >= 0 and not (store.real[last, at.S_THETA_FROM] < phase <= store.real[last, at.S_THETA_TO]):
+    while last >= 0 and not (real_of(store, last)[at.S_THETA_FROM] < phase <= real_of(store, last)[at.S_THETA_TO]):
         last -= 1
     if last < 0:
         return friction_in(run, store, piece - 1, 1.0)
-    xi, trips = place_of(store, last, phase - store.real[last, at.S_THETA_FROM]), row - store.whole[last, at.S_ROW]
+    xi, trips = place_of(store, last, phase - real_of(store, last)[at.S_THETA_FROM]), row - whole_of(store, last)[at.S_ROW]
     if trips == 0:
         return friction_in(run, store, last, xi)
-    load = evaluate(store.load[last], xi) + trips * run.par[at.RAMP]
-    return load if run.counts[at.IS_BLOCK] == 1 else load - 2.0 * run.par[at.IMPEDANCE] * evaluate(store.rate[last], xi)
+    load = evaluate(load_of(store, last), xi) + trips * run.par[at.RAMP]
+    return load if run.counts[at.IS_BLOCK] == 1 else load - 2.0 * run.par[at.IMPEDANCE] * evaluate(rate_of(store, last), xi)
 
 
 @kernel
-def friction_after(run: Run, store: Store, length: int, piece: int, xi: float) -> float:
+def friction_after(run: Run, store: Pieces, length: int, piece: int, xi: float) -> float:
     """Friction after an event that ends at a place, at rest: as `tables.friction_after`."""
-    mode, rate = store.whole[piece, at.S_MODE], abs(evaluate(store.rate[piece], xi))
+    mode, rate = whole_of(store, piece)[at.S_MODE], abs(evaluate(rate_of(store, piece), xi))
     for n in range(piece + 1, length):
-        if store.whole[n, at.S_MODE] != mode:
+        if whole_of(store, n)[at.S_MODE] != mode:
             return friction_in(run, store, n, 0.0)
-        if rises_over(store.rate[n], rate):
+        if rises_over(rate_of(store, n), rate):
             break
     if xi == 1.0 and piece + 1 < length:
         return friction_in(run, store, piece + 1, 0.0)
@@ -188,10 +190,11 @@ def friction_after(run: Run, store: Store, length: int, piece: int, xi: float) -
 
 
 @kernel
-def fold_events(run: Run, store: Store, points: Points, events: int, out: Floats) -> None:
+def fold_events(run: Run, store: Pieces, points: Points, events: int, out: Floats) -> None:
     """Numbers of all events, and how they recur."""
     out[EVENTS], out[PULSES] = events, 0.0
-    out[PEAK_RATE : RECURRENCE_CV + 1] = math.nan
+    for column in range(PEAK_RATE, RECURRENCE_CV + 1):
+        out[column] = math.nan
     if events == 0:
         return
     row_time, fastest = run.par[at.ROW_TIME], points.top[0]
@@ -206,7 +209,7 @@ def fold_events(run: Run, store: Store, points: Points, events: int, out: Floats
 
 
 @kernel
-def fold_recurrence(store: Store, row_time: float, points: Points, events: int, out: Floats) -> None:
+def fold_recurrence(store: Pieces, row_time: float, points: Points, events: int, out: Floats) -> None:
     """Mean of the times between starts of events, and the sample's standard deviation over it (0 of two events: NaN)."""
     mean = spread = 0.0
     for n in range(1, events):
@@ -221,7 +224,7 @@ def fold_recurrence(store: Store, row_time: float, points: Points, events: int, 
 
 
 @kernel
-def fold_first(run: Run, store: Store, length: int, points: Points, excess: float, stiffness: float, out: Floats) -> None:
+def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: float, stiffness: float, out: Floats) -> None:
     """Numbers of the first event: as `tables.event_rows`."""
     a, b = points.begin[0], points.past[0] - 1
     piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
@@ -237,11 +240,20 @@ def fold_first(run: Run, store: Store, length: int, points: Points, excess: floa
 
 
 @kernel
-def fold_whole(run: Run, store: Store, length: int, end: float, out: Floats) -> None:
-    """Numbers of the whole run."""
+def fold_whole(store: Pieces, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
+    """Numbers of the whole run, so long (s), that has ended with a code."""
+    end = reached(duration, code, row_time, store, length)
     shocks = 0
     for n in range(length):
-        shocks += 1 if store.whole[n, at.S_CAUSE] > 0 else 0
+        shocks += 1 if whole_of(store, n)[at.S_CAUSE] > 0 else 0
     out[SHOCKS], out[END_TIME] = shocks, end
-    out[ARRESTED] = 1.0 if rests_at(store, length, run.par[at.ROW_TIME], end) else 0.0
-    out[SLIP] = slipped(store, length, run.par[at.ROW_TIME], end)
+    out[ARRESTED] = 1.0 if rests_at(store, length, row_time, end) else 0.0
+    out[SLIP] = slipped(store, length, row_time, end)
+
+
+@kernel
+def fold_end(store: Store, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
+    """As `fold_whole`, for the last pieces of a history: its shocks are not all among them."""
+    shocks = out[SHOCKS]
+    fold_whole(pieces_of(store), length, row_time, duration, code, floats(out.ctypes.data))
+    out[SHOCKS] = shocks

@@ -2,19 +2,22 @@
 
 One thread has one workspace with a lane for each of a few members, and takes members as lanes become free. Members that slip under
 a law of slip take their steps side by side; others run to their end one after the other, all in the first lane. No Python comes in
-between, so threads run side by side.
+between, so threads run side by side; nor are references to arrays counted, but where a run has ended.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+from numba import carray
 
 from stickslip.batch.kernels.engine import advance_at
 from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
+from stickslip.batch.kernels.pieces import Pieces
 from stickslip.batch.kernels.points import find_events
-from stickslip.batch.kernels.reduction import fold_events, fold_first, fold_whole, reached
+from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, fold_whole
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.compiled import ahead, floats, inlined, integers, kernel
 from stickslip.evolution.events import NOT_YET
 from stickslip.evolution.lanes import WIDTH
 from stickslip.evolution.layout import Floats, Integers, Store
@@ -30,6 +33,19 @@ BUDGET = 200_000
 """Steps between two looks at whether the batch is to stop."""
 FREE, UNDER_WAY, AT_END = range(3)
 """What a lane is at: no member; one that runs; one whose run has ended."""
+
+
+class Lane(NamedTuple):
+    """A lane of a workspace, by addresses; the engine's table is that of the member in it."""
+
+    table: Integers
+    base: Integers
+    stride: Integers
+    places: int
+    stage: Integers
+    waits: Integers
+    member: Integers
+    code: Integers
 
 
 @kernel
@@ -48,82 +64,128 @@ def run_group(
 
     Returns WIDTH when all are done, or `stop` is set; else the lane that has no room. Called again, it goes on from there.
     """
-    tables, waits, jets, block = base.copy(), work.waits, setups.jets, work.block[0]
-    for lane in range(WIDTH):
-        if work.stage[lane] != FREE:
-            point_at(tables[lane], base[lane], stride, setups, work.member[lane])
+    tables = base.copy()
+    first = first_lane(work, tables, base, stride)
+    jets, block = integers(setups.jets.ctypes.data), work.block[0]
+    for n in range(WIDTH):
+        if nth(first, n).stage[0] != FREE:
+            point_at(nth(first, n), setups, first.member[n])
     while True:
         waiting = 0
-        for lane in range(WIDTH):
-            due = waits[lane] == AWAY or waits[lane] == ALONE
-            if due and not bring_on(engine, tables[lane], base[lane], stride, setups, work, lane, wants_events, stop, codes, out):
-                return lane
-            waiting += waits[lane] != AWAY
+        for n in range(WIDTH):
+            if first.waits[n] == AWAY or first.waits[n] == ALONE:
+                if first.stage[n] == UNDER_WAY:
+                    advance_member(engine, nth(first, n), setups, stop)
+                if first.waits[n] == AWAY and not bring_on(engine, nth(first, n), setups, work, n, wants_events, stop, codes, out):
+                    return n
+            waiting += first.waits[n] != AWAY
         if waiting == 0 or stop[0] != 0:
             return WIDTH
-        step_side_by_side(tables, waits, jets, block)
+        step_side_by_side(first.table, first.places, first.waits, jets, block)
+
+
+@inlined
+def first_lane(work: Workspace, tables: Integers, base: Integers, stride: Integers) -> Lane:
+    """The first lane."""
+    flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
+    member, code = integers(work.member.ctypes.data), integers(work.code.ctypes.data)
+    table, origin = integers(tables.ctypes.data), integers(base.ctypes.data)
+    return Lane(table, origin, integers(stride.ctypes.data), len(stride), flags[0], flags[1], member, code)
+
+
+@inlined
+def nth(lane: Lane, n: int) -> Lane:
+    """The lane n places further on."""
+    table, base = ahead(lane.table, n * lane.places), ahead(lane.base, n * lane.places)
+    stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
+    return Lane(table, base, lane.stride, lane.places, stage, waits, member, code)
+
+
+@inlined
+def point_at(lane: Lane, setups: Setups, n: int) -> None:
+    """The engine's table for the member n."""
+    for k in range(lane.places):
+        lane.table[k] = lane.base[k] + n * lane.stride[k]
+    lane.table[BRANCHES] = setups.branches[n]
+
+
+@inlined
+def start_member(run: Run, setups: Setups) -> None:
+    """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
+    for k in range(len(setups.state)):
+        run.state[k] = setups.state[k]
+    for k in range(len(setups.counts)):
+        run.counts[k] = setups.counts[k]
+    run.counts[at.TO_THE_END], run.counts[at.WAITS] = 1, 1 if len(setups.jets) > 0 else 0
+
+
+@inlined
+def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
+    """Let the engine run the lane's member until it is to take a step with others, ends, has no room, or the batch is stopped."""
+    n, table, code = lane.member[0], carray(lane.table, (lane.places,)), OUT_OF_BUDGET
+    if lane.waits[0] == ALONE:
+        counts = borrow(lane.table).counts
+        counts[at.WAITS] = 0
+        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
+        counts[at.WAITS] = 1
+    while code == OUT_OF_BUDGET and stop[0] == 0:
+        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
+    lane.code[0] = code
+    lane.waits[0] = FRESH if code == at.SLIPS else AWAY
+    if code != at.SLIPS and code != at.FULL and code != OUT_OF_BUDGET:
+        lane.stage[0] = AT_END
 
 
 @kernel
 def bring_on(
     engine: int,
-    table: Integers,
-    base: Integers,
-    stride: Integers,
+    lane: Lane,
     setups: Setups,
     work: Workspace,
-    lane: int,
+    place: int,
     wants_events: bool,
     stop: Integers,
     codes: Integers,
     out: Floats,
 ) -> bool:
-    """Run members in a lane until one is to slip in step with others, or none is left; False where there is no room."""
-    while True:
-        if work.stage[lane] == FREE:
-            n = work.upcoming[0]
-            if n == len(codes):
-                return True
-            work.upcoming[0] += 1
-            if setups.branches[n] <= 0:
-                codes[n] = BAD_PARAMETERS
-                continue
-            point_at(table, base, stride, setups, n)
-            start_member(setups, work.state[lane], work.counts[lane], work.scratch[lane])
-            work.stage[lane], work.member[lane] = UNDER_WAY, n
-        n = work.member[lane]
-        if work.stage[lane] == UNDER_WAY:
-            code = work.code[lane] = advance_member(engine, table, setups, work, lane, stop)
-            work.waits[lane] = FRESH if code == at.SLIPS else AWAY
-            if code == at.SLIPS:
-                return True
-            if code == at.FULL or code == OUT_OF_BUDGET:
+    """Run members in a lane until one is to take a step with others, or none is left; False where there is no room."""
+    numbers = floats(out.ctypes.data)
+    while lane.stage[0] != UNDER_WAY:
+        n = lane.member[0]
+        if lane.stage[0] == AT_END:
+            run = borrow(lane.table)
+            codes[n] = lane.code[0] if run.counts[at.LENGTH] > 0 else BAD_PARAMETERS
+            member = ahead(numbers, n * len(COLUMNS))
+            if run.counts[at.LENGTH] > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
                 return False
-            work.stage[lane] = AT_END
-        has_run = work.counts[lane, at.LENGTH] > 0
-        codes[n] = work.code[lane] if has_run else BAD_PARAMETERS
-        if has_run and not fold_member(borrow(table), setups, n, work, store_of(work, lane), wants_events, codes[n], out[n]):
+            lane.stage[0] = FREE
+        n = work.upcoming[0]
+        if n == len(codes):
+            return True
+        work.upcoming[0] += 1
+        if setups.branches[n] <= 0:
+            codes[n] = BAD_PARAMETERS
+            continue
+        point_at(lane, setups, n)
+        start_member(borrow(lane.table), setups)
+        lane.stage[0], lane.member[0] = UNDER_WAY, n
+        advance_member(engine, lane, setups, stop)
+    return lane.code[0] == at.SLIPS
+
+
+@inlined
+def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Floats) -> bool:
+    """Fold a run that has ended with a code; False where there is no room for its turning points."""
+    pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts[at.LENGTH]
+    if wants_events:
+        events = find_events(store_of(work, lane), length, setups.threshold[n], work.points)
+        if events == NOT_YET:
             return False
-        work.stage[lane] = FREE
-
-
-@inlined
-def point_at(table: Integers, base: Integers, stride: Integers, setups: Setups, n: int) -> None:
-    """The engine's table for the member n."""
-    for k in range(len(base)):
-        table[k] = base[k] + n * stride[k]
-    table[BRANCHES] = setups.branches[n]
-
-
-@inlined
-def start_member(setups: Setups, state: Floats, count: Integers, scratch: Floats) -> None:
-    """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
-    for k in range(len(state)):
-        state[k] = setups.state[k]
-    for k in range(len(count)):
-        count[k] = setups.counts[k]
-    count[at.TO_THE_END], count[at.WAITS] = 1, 1 if len(setups.jets) > 0 else 0
-    scratch[:] = 0.0
+        fold_events(run, pieces, work.points, events, out)
+        if events > 0:
+            fold_first(run, pieces, length, work.points, setups.excess[n], setups.stiffness[n], out)
+    fold_whole(pieces, length, run.par[at.ROW_TIME], setups.duration[n], code, out)
+    return True
 
 
 @inlined
@@ -131,36 +193,3 @@ def store_of(work: Workspace, lane: int) -> Store:
     """The history in a lane."""
     store = work.store
     return Store(store.whole[lane], store.real[lane], store.load[lane], store.rate[lane], store.state[lane])
-
-
-@kernel
-def advance_member(engine: int, table: Integers, setups: Setups, work: Workspace, lane: int, stop: Integers) -> int:
-    """Run a member until it slips, ends, its history is full, or the batch is stopped; says which, as `engine.advance`."""
-    n = work.member[lane]
-    if work.waits[lane] == ALONE:
-        work.counts[lane, at.WAITS] = 0
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
-        work.counts[lane, at.WAITS] = 1
-        if code != OUT_OF_BUDGET:
-            return code
-    while True:
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
-        if code != OUT_OF_BUDGET or stop[0] != 0:
-            return code
-
-
-@kernel
-def fold_member(
-    run: Run, setups: Setups, n: int, work: Workspace, store: Store, wants_events: bool, code: int, out: Floats
-) -> bool:
-    """Fold a run that has ended with a code; False where there is no room for its turning points."""
-    length = run.counts[at.LENGTH]
-    if wants_events:
-        events = find_events(store, length, setups.threshold[n], work.points)
-        if events == NOT_YET:
-            return False
-        fold_events(run, store, work.points, events, out)
-        if events > 0:
-            fold_first(run, store, length, work.points, setups.excess[n], setups.stiffness[n], out)
-    fold_whole(run, store, length, reached(setups.duration[n], code, run.par[at.ROW_TIME], store, length), out)
-    return True

@@ -1,7 +1,7 @@
 """Branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and the rules of `contact.selection`, compiled.
 
-Where mu is convex or concave g turns once at most, and the fold is found between two floating-point numbers that are neighbours: by
-false position, and by halving what is left. Any other law is searched over the grid of slip rates of `contact.branches`.
+Where mu is convex or concave g turns once at most, and the fold is found between two floating-point numbers that are neighbours.
+Any other law is searched over the grid of slip rates of `contact.branches`.
 """
 
 from __future__ import annotations
@@ -25,8 +25,10 @@ BELOW, ABOVE = 1e-8, 1e4
 ROUNDS, BETWEEN = 3, 17
 """The grid is refined so often where g' nearly touches zero, with so many rates between two neighbours."""
 NEVER_RISES, TOO_MANY = 0, -1
-OCTAVE, NEAR, STEPS = 2**52, 8, 10
-"""Steps of false position within a factor of two of the slip rate, and how far in last bits the turn may be from where they end."""
+NEARBY = 1e-14
+"""Rounding of where a law says that the turn is, relative."""
+OCTAVE, STEPS = 2**52, 16
+"""A factor of two between slip rates, by their bits, and steps of false position behind which the bits are halved again."""
 
 
 @inlined
@@ -44,74 +46,63 @@ def excess_at(address: int, c: Any, impedance: float, normal: float, start: floa
 
 
 @inlined
-def turn_between(address: int, c: Any, impedance: float, normal: float, low: float, high: float, out: Any) -> float:
-    """The rate between two at which g' changes sign: the last one at which it still rises, or the first one at which it does."""
-    rises = slope_at(address, c, impedance, normal, low, out) > 0.0
-    before, behind = halved(address, c, impedance, normal, bits_of(low), bits_of(high), rises, OCTAVE, out)
-    near = bits_of(crossing(address, c, impedance, normal, float_of(before), float_of(behind), rises, out))
-    for probe in (near - NEAR, near + NEAR):
-        if before < probe < behind:
-            if (slope_at(address, c, impedance, normal, float_of(probe), out) > 0.0) == rises:
-                before = probe
-            else:
-                behind = probe
-    before, behind = halved(address, c, impedance, normal, before, behind, rises, 1, out)
+def turn_between(
+    address: int, c: Any, impedance: float, normal: float, low: float, high: float, at_low: float, at_high: float, out: Any
+) -> float:
+    """The rate between two at which g' changes sign: the last one at which it still rises, or the first one at which it does.
+
+    at_low, at_high: g' there. Halves the bits of the rates down to a factor of two; from there on false position, kept from
+    standing still by the weights of Anderson & Björck 1973 (BIT 13, 253).
+    """
+    rises, side, steps = at_low > 0.0, 0, 0
+    before, behind = bits_of(low), bits_of(high)
+    while behind - before > 1:
+        probe = before + (behind - before) // 2
+        near = behind - before <= OCTAVE and steps < STEPS
+        if near:
+            crossing = (float_of(before) * at_high - float_of(behind) * at_low) / (at_high - at_low)
+            probe, steps = min(max(bits_of(crossing), before + 1), behind - 1), steps + 1
+        value = slope_at(address, c, impedance, normal, float_of(probe), out)
+        if (value > 0.0) == rises:
+            at_high *= share_kept(value, at_low) if side > 0 else 1.0
+            before, at_low, side = probe, value, 1 if near else 0
+        else:
+            at_low *= share_kept(value, at_high) if side < 0 else 1.0
+            behind, at_high, side = probe, value, -1 if near else 0
     return float_of(before) if rises else float_of(behind)
 
 
 @inlined
-def halved(
-    address: int, c: Any, impedance: float, normal: float, before: int, behind: int, rises: bool, width: int, out: Any
-) -> tuple[int, int]:
-    """Two rates with the turn between them, by their bits, halved until they are so near."""
-    while behind - before > width:
-        middle = before + (behind - before) // 2
-        if (slope_at(address, c, impedance, normal, float_of(middle), out) > 0.0) == rises:
-            before = middle
-        else:
-            behind = middle
-    return before, behind
-
-
-@inlined
-def crossing(address: int, c: Any, impedance: float, normal: float, low: float, high: float, rises: bool, out: Any) -> float:
-    """About where g' is zero between two rates: false position, kept from standing still (Illinois: Dowell & Jarratt 1971)."""
-    before = slope_at(address, c, impedance, normal, low, out)
-    behind = slope_at(address, c, impedance, normal, high, out)
-    side, x = 0, high
-    for _ in range(STEPS):
-        last, x = x, (low * behind - high * before) / (behind - before)
-        if not low < x < high or abs(x - last) <= 1e-16 * x:
-            break
-        value = slope_at(address, c, impedance, normal, x, out)
-        if (value > 0.0) == rises:
-            low, before = x, value
-            behind *= 0.5 if side > 0 else 1.0
-            side = 1
-        else:
-            high, behind = x, value
-            before *= 0.5 if side < 0 else 1.0
-            side = -1
-    return x
-
-
-@inlined
-def rises_at_rest(address: int, c: Any, impedance: float, normal: float, slowest: float, out: Any) -> bool:
-    """Whether g rises from s = 0 on."""
-    at_rest = slope_at(address, c, impedance, normal, 0.0, out)
-    return at_rest > 0.0 or (at_rest == 0.0 and slope_at(address, c, impedance, normal, BELOW * slowest, out) > 0.0)
+def share_kept(value: float, last: float) -> float:
+    """What false position leaves of the value at the end that stays where it is for a second time."""
+    share = 1.0 - value / last
+    return share if share > 0.0 else 0.5
 
 
 @kernel
 def turns_once(
-    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any
+    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, near: float, ends: Floats, out: Any
 ) -> int:
-    """Ends of the branches of a resistance whose slope only rises, or only falls. Returns how many branches there are."""
-    if not slope_at(address, c, impedance, normal, ABOVE * fastest, out) > 0.0:
+    """Ends of the branches of a resistance whose slope only rises, or only falls. Returns how many branches there are.
+
+    near: where the turn may be, if that is known.
+    """
+    low, high = 0.0, ABOVE * fastest
+    at_high = slope_at(address, c, impedance, normal, high, out)
+    if not at_high > 0.0:
         return NEVER_RISES
-    rises = rises_at_rest(address, c, impedance, normal, slowest, out)
-    ends[0] = 0.0 if rises else turn_between(address, c, impedance, normal, 0.0, ABOVE * fastest, out)
-    ends[1] = math.inf
+    at_low = slope_at(address, c, impedance, normal, low, out)
+    ends[0], ends[1] = 0.0, math.inf
+    if at_low > 0.0 or (at_low == 0.0 and slope_at(address, c, impedance, normal, BELOW * slowest, out) > 0.0):
+        return 1
+    for rate in (near * (1.0 - NEARBY), near * (1.0 + NEARBY), slowest, fastest):
+        if low < rate < high:
+            slope = slope_at(address, c, impedance, normal, rate, out)
+            if slope > 0.0:
+                high, at_high = rate, slope
+            else:
+                low, at_low = rate, slope
+    ends[0] = turn_between(address, c, impedance, normal, low, high, at_low, at_high, out)
     return 1
 
 
@@ -161,7 +152,7 @@ def turns(address: int, c: Any, impedance: float, normal: float, slowest: float,
         if (slope[n] > 0.0) != rises:
             if found + 2 > len(ends):
                 return TOO_MANY
-            ends[found] = turn_between(address, c, impedance, normal, rates[n - 1], rates[n], out)
+            ends[found] = turn_between(address, c, impedance, normal, rates[n - 1], rates[n], slope[n - 1], slope[n], out)
             found, rises = found + 1, not rises
     ends[found] = math.inf
     return (found + 1) // 2
@@ -194,6 +185,7 @@ def branch_tables(
     start: Floats,
     slowest: Floats,
     fastest: Floats,
+    near: Floats,
     one_way: bool,
     rule: int,
     table: Floats,
@@ -202,12 +194,12 @@ def branch_tables(
     stick_to: Floats,
 ) -> None:
     """Rows of `Setup.branch` of each member, one behind the other; how many branches; whether a load has several solutions."""
-    ends, work, size = np.empty(2 * MOST_BRANCHES), np.empty(4), constants.shape[1] * constants.shape[2]
-    out = floats(work.ctypes.data)
+    ends, work = np.empty(2 * MOST_BRANCHES), np.empty(4)
+    out, size = floats(work.ctypes.data), constants.shape[1] * constants.shape[2] if len(constants) > 1 else 0
     for n in range(len(table)):
         c, z, s = ahead(floats(constants.ctypes.data), n * size), impedance[n], normal[n]
         if one_way:
-            found = turns_once(address, c, z, s, slowest[n], fastest[n], ends, out)
+            found = turns_once(address, c, z, s, slowest[n], fastest[n], near[n], ends, out)
         else:
             found = turns(address, c, z, s, slowest[n], fastest[n], ends, out)
         branches[n], irregular[n], stick_to[n] = found, 0.0, 0.0
