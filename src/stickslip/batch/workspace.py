@@ -26,6 +26,7 @@ from stickslip.evolution.workspace import (
     LOAD_AT,
     NODE_AT,
     PAR_AT,
+    PLACES,
     RATE_AT,
     REAL_AT,
     SCRATCH_AT,
@@ -58,6 +59,7 @@ class Workspace(NamedTuple):
     waits: Integers
     member: Integers  # the one in each lane
     code: Integers  # what its run has come to
+    table: Integers  # the engine's table for it
     upcoming: Integers  # the next member to be taken
 
     @property
@@ -119,6 +121,7 @@ def new_workspace() -> Workspace:
         waits,
         member,
         code,
+        np.zeros((WIDTH, PLACES), np.int64),
         np.zeros(1, np.int64),
     )
 

@@ -27,6 +27,7 @@ WHOLE, REAL = 6, 8
 PAR_AT, ADDRESS_AT, CONSTANTS_AT, LAW_AT, BRANCH_AT, FIRST_AT, LOADING_AT, STATES_AT, COUNTS_AT, SCRATCH_AT = range(10)
 WHOLE_AT, REAL_AT, LOAD_AT, RATE_AT, STORED_STATE_AT = range(10, 15)
 PIECES, SIZE, BRANCHES, LOADS, SEGMENTS, CAPACITY, NODE_AT, HEIGHTS_AT = range(15, 23)
+PLACES = 23
 
 MATRIX_ROWS = 18
 """Equations of an implicit step: their matrix and right-hand side fill so many rows of TERMS numbers."""

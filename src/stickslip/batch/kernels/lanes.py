@@ -20,7 +20,7 @@ from stickslip.evolution.layout import TERMS, Floats, Integers
 from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
 from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.evolution.workspace import DEGREE, Run, borrow
+from stickslip.evolution.workspace import DEGREE, PLACES, Run, borrow
 
 SEEN, LOCAL, JET, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(6))
 LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
@@ -32,16 +32,16 @@ AWAY, FRESH, SLIPPING, ALONE = range(4)
 
 
 @kernel
-def step_side_by_side(table: Integers, places: int, waits: Integers, jets: Integers, block: int) -> None:
+def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
     """A step for each lane that waits for one, under the formula at which the first of them is.
 
-    table: the engine's tables of the lanes, each of so many places; jets: addresses of the formulas' series, by piece of the law.
+    table: the engine's tables of the lanes; jets: addresses of the formulas' series, by piece of the law.
     """
     address = 0
     column, rows = floats(block), lanes_at(block)
     for lane in range(WIDTH):
         if waits[lane] == FRESH or waits[lane] == SLIPPING:
-            run = borrow(ahead(table, lane * places))
+            run = borrow(ahead(table, lane * PLACES))
             own = jets[run.counts[at.PIECE]]
             address = own if address == 0 else address
             if own == address:
@@ -53,11 +53,11 @@ def step_side_by_side(table: Integers, places: int, waits: Integers, jets: Integ
     rows[LENGTH] = length_at(ahead(rows, JET), rows[TOLERANCE], 0.5)
     for lane in range(WIDTH):
         if waits[lane] == SLIPPING:
-            take_length(borrow(ahead(table, lane * places)), ahead(column, lane))
+            take_length(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
     calculate(rows)
     for lane in range(WIDTH):
         if waits[lane] == SLIPPING:
-            waits[lane] = take_out(borrow(ahead(table, lane * places)), ahead(column, lane))
+            waits[lane] = take_out(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
         waits[lane] = abs(waits[lane])
 
 

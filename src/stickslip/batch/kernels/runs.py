@@ -23,7 +23,7 @@ from stickslip.evolution.lanes import WIDTH
 from stickslip.evolution.layout import Floats, Integers, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.status import BAD_PARAMETERS
-from stickslip.evolution.workspace import BRANCHES, Run, borrow
+from stickslip.evolution.workspace import BRANCHES, PLACES, Run, borrow
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups
@@ -41,7 +41,6 @@ class Lane(NamedTuple):
     table: Integers
     base: Integers
     stride: Integers
-    places: int
     stage: Integers
     waits: Integers
     member: Integers
@@ -64,8 +63,7 @@ def run_group(
 
     Returns WIDTH when all are done, or `stop` is set; else the lane that has no room. Called again, it goes on from there.
     """
-    tables = base.copy()
-    first = first_lane(work, tables, base, stride)
+    first = first_lane(work, base, stride)
     jets, block = integers(setups.jets.ctypes.data), work.block[0]
     for n in range(WIDTH):
         if nth(first, n).stage[0] != FREE:
@@ -81,30 +79,30 @@ def run_group(
             waiting += first.waits[n] != AWAY
         if waiting == 0 or stop[0] != 0:
             return WIDTH
-        step_side_by_side(first.table, first.places, first.waits, jets, block)
+        step_side_by_side(first.table, first.waits, jets, block)
 
 
 @inlined
-def first_lane(work: Workspace, tables: Integers, base: Integers, stride: Integers) -> Lane:
+def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
     """The first lane."""
     flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
     member, code = integers(work.member.ctypes.data), integers(work.code.ctypes.data)
-    table, origin = integers(tables.ctypes.data), integers(base.ctypes.data)
-    return Lane(table, origin, integers(stride.ctypes.data), len(stride), flags[0], flags[1], member, code)
+    table, origin = integers(work.table.ctypes.data), integers(base.ctypes.data)
+    return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code)
 
 
 @inlined
 def nth(lane: Lane, n: int) -> Lane:
     """The lane n places further on."""
-    table, base = ahead(lane.table, n * lane.places), ahead(lane.base, n * lane.places)
+    table, base = ahead(lane.table, n * PLACES), ahead(lane.base, n * PLACES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
-    return Lane(table, base, lane.stride, lane.places, stage, waits, member, code)
+    return Lane(table, base, lane.stride, stage, waits, member, code)
 
 
 @inlined
 def point_at(lane: Lane, setups: Setups, n: int) -> None:
     """The engine's table for the member n."""
-    for k in range(lane.places):
+    for k in range(PLACES):
         lane.table[k] = lane.base[k] + n * lane.stride[k]
     lane.table[BRANCHES] = setups.branches[n]
 
@@ -122,7 +120,7 @@ def start_member(run: Run, setups: Setups) -> None:
 @inlined
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
     """Let the engine run the lane's member until it is to take a step with others, ends, has no room, or the batch is stopped."""
-    n, table, code = lane.member[0], carray(lane.table, (lane.places,)), OUT_OF_BUDGET
+    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
     if lane.waits[0] == ALONE:
         counts = borrow(lane.table).counts
         counts[at.WAITS] = 0
