@@ -141,9 +141,9 @@ def sweep(
             search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
             plan, found = _refined(plan, vary, search | where)
         else:
-            with runner_of(threads, workers, scheduler) as run:
+            with runner_of(threads, workers, scheduler) as (run, at_once):
                 if dry_run:
-                    show_estimate(plan, _estimated(plan, run))
+                    show_estimate(plan, _estimated(plan, run, at_once))
                     return
                 found = _found(plan, out, run)
     if figure is not None:
@@ -168,12 +168,12 @@ def _kept(wanted: Sequence[str], refined: str | None) -> list[str]:
     return [*wanted, *([refined] if refined and refined not in wanted else [])]
 
 
-def _estimated(plan: Plan, run: Runner) -> Estimate:
+def _estimated(plan: Plan, run: Runner, at_once: int) -> Estimate:
     from stickslip.cli.show import progress_to
     from stickslip.sweeps.estimate import estimate
 
     with progress_to(f"{plan.scenario.name}: timing a sample"):
-        return estimate(plan, run)
+        return estimate(plan, run, at_once)
 
 
 def _found(plan: Plan, out: Path | None, run: Runner) -> xr.Dataset:

@@ -39,14 +39,16 @@ class Estimate:
     took: float
 
 
-def estimate(plan: Plan, run: Runner) -> Estimate:
-    """Run a sample spread over the design, twice as large every time until it takes long enough, twice, to be believed."""
-    size, wanted = plan.design.size, 1
+def estimate(plan: Plan, run: Runner, at_once: int = 1) -> Estimate:
+    """Run a sample spread over the design, in as many chunks as run at a time, twice as large every time until it takes long
+    enough, twice, to be believed."""
+    size = plan.design.size
+    wanted = min(at_once, size)
     while True:
         members = _spread(size, wanted)
-        took, failed = _timed(plan, run, members)
+        took, failed = _timed(plan, run, members, at_once)
         if took >= LONG_ENOUGH or wanted == size:  # the first time something may have been compiled, or another program busy
-            took = min(took, _timed(plan, run, members)[0])
+            took = min(took, _timed(plan, run, members, at_once)[0])
         if took >= LONG_ENOUGH or wanted == size:
             break
         wanted = min(2 * wanted, size)
@@ -62,10 +64,11 @@ def _spread(size: int, wanted: int) -> NDArray[np.intp]:
     return np.unique((np.arange(1, wanted + 1) * GOLDEN % 1.0 * size).astype(np.intp))
 
 
-def _timed(plan: Plan, run: Runner, members: NDArray[np.intp]) -> tuple[float, int]:
-    """Wall clock (s) of members, and how many of them failed."""
+def _timed(plan: Plan, run: Runner, members: NDArray[np.intp], at_once: int) -> tuple[float, int]:
+    """Wall clock (s) of members in so many chunks, and how many of them failed."""
+    chunks = [(n, plan.design.values(own)) for n, own in enumerate(np.array_split(members, at_once)) if len(own)]
     start = time.perf_counter()
-    done = [result for _, result in run(plan.work, [(0, plan.design.values(members))])]
+    done = [result for _, result in run(plan.work, chunks)]
     return time.perf_counter() - start, sum(int((result.status >= FIRST_FAILURE).sum()) for result in done)
 
 

@@ -75,7 +75,7 @@ def refine(
         found = search.there(place)
         shutil.rmtree(_rounds_of(place), ignore_errors=True)  # of a search that was killed in its last moment
         return found
-    with runner_of(threads, workers, scheduler) as run:
+    with runner_of(threads, workers, scheduler) as (run, _):
         return search.carried_out(place, run, progress)
 
 

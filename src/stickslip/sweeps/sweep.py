@@ -86,15 +86,16 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    with runner_of(threads, workers, scheduler) as run:
+    with runner_of(threads, workers, scheduler) as (run, _):
         return carry_out(plan, out, run, progress)
 
 
 @contextmanager
-def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[Runner]:
-    """What runs the chunks: threads of this process, or a cluster where `workers` or a `scheduler` are given. Raises InputError."""
+def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[tuple[Runner, int]]:
+    """What runs the chunks, and how many at a time: threads of this process, or a cluster where `workers` or a `scheduler` are
+    given. Raises InputError."""
     if workers is None and scheduler is None:
-        yield on_threads(threads)
+        yield on_threads(threads), 1
         return
     from stickslip.sweeps.cluster import cluster, on_cluster
 
@@ -103,7 +104,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
             "sweep: give one of threads, workers (processes of a cluster of its own) and scheduler (of another cluster)"
         )
     with cluster(scheduler, workers) as client:
-        yield on_cluster(client)
+        yield on_cluster(client), max(sum(client.nthreads().values()), 1)
 
 
 def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progress | None = None) -> xr.Dataset:
