@@ -39,6 +39,19 @@ def start_member(setups: Setups, state: Floats, count: Integers) -> None:
     count[at.TO_THE_END] = 1
 
 
+@inlined
+def fold_slip_events(run: Run, setups: Setups, n: int, work: Workspace, store: Pieces, out: Floats) -> bool:
+    """Fold the slip events of a run that has ended; False where there is no room for its turning points."""
+    length = run.counts[at.LENGTH]
+    events = find_events(work.store, length, setups.threshold[n], work.points)
+    if events == NOT_YET:
+        return False
+    fold_events(run, store, work.points, events, out)
+    if events > 0:
+        fold_first(run, store, length, work.points, setups.excess[n], setups.stiffness[n], out)
+    return True
+
+
 @kernel
 def run_group(
     engine: int,
@@ -83,19 +96,6 @@ def run_group(
             fold_whole(store, count[at.LENGTH], row_time, setups.duration[n], codes[n], member)
         where[1] = AT_START
     return len(codes)
-
-
-@kernel
-def fold_slip_events(run: Run, setups: Setups, n: int, work: Workspace, store: Pieces, out: Floats) -> bool:
-    """Fold the slip events of a run that has ended; False where there is no room for its turning points."""
-    length = run.counts[at.LENGTH]
-    events = find_events(work.store, length, setups.threshold[n], work.points)
-    if events == NOT_YET:
-        return False
-    fold_events(run, store, work.points, events, out)
-    if events > 0:
-        fold_first(run, store, length, work.points, setups.excess[n], setups.stiffness[n], out)
-    return True
 
 
 @kernel
