@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.compiled import inlined
 from stickslip.evolution.events import NOT_YET, count_pulses, highest, turning_points
 from stickslip.evolution.layout import Floats, Integers, Store
 
