@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from stickslip.batch import QUANTITIES, long_member, run, run_members
+from stickslip.batch.workspace import Workspace, new_workspace
 from stickslip.errors import InputError
 from stickslip.evolution.layout import FINISHED
 from stickslip.evolution.status import BAD_PARAMETERS, STATUSES
@@ -52,6 +53,25 @@ def test_neither_threads_nor_order_nor_company_matter(name: str, monkeypatch: py
     assert (alone.status[order] == shuffled.status).all()
     for quantity in QUANTITIES:
         assert alone.results[quantity][order].tobytes() == shuffled.results[quantity].tobytes(), quantity
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_a_workspace_held_before_does_not_matter(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = CASES[name]
+    values = case.values()
+    expected = run_members(case.scenario, values, QUANTITIES)
+
+    def soiled() -> Workspace:
+        work = new_workspace()
+        for table in (work.state, work.scratch, work.store.real, work.store.load, work.store.rate, work.echoes.heights):
+            table[:] = math.nan
+        return work
+
+    monkeypatch.setattr(run, "new_workspace", soiled)
+    found = run_members(case.scenario, values, QUANTITIES)
+    assert found.status.tolist() == expected.status.tolist()
+    for quantity in QUANTITIES:
+        assert found.results[quantity].tobytes() == expected.results[quantity].tobytes(), quantity
 
 
 def test_each_quantity_comes_out_the_same_when_it_is_asked_for_alone() -> None:

@@ -40,7 +40,7 @@ def branch_of(setups: Setups, n: int) -> at.Floats:
 def test_setups_are_those_of_single_runs(name: str) -> None:
     case = CASES[name]
     drawn = case.values(12, seed=7)
-    for places, values in groups(case.scenario, drawn):
+    for _, places, values in groups(case.scenario, drawn):
         setups = set_up(case.scenario, values)
         for n, place in enumerate(places.tolist()):
             alone = one(case, drawn, place)

@@ -166,9 +166,11 @@ def driven_rigidly(body: ElasticSlab) -> Booleans:
     return np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
 
 
-def groups(scenario: Scenario, values: Values) -> Iterator[tuple[Places, dict[str, Floats]]]:
-    """Members that are alike but for their numbers: their places, and their values; driven rigidly all or none, with mass all or
-    none, and starting in the same piece of the law."""
+def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, dict[str, Floats]]]:
+    """Members that are alike but for their numbers: their kind, their places, and their values.
+
+    They are driven rigidly all or none, with mass all or none, and start in the same piece of the law: the kind says so.
+    """
     numbers, count = Numbers.of(values), len(next(iter(values.values())))
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     start = pieces_at_start(with_numbers(scenario.problem, {"friction": law} | numbers.problem))
@@ -180,4 +182,4 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[Places, dict[st
             values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)
-        yield chosen, {key: value[chosen] for key, value in values.items()}
+        yield int(one), chosen, {key: value[chosen] for key, value in values.items()}

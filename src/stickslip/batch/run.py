@@ -15,7 +15,7 @@ from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_E
 from stickslip.batch.kernels.runs import AT_END, FREE, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.many import Values, are_fine, groups, member
-from stickslip.batch.setups import set_up
+from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.errors import InputError
 from stickslip.evolution.lanes import WIDTH
@@ -23,9 +23,10 @@ from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
 from stickslip.scenarios.scenario import Scenario
 
-CHUNK = 4096
-"""Members that are set up together: enough for numpy, few enough for the cache and for threads to share evenly."""
-CHUNKS_PER_THREAD = 4
+CHUNK = 8192
+"""Members that are set up together: enough for numpy, few enough for the cache."""
+CHUNKS_PER_THREAD = 3
+"""At least, where there are fewer members: threads share what they have evenly, and run few lines of Python for it."""
 NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
 NO_START = "the run ends where it starts"
 
@@ -61,8 +62,9 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
 
 
 def batch_size(count: int, threads: int) -> int:
-    """Members in a chunk."""
-    return max(1, min(CHUNK, -(-count // (CHUNKS_PER_THREAD * threads))))
+    """Members in a chunk: of chunks as large as each other, as many for each thread."""
+    chunks = threads * max(CHUNKS_PER_THREAD, -(-count // (CHUNK * threads)))
+    return max(1, -(-count // chunks))
 
 
 def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str]) -> dict[str, Floats]:
@@ -87,6 +89,7 @@ class _Batch:
         self.queue: SimpleQueue[slice] = SimpleQueue()
         self.stop = np.zeros(1, np.int64)
         self.engine = engine_address()
+        self.alike: dict[int, Alike] = {}
 
     def run(self, threads: int) -> None:
         """Do all chunks; an error, or Ctrl-C, ends every thread."""
@@ -121,13 +124,15 @@ class _Batch:
         valid = np.flatnonzero(fine)
         if not valid.size:
             return work
-        for places, numbers in groups(self.scenario, {key: value[valid] for key, value in values.items()}):
-            work = self.group(chunk.start + valid[places], numbers, work)
+        for kind, places, numbers in groups(self.scenario, {key: value[valid] for key, value in values.items()}):
+            work = self.group(kind, chunk.start + valid[places], numbers, work)
         return work
 
-    def group(self, places: Integers, values: Values, work: Workspace) -> Workspace:
+    def group(self, kind: int, places: Integers, values: Values, work: Workspace) -> Workspace:
         """Run members that are alike but for their numbers; `places` says where they stand in the batch."""
-        setups = set_up(self.scenario, values)
+        if kind not in self.alike:
+            self.alike[kind] = alike(self.scenario, values)
+        setups = set_up(self.scenario, values, self.alike[kind])
         codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
         work = work.ready_for(setups.constants.shape[2])
         while True:

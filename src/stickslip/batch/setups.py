@@ -36,7 +36,7 @@ class Setups(NamedTuple):
     jets: Integers  # (pieces,): the formulas' series for lanes; (0,) where members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Floats  # (members, 3, pieces)
-    branch: Floats  # (members, 6 MOST_BRANCHES), of which the first 6 branches[n] are filled
+    branch: Floats  # (members, 6 times the most branches), of which the first 6 branches[n] are filled
     first: Floats  # (members, 4, pieces of the first load + 1)
     branches: Integers  # (members,); 0 where friction falls for ever, -1 where there are more than MOST_BRANCHES
     irregular: Floats
@@ -50,34 +50,56 @@ class Setups(NamedTuple):
     excess: Floats  # initial load minus strength
 
 
-def set_up(scenario: Scenario, values: Values) -> Setups:
-    """One group of members (`many.groups`)."""
-    count = len(next(iter(values.values())))
-    first = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
+class Alike(NamedTuple):
+    """What the members of a group have in common, whatever their numbers."""
+
+    problem: Problem  # of one of them
+    address: Integers  # (3, pieces), of the law's functions
+    jets: Integers  # as in `Setups`
+    prepare: Integers  # (pieces,)
+    size: int  # of the constants of a piece
+    state: Floats  # at t = 0
+    counts: Integers
+
+
+def alike(scenario: Scenario, values: Values) -> Alike:
+    """What the members of one group (`many.groups`) have in common. Compiles the law's formulas if they are new."""
+    problem = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
+    law = problem.friction
+    with LOADING:
+        compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
+        address = np.array([addresses_of(formula, problem) for formula in compiled], np.int64).T.copy()
+        jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64)
+        prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
+    return Alike(problem, address, jets, prepare, max(formula.size for formula in compiled), *start_of(problem))
+
+
+def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Setups:
+    """Members of one group (`many.groups`); `group` is what they have in common, where that is known."""
+    count, group = len(next(iter(values.values()))), group or alike(scenario, values)
     problem = many(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
     last_row, last_theta = split_times(duration, spread(par[at.ROW_TIME], count))
-    address, jets, constants, law = formulas(problem, first)
-    branch, branches, irregular, stick_to = branches_of(problem, first, address, constants, count)
+    constants, law = formulas(problem, group)
+    branch, branches, irregular, stick_to = branches_of(problem, group, constants, count)
     rtol = values.get("run.rtol", scenario.rtol)
     if par.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
         par = spread(par[:, None], count)
     set_tolerance(par, rtol, scenario.shortest_event)
     if par.ndim > 1:
         par[at.STICK_TO] = stick_to
-    state, counts = start_of(first)
     return Setups(
         par=rows(par, 1),
-        address=address,
-        jets=jets,
+        address=group.address,
+        jets=group.jets,
         constants=constants,
         law=rows(law, 2),
         branch=branch,
         first=rows(first_load(problem), 2),
         branches=branches,
         irregular=irregular,
-        state=state,
-        counts=counts,
+        state=group.state,
+        counts=group.counts,
         last_row=last_row,
         last_theta=last_theta,
         duration=duration,
@@ -109,17 +131,11 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 # ---- the law ----------------------------------------------------------------------------------------------------------------
 
 
-def formulas(problem: Problem, first: Problem) -> tuple[Integers, Integers, Floats, Floats]:
-    """Addresses of the law's functions, alone and in lanes, their constants, shifts, offsets and knots: as in `evolution.setup`."""
-    law, start = problem.friction, problem.law_slip
-    home = int(first.friction.piece_at(first.law_slip))
-    with LOADING:
-        compiled = [compile_formula(tree, first.friction.parameters(), None) for tree in first.friction.trees()]
-        address = np.array([addresses_of(formula, first) for formula in compiled], np.int64).T.copy()
-        prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
-        jets = np.array([] if steps_alone(first) else [jets_of(formula, first) for formula in compiled], np.int64)
-    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(compiled))]
-    references = near if law.knot_variable == "slip" else [start] * len(compiled)
+def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
+    """Constants of the law's functions, and shifts, offsets and knots: as in `evolution.setup`."""
+    law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts[at.PIECE])
+    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
+    references = near if law.knot_variable == "slip" else [start] * pieces
     static = shared(law.pieces[home](law, start, 0.0) + law.static_excess)
     at_reference = [shared(law.pieces[i](law, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
@@ -127,9 +143,9 @@ def formulas(problem: Problem, first: Problem) -> tuple[Integers, Integers, Floa
     table = together([*(start - reference for reference in references), *offsets, *knots])
     numbers = together([*(getattr(law, name) for name in law.parameters()), *references])
     rows_of = rows(numbers, 1)
-    constants = np.zeros((len(rows_of), len(compiled), max(formula.size for formula in compiled)))
-    fill_constants(prepare, rows_of, constants)
-    return address, jets, constants, table.reshape(3, len(compiled), *table.shape[1:])
+    constants = np.zeros((len(rows_of), pieces, group.size))
+    fill_constants(group.prepare, rows_of, constants)
+    return constants, table.reshape(3, pieces, *table.shape[1:])
 
 
 def steps_alone(problem: Problem) -> bool:
@@ -145,24 +161,22 @@ def jets_of(formula: CompiledFormula, problem: Problem) -> int:
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
 
 
-def branches_of(
-    problem: Problem, first: Problem, address: Integers, constants: Floats, count: int
-) -> tuple[Floats, Integers, Floats, Floats]:
+def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
     """Branches of each member's resistance, how many, whether some loads have several solutions, and where stick is left."""
-    branches = np.ones(count, np.int64)
-    if not is_algebraic(first):
-        return branch_rows(first, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
+    branches, one = np.ones(count, np.int64), group.problem
+    if group.counts[at.IS_ALGEBRAIC] == 0:
+        return branch_rows(one, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
     assert isinstance(body, ElasticSlab)
     own = problem.normal * law.variation / body.impedance
     slowest, fastest = scales(law, spread(own, count), count)
     impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
-    table, irregular, stick_to = np.empty((count, 6 * MOST_BRANCHES)), np.empty(count), np.empty(count)
-    kind = (first.friction.bends_one_way, RULES.index(first.rule))
+    kind = one.friction.bends_one_way, RULES.index(one.rule)
+    table, irregular, stick_to = np.empty((count, 6 * (1 if kind[0] else MOST_BRANCHES))), np.empty(count), np.empty(count)
     with np.errstate(divide="ignore", invalid="ignore"):
         near = law.rate_at_slope(-impedance / normal)
     near = spread(np.nan if near is None else near, count)
-    contact = (address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
+    contact = (group.address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
     branch_tables(*contact, *kind, table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 
