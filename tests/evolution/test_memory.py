@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -101,9 +102,9 @@ def healing_problem(kind: str, seed: int) -> tuple[ss.Problem, float]:
     return replace(made, pull_rate=0.03 * problems.rate_scale(body)), problems.duration(body, 4.3)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("kind", HEALING)
+@pytest.mark.parametrize(("kind", "seed"), [*itertools.product(HEALING, SEEDS), ("slab", 16)])
 def test_random_problem_against_scipy(kind: str, seed: int) -> None:
+    """In slab 16 a step reaches a knot of the law, and far beyond it, but for arrest, would go back over it."""
     problem, duration = healing_problem(kind, seed)
     ours, theirs = ss.simulate(problem, duration, rtol=1e-12), method_of_steps(problem, duration, rtol=1e-11)
     assert ours.status.ok

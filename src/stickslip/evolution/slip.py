@@ -102,16 +102,16 @@ def growth(run: Run, rate: Floats, length: float, end: float) -> float:
 
 
 @kernel
-def knot_crossing(run: Run, rate: Floats, length: float) -> float:
-    """Where on [0, 1] the slip reaches the next knot of the law; NONE if it does not. Slip is monotone within a step."""
-    grown = run.k[at.K_CHI] * growth(run, rate, length, 1.0)
+def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
+    """Where on [0, end] the slip reaches the next knot of the law; NONE if it does not. Up to the end of slip it is monotone."""
+    grown = run.k[at.K_CHI] * growth(run, rate, length, end)
     next_knot = run.counts[at.PIECE] if grown > 0.0 else run.counts[at.PIECE] - 1
     if next_knot < 0 or next_knot >= run.pieces - 1:
         return NONE
     distance = abs(run.knot[next_knot] - run.state[at.LAW_SLIP])
     if distance >= abs(grown):
         return NONE
-    low, high = 0.0, 1.0
+    low, high = 0.0, end
     for _ in range(60):
         middle = 0.5 * (low + high)
         if abs(growth(run, rate, length, middle)) < distance:
@@ -122,11 +122,11 @@ def knot_crossing(run: Run, rate: Floats, length: float) -> float:
 
 
 @inlined
-def next_knot(run: Run, rate: Floats, length: float) -> tuple[float, int]:
-    """Where on [0, 1] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
+def next_knot(run: Run, rate: Floats, length: float, end: float) -> tuple[float, int]:
+    """Where on [0, end] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
     if run.counts[at.KNOTS_IN_RATE] == 1:
         return rate_knot_crossing(run, rate)
-    return knot_crossing(run, rate, length), 1 if run.k[at.K_CHI] > 0.0 else -1
+    return knot_crossing(run, rate, length, end), 1 if run.k[at.K_CHI] > 0.0 else -1
 
 
 @kernel
@@ -260,7 +260,7 @@ def finish_step(run: Run, target: float, guess: float, length: float, reached: b
     arrest = NONE
     if (run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
-    knot, turn = next_knot(run, rate, length) if run.pieces > 1 else (NONE, 0)
+    knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
     end = min(arrest, knot)
     if end > 1.0 - TIE:
         arrest, knot, end = NONE, NONE, 1.0

@@ -5,7 +5,16 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import TIE, choose_branch, friction_at, leave_branch, onset_of_slip, rest_limit, towards
+from stickslip.evolution.branch import (
+    SAME_LEVEL,
+    TIE,
+    choose_branch,
+    friction_at,
+    leave_branch,
+    onset_of_slip,
+    rest_limit,
+    towards,
+)
 from stickslip.evolution.compiled import ahead, inlined
 from stickslip.evolution.implicit import forgotten, stick_with_state
 from stickslip.evolution.layout import Floats
@@ -79,7 +88,9 @@ def heal(run: Run, load: float) -> None:
         return  # the branches at the healed slip have to be found first
     for direction in (1, -1):
         beyond = towards(run, load, direction) - limit
-        if beyond > 0.0:
+        if abs(beyond) <= SAME_LEVEL * run.par[at.NORMAL]:
+            run.counts[at.EDGE] = direction  # how the load goes on decides, and not its rounding
+        elif beyond > 0.0:
             run.counts[at.MODE] = direction
             if run.counts[at.HAS_INERTIA] == 0:
                 note_jump(run, direction * beyond / run.par[at.IMPEDANCE], at.HEALING)

@@ -123,7 +123,7 @@ def take_out(run: Run, own: Floats) -> int:
         for k in range(TERMS):
             load[k] = own[WIDTH * (LOAD + k)]
     simple = rate[0] > 0.0 and own[WIDTH * BOUND] > 0.0 and math.isfinite(own[WIDTH * LAST])
-    if not simple or (run.pieces > 1 and knot_crossing(run, rate, length) != NONE):
+    if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state[at.LAST_STEP] = own[WIDTH * LAST_STEP]
         return ALONE
     run.jet[0] = own[WIDTH * JET]
