@@ -45,6 +45,8 @@ class Task:
     rtol: float
     key: str
     ends: tuple[float, float]
+    more: int = 1
+    """Times as many members as asked for: a thread is to have work for a tenth of a second."""
 
     @property
     def scenario(self) -> Scenario:

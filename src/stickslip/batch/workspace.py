@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -40,8 +41,8 @@ from stickslip.evolution.workspace import (
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Pieces of history for which a lane has room; a member that needs more is run by itself."""
-ALIGNED = 64
-"""Bytes: addresses of lanes are multiples of it."""
+LINE = 16
+"""Numbers in two cache lines, which processors fetch together; addresses of lanes must be multiples of one."""
 
 
 class Workspace(NamedTuple):
@@ -100,19 +101,27 @@ def lane_of(tables: Tables, n: int) -> Tables:
     return type(tables)(*[table[n] for table in tables])
 
 
+def apart(*shape: int, dtype: type = float) -> Any:
+    """Zeros that no other array's cache lines touch: what another thread writes next to them would be fetched again and again."""
+    count = math.prod(shape)
+    room: Any = np.zeros(count + 2 * LINE, dtype)
+    first = -(room.ctypes.data // room.itemsize) % LINE
+    return room[first : first + count].reshape(shape)
+
+
 def new_block(constants: int) -> tuple[Floats, Integers]:
     """For a law of so many constants: see `Workspace.numbers`."""
-    numbers = np.zeros(WIDTH * (CONSTANTS + constants) + ALIGNED // 8)
-    return numbers, np.array([-(-numbers.ctypes.data // ALIGNED) * ALIGNED])
+    numbers = apart(WIDTH * (CONSTANTS + constants))
+    return numbers, np.array([numbers.ctypes.data])
 
 
 def new_workspace() -> Workspace:
     """For one thread."""
-    stage, waits, member, code = (np.zeros(WIDTH, np.int64) for _ in range(4))
+    stage, waits, member, code = apart(4, WIDTH, dtype=np.int64)
     return Workspace(
-        np.zeros((WIDTH, STATES)),
-        np.zeros((WIDTH, COUNTS), np.int64),
-        np.zeros((WIDTH, WORK_ROWS, at.TERMS)),
+        apart(WIDTH, STATES),
+        apart(WIDTH, COUNTS, dtype=np.int64),
+        apart(WIDTH, WORK_ROWS, at.TERMS),
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
         in_lanes(new_echoes(WIDTH * FIRST_CAPACITY)),
         new_points(POINTS_PER_PIECE * FIRST_CAPACITY),
@@ -121,8 +130,8 @@ def new_workspace() -> Workspace:
         waits,
         member,
         code,
-        np.zeros((WIDTH, PLACES), np.int64),
-        np.zeros(1, np.int64),
+        apart(WIDTH, PLACES, dtype=np.int64),
+        apart(1, dtype=np.int64),
     )
 
 
