@@ -48,7 +48,8 @@ def test_neither_threads_nor_order_nor_company_matter(name: str, monkeypatch: py
     values = case.values(203)
     alone = run_members(case.scenario, values, QUANTITIES)
     order = np.random.default_rng(5).permutation(203)
-    monkeypatch.setattr(run, "CHUNK", 17)
+    monkeypatch.setattr(run, "CHUNK", 29)
+    monkeypatch.setattr(run, "SMALLEST_CHUNK", 3)
     shuffled = run_members(case.scenario, {key: value[order] for key, value in values.items()}, QUANTITIES, threads=3)
     assert (alone.status[order] == shuffled.status).all()
     for quantity in QUANTITIES:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import Empty, SimpleQueue
 from typing import NamedTuple
@@ -25,8 +25,8 @@ from stickslip.scenarios.scenario import Scenario
 
 CHUNK = 8192
 """Members that are set up together: enough for numpy, few enough for the cache."""
-CHUNKS_PER_THREAD = 3
-"""At least, where there are fewer members: threads share what they have evenly, and run few lines of Python for it."""
+SMALLEST_CHUNK = 1024
+"""Members for which the Python of a chunk is no matter."""
 NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
 NO_START = "the run ends where it starts"
 
@@ -55,16 +55,20 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
     arrays = checked(scenario, values, quantities)
     count = len(next(iter(arrays.values())))
     batch = _Batch(scenario, arrays, quantities, count)
-    for n in range(0, count, batch_size(count, threads)):
-        batch.queue.put(slice(n, min(n + batch_size(count, threads), count)))
+    for chunk in chunks(count, threads):
+        batch.queue.put(chunk)
     batch.run(threads)
     return Members(batch.results, batch.status, batch.reason)
 
 
-def batch_size(count: int, threads: int) -> int:
-    """Members in a chunk: of chunks as large as each other, as many for each thread."""
-    chunks = threads * max(CHUNKS_PER_THREAD, -(-count // (CHUNK * threads)))
-    return max(1, -(-count // chunks))
+def chunks(count: int, threads: int) -> Iterator[slice]:
+    """Members in chunks: large ones first, for there is some Python to each, then smaller ones: threads are to end together."""
+    start = 0
+    while start < count:
+        share = -(-(count - start) // (2 * threads)) if threads > 1 else count
+        size = min(max(share, SMALLEST_CHUNK), CHUNK)
+        yield slice(start, min(start + size, count))
+        start += size
 
 
 def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str]) -> dict[str, Floats]:
