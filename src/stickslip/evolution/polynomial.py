@@ -145,13 +145,13 @@ def total(c: Floats) -> float:
 @inlined
 def moment(c: Floats, shift: int) -> float:
     """Integral of x^(shift - 1) p(x) over [0, 1], for a shift of 1 or 2."""
-    r = RECIPROCAL
-    a, b, d, e = r[shift] * c[0], r[shift + 1] * c[1], r[shift + 2] * c[2], r[shift + 3] * c[3]
+    a, b = RECIPROCAL[shift] * c[0], RECIPROCAL[shift + 1] * c[1]
+    d, e = RECIPROCAL[shift + 2] * c[2], RECIPROCAL[shift + 3] * c[3]
     for k in range(4, TERMS - 3, 4):
-        a, b = a + r[k + shift] * c[k], b + r[k + shift + 1] * c[k + 1]
-        d, e = d + r[k + shift + 2] * c[k + 2], e + r[k + shift + 3] * c[k + 3]
+        a, b = a + RECIPROCAL[k + shift] * c[k], b + RECIPROCAL[k + shift + 1] * c[k + 1]
+        d, e = d + RECIPROCAL[k + shift + 2] * c[k + 2], e + RECIPROCAL[k + shift + 3] * c[k + 3]
     for k in range(TERMS - TERMS % 4, TERMS):
-        a += r[k + shift] * c[k]
+        a += RECIPROCAL[k + shift] * c[k]
     return (a + b) + (d + e)
 
 
