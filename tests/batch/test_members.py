@@ -122,6 +122,9 @@ def test_far_stress_needs_a_driver_that_gives_way() -> None:
     members = run_members(CASES["far stress"].scenario, values, ("slip",))
     assert members.status.tolist() == [BAD_PARAMETERS, FINISHED]
     assert "finite driver_impedance" in members.reason[0]
+    values = {"body.driver_impedance": np.full(2, math.inf), "loading.far_stress_rate": np.array([0.0, 1e5])}
+    beside = run_members(CASES["far stress"].scenario, values, ("slip",))
+    assert beside.status.tolist() == [FINISHED, BAD_PARAMETERS]
 
 
 def test_rigid_and_other_drivers_massless_and_heavy_contacts_mix() -> None:

@@ -155,8 +155,8 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
         if scenario.shortest_event > 0.0:
             fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
         problem = with_numbers(scenario.problem, numbers.problem)
-        if problem.far_stress is not None or np.any(problem.far_stress_rate):
-            fine &= ~np.isinf(body.driver_impedance)
+        pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
+        fine &= ~(pushed & np.isinf(body.driver_impedance))
     return fine
 
 

@@ -108,7 +108,7 @@ def progress_to(what: str) -> Iterator[Callable[..., Any]]:
             bar.update(task, description=" ".join([what, *(clean(str(one)) for one in news)]))
 
         if shown.is_terminal and not _is_compiled():
-            report("compiling the engine, which happens once and takes about three quarters of a minute")
+            report("compiling the engine, which happens once and takes about a minute")
         yield report
 
 
