@@ -177,7 +177,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
         near = law.rate_at_slope(-impedance / normal)
     near = spread(np.nan if near is None else near, count)
     contact = (group.address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
-    branch_tables(*contact, *kind, table, branches, irregular, stick_to)
+    branch_tables(*contact, *kind, np.empty(4), table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 
 

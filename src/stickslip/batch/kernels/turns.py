@@ -188,13 +188,17 @@ def branch_tables(
     near: Floats,
     one_way: bool,
     rule: int,
+    work: Floats,
     table: Floats,
     branches: Integers,
     irregular: Floats,
     stick_to: Floats,
 ) -> None:
-    """Rows of `Setup.branch` of each member, one behind the other; how many branches; whether a load has several solutions."""
-    ends, work = np.empty(2 * MOST_BRANCHES), np.empty(4)
+    """Rows of `Setup.branch` of each member, one behind the other; how many branches; whether a load has several solutions.
+
+    work: room for four numbers, the caller's: an array made here would end where its address is taken.
+    """
+    ends = np.empty(2 * MOST_BRANCHES)
     out, size = floats(work.ctypes.data), constants.shape[1] * constants.shape[2] if len(constants) > 1 else 0
     for n in range(len(table)):
         c, z, s = ahead(floats(constants.ctypes.data), n * size), impedance[n], normal[n]
