@@ -33,32 +33,41 @@ AWAY, FRESH, SLIPPING, ALONE = range(4)
 
 @kernel
 def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """A step for each lane that waits for one, under the formula at which the first of them is.
+    """A step for each lane that waits for one, those under the same formula of the law together.
 
     table: the engine's tables of the lanes; jets: addresses of the formulas' series, by piece of the law.
     """
-    address = 0
-    column, rows = floats(block), lanes_at(block)
     for lane in range(WIDTH):
         if waits[lane] == FRESH or waits[lane] == SLIPPING:
-            run = borrow(ahead(table, lane * PLACES))
-            own = jets[run.counts[at.PIECE]]
-            address = own if address == 0 else address
-            if own == address:
-                put_in(run, ahead(column, lane), waits[lane] == FRESH)
-                waits[lane] = SLIPPING
-            else:
-                waits[lane] = -waits[lane]  # later
+            waits[lane] = -waits[lane]
+    for lane in range(WIDTH):
+        if waits[lane] < 0:
+            step_under(jets[piece_of(table, lane)], table, waits, jets, block)
+
+
+@inlined
+def piece_of(table: Integers, lane: int) -> int:
+    """The piece of the law under which the member in a lane slips."""
+    return borrow(ahead(table, lane * PLACES)).counts[at.PIECE]
+
+
+@kernel
+def step_under(address: int, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
+    """A step for the lanes under a formula that have not yet taken theirs: what they wait for is below 0."""
+    column, rows, taking = floats(block), lanes_at(block), 0
+    for lane in range(WIDTH):
+        if waits[lane] < 0 and jets[piece_of(table, lane)] == address:
+            put_in(borrow(ahead(table, lane * PLACES)), ahead(column, lane), waits[lane] == -FRESH)
+            waits[lane], taking = SLIPPING, taking | 1 << lane
     call_jet(address, floats(block + 64 * CONSTANTS), column, floats(block + 64 * SEEN), floats(block + 64 * JET))
     rows[LENGTH] = length_at(ahead(rows, JET), rows[TOLERANCE], 0.5)
     for lane in range(WIDTH):
-        if waits[lane] == SLIPPING:
+        if taking >> lane & 1:
             take_length(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
     calculate(rows)
     for lane in range(WIDTH):
-        if waits[lane] == SLIPPING:
+        if taking >> lane & 1:
             waits[lane] = take_out(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
-        waits[lane] = abs(waits[lane])
 
 
 @inlined
