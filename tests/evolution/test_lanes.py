@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+from stickslip.batch.workspace import apart
 from stickslip.evolution.compiled import ahead, floats
 from stickslip.evolution.lanes import WIDTH, lanes_at
 from stickslip.evolution.layout import TERMS
@@ -41,9 +42,7 @@ WITH_MASS = ("cos", "exp", "arcsinh", "product")
 
 def aligned(rows: int) -> Block:
     """Rows of lanes, where the processor wants them."""
-    room = np.zeros(WIDTH * (rows + 1))
-    first = -(room.ctypes.data // 8) % WIDTH
-    return room[first : first + WIDTH * rows].reshape(rows, WIDTH)
+    return apart(rows, WIDTH)
 
 
 def series(seed: int) -> Block:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -55,18 +56,19 @@ def test_what_has_been_compiled_is_not_counted(monkeypatch: pytest.MonkeyPatch) 
 def test_workers_share_the_sample_as_they_share_the_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each chunk takes a millisecond a member, four at a time: 400 members take 0.1 s, and not 0.4 s."""
     plan = make_plan("fig6-slab", {"friction.alpha": np.linspace(0.1, 2.0, 400)})
-    seen = []
+    seen, clock = [], [0.0]
 
     def four_at_a_time(work, chunks):  # type: ignore[no-untyped-def]
         shares = [len(values["friction.alpha"]) for _, values in chunks]
         seen.append(shares)
         assert len(shares) <= 4
-        time.sleep(1e-3 * max(shares))
+        clock[0] += 1e-3 * max(shares)
         return iter(())
 
     monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.04)
     monkeypatch.setattr("stickslip.sweeps.estimate._writing", lambda plan: 0.0)
-    assert estimate(plan, four_at_a_time, 4).seconds == pytest.approx(0.1, rel=0.2, abs=0.05)
+    monkeypatch.setattr("stickslip.sweeps.estimate.time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    assert estimate(plan, four_at_a_time, 4).seconds == pytest.approx(0.1, rel=0.05, abs=0)
     assert max(map(len, seen)) == 4
 
 
