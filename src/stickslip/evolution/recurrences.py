@@ -221,7 +221,7 @@ class Recurrences:
         """Name, for each guard, the inverse of how far its argument may move: see `evolution.guards`."""
         lines = []
         for j, guard in enumerate(self.guards):
-            exponent = self.reference(guard.exponent) if guard.exponent else ""
+            exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
             lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
         return lines
 
