@@ -40,7 +40,7 @@ SIGNATURES = {
 
 MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
 
-from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
+from math import asinh, cos, cosh, exp, expm1, log, log1p, sin, sinh, sqrt, tanh
 
 from numba import cfunc, njit, types
 
@@ -75,6 +75,13 @@ def arcsinh_difference(base, step):
     root, other = sqrt(1.0 + base * base), sqrt(1.0 + (base + step) * (base + step))
     return asinh(step * (root - base * (2.0 * base + step) / (root + other)))
 
+
+@njit(error_model="numpy")
+def tanh_difference(value, argument, step):
+    if abs(step) < 1.0:
+        return sinh(step) / cosh(argument) / cosh(argument + step)
+    return tanh(argument + step) - value  # 1 - value**2 would have no digits left far from the step
+
 '''
 
 SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
@@ -87,6 +94,7 @@ exp_difference = lane_by_lane(exp_difference)
 power_difference = lane_by_lane(power_difference)
 exp_value = lane_by_lane(exp_value)
 arcsinh_difference = lane_by_lane(arcsinh_difference)
+tanh_difference = lane_by_lane(tanh_difference)
 
 """
 

@@ -169,7 +169,7 @@ class Recurrences:
             "exp": f"exp_difference({r}, {ra}, {ea})",
             "log": f"log1p({ea} / {ra})",
             "sqrt": f"{ea} / (sqrt({ra} + {ea}) + {r})",
-            "tanh": f"tanh({ea}) * (1.0 - {r} * {r}) / (1.0 + {r} * tanh({ea}))",
+            "tanh": f"tanh_difference({r}, {ra}, {ea})",
             "arcsinh": f"arcsinh_difference({ra}, {ea})",
             "pow": f"power_difference({ra}, {ea}, {self.reference(node.arguments[-1])})",
         }[node.operation]

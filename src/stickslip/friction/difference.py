@@ -119,9 +119,13 @@ def _sqrt(a: _Node) -> _Node:
 
 
 def _tanh(a: _Node) -> _Node:
-    start, end, turn = np.tanh(a.reference), np.tanh(a.value), np.tanh(a.step)
-    step = turn / np.cosh(a.reference) ** 2 / (1.0 + start * turn)
-    return _Node(start, step, end, a.slope / np.cosh(a.value) ** 2)
+    """tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference; farther off nothing is lost by subtracting."""
+    start, end = np.tanh(a.reference), np.tanh(a.value)
+    near = np.abs(a.step) < 1.0
+    with np.errstate(over="ignore"):  # 1 / cosh is 0 there, and so is the slope
+        across = np.cosh(a.value)
+        step = np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
+        return _Node(start, step, end, a.slope / across / across)
 
 
 def _arcsinh(a: _Node) -> _Node:
