@@ -387,7 +387,7 @@ static int obeys_contact(Run *r, const double *rate, double length, double grown
     double missing = load - impedance * rate_end - normal * friction - unbalanced;
     double terms = r->par[REFERENCE] + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
     double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
-    double size = 1e3 * r->par[TOLERANCE] * largest;
+    double size = (r->count[HAS_INERTIA] ? 300.0 : 10.0) * r->par[TOLERANCE] * largest;
     if (!r->count[HAS_INERTIA]) {
         double resistance = impedance + normal * fmax(now[1], 0.0);
         return fabs(missing) / resistance <= size + 1e-14 * terms / resistance;
