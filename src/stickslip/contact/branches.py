@@ -79,18 +79,18 @@ def _agreed(g: Resistance, proof: Certificate, rising: bool, folds: list[float])
         return rising, folds
     left, found = list(folds), []
     for turn in proof.turns:
-        seen = next((fold for fold in left if _within(fold, turn)), None)
+        seen = next((fold for fold in left if within(fold, turn)), None)
         if seen is not None:
             left.remove(seen)
         found.append(_fold(g, *turn) if seen is None else seen)
-    found += [fold for fold in left if any(_within(fold, one) for one in proof.undecided)]
+    found += [fold for fold in left if any(within(fold, one) for one in proof.undecided)]
     starts = rising if proof.rises_at_rest is None else proof.rises_at_rest
     if starts != (len(found) % 2 == 0):  # what is undecided has been searched in vain: g must rise in the end
         return rising, folds
     return starts, sorted(found)
 
 
-def _within(rate: float, interval: tuple[float, float]) -> bool:
+def within(rate: float, interval: tuple[float, float]) -> bool:
     """Whether a rate lies in an interval, but for the rounding of a fold."""
     return interval[0] * (1.0 - _ROUNDING) <= rate <= interval[1] * (1.0 + _ROUNDING)
 

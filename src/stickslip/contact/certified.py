@@ -27,8 +27,6 @@ _AT_A_TIME = 256
 """Cells that a round of cutting aims at: up to here the cost of a round hardly grows with their number."""
 _MOST_PARTS, _FEWEST_PARTS = 16, 2
 """Parts into which a cell is cut in one round."""
-_NOISE = 4.0
-"""A cell is given up when g' changes on it by less than this multiple of the rounding of its bounds."""
 
 Interval = tuple[float, float]
 
@@ -79,14 +77,16 @@ class _Signs:
 def _certified(bounds: SlopeBounds) -> Certificate:
     cells = bounds.first_cells()
     edges, spent = _at_knots(bounds, cells), 0
-    turns: list[Cells] = []
-    kept: list[Cells] = []
+    none = cells[np.zeros(0, np.intp)]
+    turns, kept = [none], [none]
     while len(cells):
         spent += 4 * len(cells)
         signs = _signs(bounds, cells)
         turns.append(cells[signs.turns])
         open_ = (signs.inside == 0) & ~signs.turns
         cells, signs = cells[open_], signs[open_]
+        if not len(cells):
+            break
         more, settled = _unions(cells, signs)
         turns.append(more)
         cells, signs = cells[~settled], signs[~settled]
@@ -118,31 +118,18 @@ def _merged(intervals: list[Interval]) -> tuple[Interval, ...]:
     return tuple(found)
 
 
-def _sign(bounds: Floats) -> NDArray[np.int8]:
+def sign_of(bounds: Floats) -> NDArray[np.int8]:
     """Return the sign that all numbers between two bounds have, 0 where they do not share one."""
     return (bounds[0] > 0.0).astype(np.int8) - (bounds[1] < 0.0).astype(np.int8)
 
 
 def _signs(bounds: SlopeBounds, cells: Cells) -> _Signs:
-    """Bound g' and g'' on cells, at their ends and in their middle, all at once."""
-    middle = cells.middle
-    stacked = joined([cells, cells.at(cells.low), cells.at(cells.high), cells.at(middle)])
-    first, second = bounds(stacked)
-    whole, at_low, at_high, at_middle = np.split(first, 4, axis=1)
-    steepest = np.max(np.abs(second[:, : len(cells)]), axis=0)
-    with np.errstate(invalid="ignore", over="ignore"):
-        reach = np.nextafter(steepest * np.maximum(cells.high - middle, middle - cells.low) * _JUST_ABOVE_ONE, np.inf)
-        near = np.stack((np.nextafter(at_middle[0] - reach, -np.inf), np.nextafter(at_middle[1] + reach, np.inf)))
-        noise = at_middle[1] - at_middle[0]
-        hopeless = (_sign(at_middle) == 0) & (reach <= _NOISE * noise)
-    bend, low, high = _sign(second[:, : len(cells)]), _sign(at_low), _sign(at_high)
-    inside = np.where(_sign(whole) != 0, _sign(whole), _sign(near))  # the mean value form is the second one
-    inside = np.where((inside == 0) & (bend != 0) & (low * high > 0), low, inside).astype(np.int8)
-    return _Signs(low, high, inside, bend, hopeless | cells.at_rounding)
-
-
-_JUST_ABOVE_ONE = 1.0 + 8.0 * float(np.finfo(float).eps)
-"""Covers the rounding of the half widths of cells."""
+    """Return what the bounds of g' and g'' say of the signs on cells."""
+    seen = bounds.look(cells)
+    low, high, bend, inside = (sign_of(one) for one in (seen.at_low, seen.at_high, seen.second, seen.inside))
+    monotone = np.where((bend != 0) & (low * high > 0), low, 0)
+    inside = np.where(inside != 0, inside, monotone).astype(np.int8)
+    return _Signs(low, high, inside, bend, seen.hopeless & (sign_of(seen.at_middle) == 0) | cells.at_rounding)
 
 
 def _unions(cells: Cells, signs: _Signs) -> tuple[Cells, NDArray[np.bool_]]:
@@ -151,20 +138,18 @@ def _unions(cells: Cells, signs: _Signs) -> tuple[Cells, NDArray[np.bool_]]:
     A root at the edge of two cells leaves both of them open: together they hold it. Returns those unions that hold one root, and
     which of the cells are settled by a union, with a root or without.
     """
-    settled = np.zeros(len(cells), bool)
     order = np.argsort(cells.low)
     one, two = order[:-1], order[1:]
     alike = (signs.bend[one] != 0) & (signs.bend[one] == signs.bend[two]) & (cells.piece[one] == cells.piece[two])
-    touch = alike & (cells.high[one] == cells.low[two]) & (signs.at_high[one] == 0)
-    found: list[tuple[float, float, int]] = []
-    for row in np.split(order, np.flatnonzero(~touch) + 1):
-        outer = (int(signs.at_low[row[0]]), int(signs.at_high[row[-1]])) if len(row) > 1 else (0, 0)
-        if 0 not in outer:
-            settled[row] = True
-            if outer[0] != outer[1]:
-                found.append((float(cells.low[row[0]]), float(cells.high[row[-1]]), int(cells.piece[row[0]])))
-    low, high, piece = (np.array(one) for one in zip(*found, strict=True)) if found else (np.empty(0), np.empty(0), np.empty(0))
-    return Cells(low, high, piece.astype(np.intp)), settled
+    apart = ~(alike & (cells.high[one] == cells.low[two]) & (signs.at_high[one] == 0))
+    first = np.flatnonzero(np.concatenate(([True], apart)))
+    last = np.flatnonzero(np.concatenate((apart, [True])))
+    outer = signs.at_low[order[first]] * signs.at_high[order[last]]
+    done = (outer != 0) & (last > first)
+    settled = np.zeros(len(cells), bool)
+    settled[order] = np.repeat(done, last - first + 1)
+    low, high = order[first[done & (outer < 0)]], order[last[done & (outer < 0)]]
+    return Cells(cells.low[low], cells.high[high], cells.piece[low]), settled
 
 
 def _at_knots(bounds: SlopeBounds, cells: Cells) -> tuple[bool | None, list[Interval], list[Interval]]:
@@ -175,29 +160,14 @@ def _at_knots(bounds: SlopeBounds, cells: Cells) -> tuple[bool | None, list[Inte
     """
     knots = np.array(bounds.g.rate_knots)
     first = bounds(Cells(np.zeros(1), np.zeros(1), cells.piece[:1]))[0]
-    rest = int(_sign(first)[0])
+    rest = int(sign_of(first)[0])
     last = cells[np.array([len(cells) - 1])]
-    ends = _sign(bounds(last.at(last.high))[0])
+    ends = sign_of(bounds(last.at(last.high))[0])
     loose = [] if ends[0] > 0 else [(float(last.low[0]), float(last.high[0]))]
     if not len(knots):
         return (None if rest == 0 else rest > 0), [], loose
-    below = _sign(bounds(Cells(knots, knots, bounds.piece_from(np.nextafter(knots, 0.0))))[0])
-    above = _sign(bounds(Cells(knots, knots, bounds.piece_from(knots)))[0])
+    below = sign_of(bounds(Cells(knots, knots, bounds.piece_from(np.nextafter(knots, 0.0))))[0])
+    above = sign_of(bounds(Cells(knots, knots, bounds.piece_from(knots)))[0])
     turns = [(knot, knot) for knot in knots[below * above < 0].tolist()]
     loose += [(knot, knot) for knot in knots[below * above == 0].tolist()]
     return (None if rest == 0 else rest > 0), turns, loose
-
-
-def sharpened(g: Resistance, turn: Interval, rate: float) -> Interval:
-    """Narrow an interval that holds one sign change of g' around a rate at which it seems to be, with proof."""
-    low, high = turn
-    if low == high:
-        return turn
-    steps = np.abs(rate) * np.exp2(np.arange(-52.0, 0.0))
-    below, above = np.clip(rate - steps, low, high), np.clip(rate + steps, low, high)
-    bounds = SlopeBounds(g)
-    piece = np.repeat(bounds.piece_from(np.array([low])), 2 * len(steps) + 2)
-    places = np.concatenate(([low], below, [high], above))
-    signs = _sign(bounds(Cells(places, places, piece))[0])
-    first, last = signs[: len(steps) + 1], signs[len(steps) + 1 :]
-    return float(places[: len(steps) + 1][first == first[0]].max()), float(places[len(steps) + 1 :][last == last[0]].min())

@@ -21,6 +21,10 @@ _BELOW, _ABOVE = 1e-4, 1e4
 """Between these multiples of the slowest and the fastest scale of a contact the first cells are one for each factor of 2."""
 _FAR = 1e12
 """Ratio of the ends of the first cells beyond the fastest scale."""
+_JUST_ABOVE_ONE = 1.0 + 8.0 * float(np.finfo(float).eps)
+"""Covers the rounding of the half widths of cells."""
+_NOISE = 4.0
+"""A cell is given up when g' changes on it by less than this multiple of the rounding of its bounds."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,18 @@ def joined(parts: list[Cells]) -> Cells:
 
 
 @dataclass(frozen=True)
+class Looks:
+    """Bounds on cells, each of shape (2, n): of g' all over and at three rates, of g'' all over; and whether to give a cell up."""
+
+    inside: Floats
+    at_low: Floats
+    at_high: Floats
+    at_middle: Floats
+    second: Floats
+    hopeless: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
 class SlopeBounds:
     """Bounds of g' and g'' of one resistance by interval arithmetic. Impedance, normal stress and parameters are taken as exact."""
 
@@ -96,6 +112,24 @@ class SlopeBounds:
             _, one, two = enclose(tree, numbers, self.g.law_slip, some.low, some.high)
             first[:, chosen], second[:, chosen] = self._stress(one, self.g.impedance), self._stress(two, 0.0)
         return first, second
+
+    def look(self, cells: Cells) -> Looks:
+        """Bound g' and g'' on cells, at their ends and in their middle, all at once.
+
+        All over a cell g' is within the bounds of its formula, and within those of the mean value form: g' in the middle plus
+        g'' times the distance from there.
+        """
+        middle = cells.middle
+        first, second = self(joined([cells, cells.at(cells.low), cells.at(cells.high), cells.at(middle)]))
+        whole, at_low, at_high, at_middle = np.split(first, 4, axis=1)
+        second = second[:, : len(cells)]
+        with np.errstate(invalid="ignore", over="ignore"):
+            half = np.maximum(cells.high - middle, middle - cells.low) * _JUST_ABOVE_ONE
+            reach = np.nextafter(np.max(np.abs(second), axis=0) * half, np.inf)
+            least = np.fmax(whole[0], np.nextafter(at_middle[0] - reach, -np.inf))
+            most = np.fmin(whole[1], np.nextafter(at_middle[1] + reach, np.inf))
+            hopeless = (reach <= _NOISE * (at_middle[1] - at_middle[0])) | cells.at_rounding
+        return Looks(np.stack((least, most)), at_low, at_high, at_middle, second, hopeless)
 
     def _stress(self, friction: Floats, added: float) -> Floats:
         """Return `added` plus the normal stress times bounds of a derivative of friction."""

@@ -56,6 +56,7 @@ def enclose(
     NotEnclosedError
         If the formula has an operation or a variable for which there are no sure bounds.
     """
+    tree = _bounded_form(tree)
     cells = iv.interval(np.asarray(low, float), np.asarray(high, float))
     found: dict[Expression, Jet] = {RATE: [cells, iv.exact(1.0)], SLIP: [iv.exact(slip)]}
     with np.errstate(all="ignore"):
@@ -87,9 +88,31 @@ def _nodes(tree: Expression) -> tuple[Expression, ...]:
     return tuple(nodes)
 
 
+@lru_cache(maxsize=256)
+def _bounded_form(tree: Expression) -> Expression:
+    """Return the formula with y / (1 + exp(z)) as a product with the logistic function, which does not overflow with exp(z)."""
+    made: dict[Expression, Expression] = {}
+    for node in nodes_of(tree):
+        arguments = tuple(made[argument] for argument in node.arguments)
+        made[node] = Expression(node.operation, arguments, node.name, node.value)
+        if node.operation == "div" and (exponent := _one_and_exp(arguments[1])) is not None:
+            made[node] = Expression("mul", (arguments[0], Expression("logistic", (exponent,))))
+    return made[tree]
+
+
+def _one_and_exp(node: Expression) -> Expression | None:
+    """Return z where a node is 1 + exp(z), else None."""
+    if node.operation != "add":
+        return None
+    for one, other in (node.arguments, node.arguments[::-1]):
+        if one.operation == "constant" and one.value == 1.0 and other.operation == "exp":
+            return other.arguments[0]
+    return None
+
+
 def _jet(node: Expression, arguments: list[Jet]) -> Jet:
     """Return the Taylor coefficients of a node from those of its arguments."""
-    if node.operation == "mul" and node.arguments[0] is node.arguments[1]:
+    if node.operation == "mul" and node.arguments[0] == node.arguments[1]:
         return _square(arguments[0])
     if len(arguments) == 2:
         return _BINARY[node.operation](*arguments)
@@ -199,6 +222,12 @@ def _tanh(x: Array) -> tuple[Array, Array, Array]:
     return value, slope, iv.negative(iv.multiply(value, slope))
 
 
+def _logistic(x: Array) -> tuple[Array, Array, Array]:
+    half = iv.scale(x, 0.5)
+    quarter = iv.scale(iv.sech_squared(half), 0.25)
+    return iv.logistic(x), iv.negative(quarter), iv.scale(iv.multiply(iv.tanh(half), quarter), 0.5)
+
+
 def _arcsinh(x: Array) -> tuple[Array, Array, Array]:
     slope = iv.arcsinh_slope(x)
     return iv.arcsinh(x), slope, iv.negative(iv.scale(iv.multiply(x, iv.multiply(slope, iv.square(slope))), 0.5))
@@ -224,4 +253,5 @@ _UNARY: dict[str, Callable[[Array], Any]] = {
     "sqrt": _sqrt,
     "tanh": _tanh,
     "arcsinh": _arcsinh,
+    "logistic": _logistic,
 }

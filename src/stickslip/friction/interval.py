@@ -150,6 +150,14 @@ def sech_squared(a: Array) -> Array:
     return np.minimum(found, [[0.0], [1.0]])
 
 
+def logistic(a: Array) -> Array:
+    """Return 1 / (1 + e**a), which falls from 1 to 0."""
+    low, high = ends(a)
+    with np.errstate(over="ignore"):
+        found = _widened(interval(1.0 / (1.0 + np.exp(high)), 1.0 / (1.0 + np.exp(low))), 2.0 * LIBRARY_ERROR)
+    return np.minimum(found, [[0.0], [1.0]])
+
+
 def arcsinh(a: Array) -> Array:
     """Return arcsinh(a)."""
     return _rising(np.arcsinh, a)
