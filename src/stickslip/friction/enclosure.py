@@ -67,10 +67,9 @@ def enclose(
                 found[node] = [iv.exact(node.value)]
             elif node.arguments:
                 found[node] = _jet(node, [found[argument] for argument in node.arguments])
-    zero = np.zeros((2, 1))
-    value, first, second = [*found[tree], zero, zero][:_ORDERS]
-    second = iv.scale(second, 2.0) if len(found[tree]) == _ORDERS else second
-    shaped = (np.broadcast_to(one, cells.shape) for one in (value, first, second))
+        result = found[tree] + [np.zeros((2, 1))] * (_ORDERS - len(found[tree]))
+        result[2] = iv.scale(result[2], 2.0)
+    shaped = (np.broadcast_to(one, cells.shape) for one in result)
     return tuple(np.stack(iv.ends(np.where(np.isnan(one), np.inf, one))) for one in shaped)  # type: ignore[return-value] # three
 
 
