@@ -182,10 +182,18 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     named = dict.fromkeys([(contact.critical_parameter, contact.critical_value), ("normal_stress", stress)])
     found = [(parameter(problem, name), value) for name, value in named if name is not None and value is not None]
     side = {True: "above", False: "below", None: "at"}
+    places = [f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}" for one, value in found]
+    proofs = [_proof(contact) if one.name == "body.normal_stress" else "" for one, _ in found]
     return [
-        Fact(one.name, value, one.unit, f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}")
-        for one, value in found
+        Fact(one.name, value, one.unit, place + proof)
+        for (one, value), place, proof in zip(found, places, proofs, strict=True)
     ]
+
+
+def _proof(contact: Uniqueness) -> str:
+    """How closely the critical normal stress is proven."""
+    between = contact.critical_stress_between
+    return "" if between is None else f"; proven to within {between[1] - between[0]:.1g} Pa"
 
 
 def _along_slip(problem: Problem, contact: Uniqueness) -> str:
