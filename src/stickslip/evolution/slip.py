@@ -51,7 +51,8 @@ LONGEST_GUESS = 2.0
 def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
     speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
-    return min(left, LONGEST_GUESS * run.state[at.LAST_STEP] / speed) if speed > 0.0 else left
+    guess = LONGEST_GUESS * run.state[at.LAST_STEP] / speed if speed > 0.0 else left
+    return min(left, guess) if guess > 0.0 else left  # the last step may have been too short to be resolved
 
 
 @inlined
