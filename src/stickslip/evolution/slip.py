@@ -45,14 +45,15 @@ from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
+SHORTEST_GUESS = 1e-12
+"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 
 
 @inlined
 def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
     speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
-    guess = LONGEST_GUESS * run.state[at.LAST_STEP] / speed if speed > 0.0 else left
-    return min(left, guess) if guess > 0.0 else left  # the last step may have been too short to be resolved
+    return min(left, max(LONGEST_GUESS * run.state[at.LAST_STEP] / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
 
 
 @inlined
