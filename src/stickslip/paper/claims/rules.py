@@ -147,7 +147,7 @@ def stick_ends(case: Problem) -> float:
 
 def rate_at_load(solution: Solution, load: float, start: float, end: float) -> float:
     """Slip rate (m/s) where the load of a run (Pa) passes a value between two times (s) at which it is on either side of it."""
-    passing = sign_change(lambda t: (float(solution.load(start + t * (end - start))) - load), 0.0, 1.0)
+    passing = sign_change(lambda t: float(solution.load(start + t * (end - start))) - load, 0.0, 1.0)
     return float(solution.slip_rate(start + passing * (end - start)))
 
 
