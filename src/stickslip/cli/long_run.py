@@ -128,7 +128,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run without a history, from the start or from where it stopped. Raises InputError."""
     from stickslip.evolution.in_progress import RunInProgress
     from stickslip.evolution.keeper import Orders
-    from stickslip.long_runs.catalogue import Paused, begin, check_energies
+    from stickslip.long_runs.catalogue import Paused, begin, check_energies, leaps_with
     from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
@@ -136,7 +136,8 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
         assert request.catalog is not None
         check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
-            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol, chosen.shortest_event)
+            creep_rtol = leaps_with(request.energies, chosen.creep_rtol)
+            run = RunInProgress.begin(chosen.problem, chosen.rtol, creep_rtol, chosen.shortest_event)
             return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog, energies=request.energies)
     paused = Paused.read(request.resume)
     check_same(request, paused.stopped.problem)
