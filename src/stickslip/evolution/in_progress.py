@@ -51,9 +51,7 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(
-        cls, problem: Problem, rtol: float, creep_rtol: float | None = 0.0, shortest_event: float | None = 0.0
-    ) -> Self:
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = 0.0, shortest_event: float | None = 0.0) -> Self:
         """Return a run at t = 0."""
         setup, state, count = prepare(problem, rtol, shortest_event)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)

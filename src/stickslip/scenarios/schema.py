@@ -33,8 +33,8 @@ REGISTERED = KINDS | {"loading": HISTORIES}
 TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
-CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0 runs every round trip; automatic", at_least=0)
-SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0 resolves them all; automatic", at_least=0)
+CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
+SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
 LARGEST_RTOL = 1e-2
 STATE = Quantity("1", "state variable of the friction law, if it has one")
 

@@ -12,7 +12,7 @@ LARGEST_RTOL = 1e-2
 PATIENCE = 200
 """Round trips with slip that are all run before automatic leaps may begin: on the printed slab 40 000 pieces and 0.1 s."""
 PER_ROOT_RTOL = 0.1
-"""Automatic creep_rtol, over the square root of rtol: the error of the first pulse's time, relative to that time, is then about rtol."""
+"""Automatic creep_rtol, over the square root of rtol: the first pulse's time then has a relative error of about rtol."""
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to be run, looser ones are not measured."""
 
