@@ -10,6 +10,8 @@ from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.evolution.creep.conditions import PATIENCE, creep_tolerance
+from stickslip.evolution.lumping import MOST_PIECES, automatic_length, lumps_by_itself
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.loading import LoadingHistory
@@ -87,7 +89,22 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         ]
         for table, (kind, values) in holders.items()
     }
+    facts["run"] += _automatic(scenario)
     return {"body": facts.pop("body"), "friction": _of_law(problem.friction)} | facts
+
+
+def _automatic(scenario: Scenario) -> list[Fact]:
+    """Return what a run of this scenario does on its own where it creeps for long, or where its events get ever shorter."""
+    problem, facts = scenario.problem, list[Fact]()
+    tolerance = creep_tolerance(problem, None, scenario.rtol)
+    if scenario.creep_rtol is None and tolerance > 0.0:
+        does = f"leaps over creep after {PATIENCE} round trips with slip, error of slip at most this times the slip so far"
+        facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every round trip"))
+    if scenario.shortest_event is None and lumps_by_itself(problem):
+        assert isinstance(problem.body, ElasticSlab)
+        does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"
+        facts.append(Fact("shortest_event", automatic_length(problem.body), "s", f"automatic: {does}; 0 lumps none"))
+    return facts
 
 
 def _facts(name: str, value: Any, declared: Quantity) -> list[Fact]:
