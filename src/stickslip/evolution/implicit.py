@@ -8,11 +8,11 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import load_ahead, onset_of_slip
+from stickslip.evolution.branch import TIE, load_ahead, onset_of_slip
 from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
 from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, copy, fill, scale, total
+from stickslip.evolution.polynomial import NONE, copy, fill, first_descent, restrict, scale, total
 from stickslip.evolution.record import record
 from stickslip.evolution.stages import (
     BY_RATE,
@@ -35,6 +35,8 @@ CHECKED = 16
 LONGEST_GROWTH = 4.0
 """Growth (as an exponent) of a disturbance over a step, at most."""
 ROUNDING = 1e-15
+LOAD_ROUNDING = 1e-14
+"""Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
 BACKWARDS = 1e3
 """Error, in units of the tolerance, beyond which a step is never kept."""
 FORGOTTEN = 1e-18
@@ -126,12 +128,42 @@ def starts_backwards(run: Run) -> bool:
 
 
 @kernel
+def turn_with_load(run: Run, left: float) -> float:
+    """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
+
+    Friction is an odd function of the slip rate there, and zero at rest. Without mass the slip rate has the sign of the load at
+    every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
+    slip rate: near a load of zero that rate may lie far below the error of the polynomial.
+    """
+    part = run.part
+    restrict(run.load, run.state[at.XI], left, part)
+    size = run.par[at.REFERENCE]
+    for k in range(at.TERMS):
+        size += abs(part[k])
+    part[0] += run.par[at.REFERENCE]
+    if abs(part[0]) <= LOAD_ROUNDING * size:
+        part[0] = 0.0
+    first, direction = first_descent(part, run.spare), 1
+    if first <= TIE:
+        for k in range(at.TERMS):
+            part[k] = -part[k]
+        part[0] = max(part[0], 0.0)
+        first, direction = first_descent(part, run.spare), -1
+    if direction > 0 and part[0] == 0.0 and math.isinf(first) and size == run.par[at.REFERENCE]:
+        return left  # no load at all
+    run.counts[at.MODE] = direction
+    return min(first, 1.0) * left if run.counts[at.HAS_INERTIA] == 0 and first > TIE else left
+
+
+@kernel
 def collocate(run: Run, left: float) -> float:
     """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
 
     The step is repeated, shorter, until its error is below the tolerance, or no longer shrinks with it: that is rounding.
     """
     speed = abs(run.state[at.SPEED])
+    if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
+        left = turn_with_load(run, left)
     guess = min(left, run.state[at.LAST_STEP] / speed)
     if 0.5 * left < guess < left:
         guess = 0.5 * left

@@ -43,6 +43,8 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
     """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
     impedance, normal = run.par[at.IMPEDANCE], run.par[at.NORMAL]
     low, high = 0.0, (load + run.par[at.REFERENCE]) / impedance
+    if high <= 0.0:
+        return 0.0
     s = guess if low < guess < high else 0.5 * high
     for _ in range(200):
         contact_at(run, run.state[at.LAW_SLIP], s, run.state[at.STATE_NOW])
