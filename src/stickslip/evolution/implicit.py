@@ -9,10 +9,9 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, load_ahead, onset_of_slip
-from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
+from stickslip.evolution.collocation import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
-from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, copy, fill, first_descent, restrict, scale, total
+from stickslip.evolution.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
 from stickslip.evolution.record import record
 from stickslip.evolution.stages import (
     BY_RATE,
@@ -21,6 +20,8 @@ from stickslip.evolution.stages import (
     CHANGE_BY_STATE,
     MU,
     contact_at,
+    defects,
+    larger,
     rate_at_load,
     solve_stages,
 )
@@ -37,6 +38,8 @@ LONGEST_GROWTH = 4.0
 ROUNDING = 1e-15
 LOAD_ROUNDING = 1e-14
 """Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+DEFECT_ROUNDING = 1e-14
+"""Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 BACKWARDS = 1e3
 """Error, in units of the tolerance, beyond which a step is never kept."""
 FORGOTTEN = 1e-18
@@ -105,26 +108,69 @@ def start_of_step(run: Run) -> float:
 
 
 @kernel
-def error_of(run: Run) -> float:
-    """Error of the step's polynomials, in units of the tolerance and of what rounding of the load makes of slip rate and state."""
-    par, value = run.par, run.value
+def strength_ahead(run: Run) -> float:
+    """Put the static strength (minus the reference) over a step at rest into run.jet, from the states at its points.
+
+    Returns by how much it misses the law between the points, in units of the tolerance.
+    """
+    par = run.par
+    largest, missed = ROUNDING / par[at.TOLERANCE] * par[at.REFERENCE] + abs(run.seen[0]), 0.0
+    for i in range(POINTS):
+        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
+        run.stage_rate[i] = par[at.NORMAL] * run.value[MU]
+        largest = max(largest, abs(run.stage_rate[i]))
+    interpolate(run.stage_rate, run.jet, run.spare)
+    for i in range(STAGES):
+        contact_at(run, run.state[at.LAW_SLIP], 0.0, evaluate(run.state_jet, MIDDLE[i]))
+        missed = larger(missed, abs(par[at.NORMAL] * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+    fill(run.stage_rate, 0.0)
+    return max(missed, last_terms(run.jet)) / (par[at.TOLERANCE] * largest)
+
+
+@kernel
+def error_of(run: Run, force: float) -> float:
+    """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
+
+    The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
+    between the points, where a feature of the law may lie that none of the points sees.
+    """
+    par, value, h = run.par, run.value, run.k[at.K_SPEED]
     fastest, farthest = par[at.RATE_FLOOR], par[at.STATE_SCALE] + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
-    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / run.k[at.K_SPEED]  # as at the last stage
+    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / h  # as at the last stage
     noise = ROUNDING * (par[at.REFERENCE] + abs(run.seen[0])) / resistance if resistance > 0.0 else 0.0
-    error = last_terms(run.jet) / (par[at.TOLERANCE] * fastest + noise)
+    state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
+    missed, missed_state = defects(run, h, force)
+    missed = max(missed - DEFECT_ROUNDING * fastest, 0.0)
+    error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise)
     if run.counts[at.HAS_STATE] == 1:
-        if value[CHANGE_BY_STATE] != 0.0:
-            noise *= abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE])
-        error = max(error, last_terms(run.state_jet) / (par[at.TOLERANCE] * farthest + noise))
+        missed_state = max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
+        error = max(error, max(last_terms(run.state_jet), missed_state) / (par[at.TOLERANCE] * farthest + state_noise))
+    if run.counts[at.MODE] == 0:
+        error = max(error, strength_ahead(run))
     return error
 
 
 @inlined
-def starts_backwards(run: Run) -> bool:
-    """Whether the polynomial of a slip rate that rises from rest falls at first: it is not good enough there."""
-    return run.counts[at.MODE] != 0 and run.stage_rate[0] == 0.0 and run.stage_rate[1] > 0.0 and run.jet[1] < 0.0
+def settle_start(run: Run) -> bool:
+    """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
+
+    Leading coefficients that are negative by the rounding of the interpolation alone are set to zero: a contact with mass leaves
+    rest with a slip rate that grows as the square of time, or even later.
+    """
+    if run.counts[at.MODE] == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
+        return True
+    fastest = 0.0
+    for i in range(1, POINTS):
+        fastest = max(fastest, abs(run.stage_rate[i]))
+    for k in range(1, POINTS):
+        if run.jet[k] >= 0.0:
+            return True
+        if run.jet[k] < -ROUNDING * TO_POWERS_SUM[k] * fastest:
+            return False
+        run.jet[k] = 0.0
+    return True
 
 
 @kernel
@@ -181,9 +227,9 @@ def collocate(run: Run, left: float) -> float:
         if solve_stages(run, run.k[at.K_SPEED], force):
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
-            error = error_of(run)
+            error = error_of(run, force)
             factor = 0.9 * max(error, 1e-12) ** (-1.0 / (STAGES + 1.0))
-            if starts_backwards(run):
+            if not settle_start(run):
                 error = max(error, BACKWARDS)
             if error <= 1.0 or (error < BACKWARDS and error > 0.5 * before):
                 run.state[at.LAST_STEP] = guess * speed * min(factor, 5.0)
@@ -194,6 +240,7 @@ def collocate(run: Run, left: float) -> float:
             before = math.inf
             guess *= 0.25
     fill(run.jet, math.nan)
+    fill(run.state_jet, math.nan)
     return guess
 
 
@@ -221,20 +268,13 @@ def forgotten(run: Run) -> bool:
 
 
 @kernel
-def strength_ahead(run: Run, out: Floats) -> None:
-    """The static strength (minus the reference) over a step at rest, from the states at its points."""
-    for i in range(POINTS):
-        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
-        run.stage_rate[i] = run.par[at.NORMAL] * run.value[MU]
-    interpolate(run.stage_rate, out, run.spare)
-
-
-@kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
     width = collocate(run, xi_to - run.state[at.XI])
+    if not math.isfinite(run.jet[0]):
+        run.state[at.RATE_NOW] = math.nan
+        return
     reached = width >= xi_to - run.state[at.XI]
-    strength_ahead(run, run.jet)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
     fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
     copy(run.local, load, at.TERMS)

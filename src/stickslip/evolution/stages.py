@@ -11,7 +11,17 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
-from stickslip.evolution.collocation import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES
+from stickslip.evolution.collocation import (
+    DERIVATIVE,
+    DERIVATIVE_IN_MIDDLE,
+    INTEGRAL,
+    INTEGRAL_TO_MIDDLE,
+    MIDDLE,
+    POINT,
+    POINTS,
+    STAGES,
+    VALUE_IN_MIDDLE,
+)
 from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined, kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import evaluate
@@ -164,3 +174,39 @@ def solve_stages(run: Run, h: float, force: float) -> bool:
             return False
         before = change
     return False
+
+
+@kernel
+def defects(run: Run, h: float, force: float) -> tuple[float, float]:
+    """Return by how much the polynomials through the stages miss the equations halfway between the points.
+
+    The first number is in units of slip rate, the second in units of the state: each equation's defect is divided by what it
+    resists a change of its own variable with, over a step of h seconds.
+    """
+    par, v, w, value = run.par, run.stage_rate, run.stage_state, run.value
+    moving, remembers = run.counts[at.MODE] != 0, run.counts[at.HAS_STATE] == 1
+    mass, chi, missed, missed_state = par[at.INERTIA] / h, run.k[at.K_CHI] * h, 0.0, 0.0
+    for i in range(STAGES):
+        rate, change, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
+        for j in range(POINTS):
+            rate += VALUE_IN_MIDDLE[i, j] * v[j]
+            change += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
+            walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
+        if remembers:
+            for j in range(POINTS):
+                state += VALUE_IN_MIDDLE[i, j] * w[j]
+                evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+        contact_at(run, run.state[at.LAW_SLIP] + chi * walked, rate, state)
+        if moving:
+            resisted = par[at.IMPEDANCE] * rate + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * walked
+            missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - mass * change
+            missed = larger(missed, abs(missing) / (abs(par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE]) + mass))
+        if remembers:
+            missed_state = larger(missed_state, abs(h * value[CHANGE] - evolved) / (1.0 + h * abs(value[CHANGE_BY_STATE])))
+    return missed, missed_state
+
+
+@inlined
+def larger(x: float, y: float) -> float:
+    """Return the larger of two numbers, and infinity where the second is none."""
+    return math.inf if math.isnan(y) else max(x, y)
