@@ -23,6 +23,7 @@ from stickslip.evolution.stages import (
     defects,
     larger,
     rate_at_load,
+    rounding_of_law,
     solve_stages,
 )
 from stickslip.evolution.workspace import Run
@@ -40,8 +41,10 @@ LOAD_ROUNDING = 1e-14
 """Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
 DEFECT_ROUNDING = 1e-14
 """Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
-BACKWARDS = 1e3
-"""Error, in units of the tolerance, beyond which a step is never kept."""
+LAW_ROUNDING = 5.0
+"""Rounding of the law that is allowed for, in units of the largest that was seen in a few evaluations."""
+LARGEST_ROUNDING, PATIENCE = 1e3, 8
+"""Error, in units of the tolerance, beyond which a step is never kept; attempts, each shorter, whose error has not halved."""
 FORGOTTEN = 1e-18
 """Share of friction below which what is left of the state at rest is dropped."""
 
@@ -128,11 +131,12 @@ def strength_ahead(run: Run) -> float:
 
 
 @kernel
-def error_of(run: Run, force: float) -> float:
+def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
 
     The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
-    between the points, where a feature of the law may lie that none of the points sees.
+    between the points, where a feature of the law may lie that none of the points sees. `lost` is what is known to be lost by
+    rounding in the law itself.
     """
     par, value, h = run.par, run.value, run.k[at.K_SPEED]
     fastest, farthest = par[at.RATE_FLOOR], par[at.STATE_SCALE] + 1e-300
@@ -143,9 +147,10 @@ def error_of(run: Run, force: float) -> float:
     state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = max(missed - DEFECT_ROUNDING * fastest, 0.0)
-    error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise)
+    error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise + lost)
     if run.counts[at.HAS_STATE] == 1:
         missed_state = max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
+        state_noise += lost_state
         error = max(error, max(last_terms(run.state_jet), missed_state) / (par[at.TOLERANCE] * farthest + state_noise))
     if run.counts[at.MODE] == 0:
         error = max(error, strength_ahead(run))
@@ -202,23 +207,43 @@ def turn_with_load(run: Run, left: float) -> float:
 
 
 @kernel
-def collocate(run: Run, left: float) -> float:
-    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+def judged_error(run: Run, force: float) -> float:
+    """Return the error of the step's polynomials as `error_of`; where it is too large, rounding in the law is allowed for.
 
-    The step is repeated, shorter, until its error is below the tolerance, or no longer shrinks with it: that is rounding.
+    Infinity stands for polynomials that are no solution at all.
     """
+    error = error_of(run, force, 0.0, 0.0)
+    if error > 1.0:
+        lost, lost_state = rounding_of_law(run, run.k[at.K_SPEED])
+        error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
+    return error if settle_start(run) else math.inf
+
+
+@kernel
+def first_length(run: Run, left: float) -> float:
+    """Return the length in xi with which to try an implicit step: short enough for a disturbance that grows."""
     speed = abs(run.state[at.SPEED])
-    if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
-        left = turn_with_load(run, left)
     guess = min(left, run.state[at.LAST_STEP] / speed)
     if 0.5 * left < guess < left:
         guess = 0.5 * left
     load_ahead(run, guess)
     start_of_step(run)
     growth = growth_rate(run) if run.counts[at.MODE] != 0 else 0.0
-    if growth * guess * speed > LONGEST_GROWTH:
-        guess = LONGEST_GROWTH / (growth * speed)
-    before = math.inf
+    return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
+
+
+@kernel
+def collocate(run: Run, left: float) -> float:
+    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+
+    The step is repeated, shorter, until its error is below the tolerance. An error that does not shrink with the step is
+    rounding, after PATIENCE attempts in a row that have shown it. The polynomials are NaN if all attempts fail.
+    """
+    speed = abs(run.state[at.SPEED])
+    if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
+        left = turn_with_load(run, left)
+    guess = longest = first_length(run, left)
+    before, in_vain = math.inf, 0
     for _ in range(ATTEMPTS):
         load_ahead(run, guess)
         run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
@@ -227,12 +252,11 @@ def collocate(run: Run, left: float) -> float:
         if solve_stages(run, run.k[at.K_SPEED], force):
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
-            error = error_of(run, force)
-            factor = 0.9 * max(error, 1e-12) ** (-1.0 / (STAGES + 1.0))
-            if not settle_start(run):
-                error = max(error, BACKWARDS)
-            if error <= 1.0 or (error < BACKWARDS and error > 0.5 * before):
-                run.state[at.LAST_STEP] = guess * speed * min(factor, 5.0)
+            error = judged_error(run, force)
+            factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
+            in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
+            if error <= 1.0 or in_vain >= PATIENCE:
+                run.state[at.LAST_STEP] = speed * (guess * min(factor, 5.0) if error <= 1.0 else longest)
                 return guess
             before = error
             guess *= max(min(factor, 0.8), 0.1)

@@ -29,6 +29,10 @@ from stickslip.evolution.workspace import Run
 
 MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
 """What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
+RATE, ACCELERATION, WALKED, STATE, EVOLVED, BETWEEN = range(6)
+"""What `values_between` leaves in run.spare."""
+NUDGE = 1e-15
+"""Relative change of a number that is rounding: 4 ulp or more."""
 ITERATIONS = 40
 
 
@@ -177,33 +181,71 @@ def solve_stages(run: Run, h: float, force: float) -> bool:
 
 
 @kernel
+def values_between(run: Run, i: int) -> None:
+    """Put slip rate, its change and integral, state and its change halfway between points i and i + 1 into run.spare."""
+    v, w, out = run.stage_rate, run.stage_state, run.spare
+    for k in range(BETWEEN):
+        out[k] = 0.0
+    for j in range(POINTS):
+        out[RATE] += VALUE_IN_MIDDLE[i, j] * v[j]
+        out[ACCELERATION] += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
+        out[WALKED] += INTEGRAL_TO_MIDDLE[i, j] * v[j]
+    if run.counts[at.HAS_STATE] == 1:
+        for j in range(POINTS):
+            out[STATE] += VALUE_IN_MIDDLE[i, j] * w[j]
+            out[EVOLVED] += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+
+
+@inlined
+def contact_between(run: Run, h: float, nudge: float) -> None:
+    """Evaluate the contact where `values_between` has looked; all of its arguments are larger by a relative nudge."""
+    slip = run.state[at.LAW_SLIP] + run.k[at.K_CHI] * h * run.spare[WALKED]
+    contact_at(run, slip * (1.0 + nudge), run.spare[RATE] * (1.0 + nudge), run.spare[STATE] * (1.0 + nudge))
+
+
+@inlined
+def yielding(run: Run, h: float) -> tuple[float, float]:
+    """Return the change of slip rate per load that is missing, and of the state per missing change, over a step of h seconds."""
+    resistance = abs(run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[BY_RATE]) + run.par[at.INERTIA] / h
+    return 1.0 / resistance if run.counts[at.MODE] != 0 else 0.0, h / (1.0 + h * abs(run.value[CHANGE_BY_STATE]))
+
+
+@kernel
 def defects(run: Run, h: float, force: float) -> tuple[float, float]:
     """Return by how much the polynomials through the stages miss the equations halfway between the points.
 
-    The first number is in units of slip rate, the second in units of the state: each equation's defect is divided by what it
-    resists a change of its own variable with, over a step of h seconds.
+    The first number is in units of slip rate, the second in units of the state.
     """
-    par, v, w, value = run.par, run.stage_rate, run.stage_state, run.value
-    moving, remembers = run.counts[at.MODE] != 0, run.counts[at.HAS_STATE] == 1
-    mass, chi, missed, missed_state = par[at.INERTIA] / h, run.k[at.K_CHI] * h, 0.0, 0.0
+    par, value, middle = run.par, run.value, run.spare
+    missed, missed_state = 0.0, 0.0
     for i in range(STAGES):
-        rate, change, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
-        for j in range(POINTS):
-            rate += VALUE_IN_MIDDLE[i, j] * v[j]
-            change += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
-            walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
-        if remembers:
-            for j in range(POINTS):
-                state += VALUE_IN_MIDDLE[i, j] * w[j]
-                evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
-        contact_at(run, run.state[at.LAW_SLIP] + chi * walked, rate, state)
-        if moving:
-            resisted = par[at.IMPEDANCE] * rate + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * walked
-            missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - mass * change
-            missed = larger(missed, abs(missing) / (abs(par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE]) + mass))
-        if remembers:
-            missed_state = larger(missed_state, abs(h * value[CHANGE] - evolved) / (1.0 + h * abs(value[CHANGE_BY_STATE])))
-    return missed, missed_state
+        values_between(run, i)
+        contact_between(run, h, 0.0)
+        by_load, by_change = yielding(run, h)
+        resisted = par[at.IMPEDANCE] * middle[RATE] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * middle[WALKED]
+        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par[at.INERTIA] / h * middle[ACCELERATION]
+        missed = larger(missed, abs(missing) * by_load)
+        missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
+    return missed, missed_state if run.counts[at.HAS_STATE] == 1 else 0.0
+
+
+@kernel
+def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
+    """Return what rounding in the law's formulas makes of slip rate and state: by how much they answer to a nudge of rounding.
+
+    A formula may lose any number of digits, and nothing but the formula knows how many.
+    """
+    lost, lost_state = 0.0, 0.0
+    for i in range(STAGES):
+        values_between(run, i)
+        contact_between(run, h, 0.0)
+        friction, change = run.value[MU], run.value[CHANGE]
+        by_load, by_change = yielding(run, h)
+        for nudge in (-NUDGE, NUDGE):
+            contact_between(run, h, nudge)
+            lost = max(lost, abs(run.value[MU] - friction) * run.par[at.NORMAL] * by_load)
+            lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
+    return lost, lost_state
 
 
 @inlined
