@@ -6,6 +6,7 @@ and s_k those of slip and slip rate, w_i_k k times the coefficient.
 
 from __future__ import annotations
 
+from stickslip.evolution.guards import guards_of
 from stickslip.friction.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
 FRESH = 4
@@ -56,6 +57,7 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
+        self.guards = guards_of(self.dynamic)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 
@@ -140,6 +142,11 @@ class Recurrences:
         if node.operation == "exp":
             a = node.arguments[0]
             return f"exp_value({self.reference(node)}, e{self.index[node]}, {self.difference(a)}, {self.coefficient(a, 0)})"
+        if node.operation == "sqrt":
+            return f"sqrt({self.coefficient(node.arguments[0], 0)})"
+        if node.operation == "pow":
+            base, exponent = self.coefficient(node.arguments[0], 0), self.reference(node.arguments[1])
+            return f"power_value({self.reference(node)}, e{self.index[node]}, {base}, {exponent})"
         if sign is None:
             return f"{self.reference(node)} + e{self.index[node]}"
         left, right = (self.coefficient(argument, 0) for argument in node.arguments)
@@ -158,20 +165,21 @@ class Recurrences:
             if node.operation == "mul" and ea and eb and (_vanishes(a) or _vanishes(b)):
                 return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # as it is: there is nothing to take it from
             if node.operation == "mul":
-                return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"({ra}{f' + {ea}' if ea else ''}) * {eb}") if t)
+                return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"{self.coefficient(a, 0)} * {eb}") if t)
             numerator = f"{ea or ''}{f' - {r} * {eb}' if eb else ''}"
-            return f"({numerator}) / ({rb}{f' + {eb}' if eb else ''})"
+            return f"({numerator}) / {self.coefficient(b, 0)}"
         if node.operation in ("sin", "cos"):
             j = self.index[a]
             sine, cosine = (self.reference(Expression(name, (a,))) for name in ("sin", "cos"))
             return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
+        now = self.coefficient(a, 0)  # far from the reference its value has digits that reference + difference lacks
         return {
-            "exp": f"exp_difference({r}, {ra}, {ea})",
-            "log": f"log1p({ea} / {ra})",
-            "sqrt": f"{ea} / (sqrt({ra} + {ea}) + {r})",
-            "tanh": f"tanh({ea}) * (1.0 - {r} * {r}) / (1.0 + {r} * tanh({ea}))",
-            "arcsinh": f"arcsinh_difference({ra}, {ea})",
-            "pow": f"power_difference({ra}, {ea}, {self.reference(node.arguments[-1])})",
+            "exp": f"exp_difference({r}, {now}, {ea})",
+            "log": f"log_difference({ra}, {now}, {ea})",
+            "sqrt": f"{ea} / (sqrt({now}) + {r})",
+            "tanh": f"tanh_difference({r}, {now}, {ea})",
+            "arcsinh": f"arcsinh_difference({ra}, {now}, {ea})",
+            "pow": f"power_difference({ra}, {now}, {ea}, {self.reference(node.arguments[-1])})",
         }[node.operation]
 
     def slopes(self, variable: Expression, tag: str) -> list[str]:
@@ -206,6 +214,26 @@ class Recurrences:
                 }[node.operation]
             lines.append(f"{tag}{self.index[node]} = {rule}")
         return lines
+
+    # ---- guards -------------------------------------------------------------------------------------------------------------
+
+    def pulls(self) -> list[str]:
+        """Name, for each guard, the inverse of how far its argument may move: see `evolution.guards`."""
+        lines = []
+        for j, guard in enumerate(self.guards):
+            exponent = self.reference(guard.exponent) if guard.exponent else ""
+            lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
+        return lines
+
+    def reach(self, k: int) -> str:
+        """The k-th coefficient of the bound on how much of its room a guard has used up, for the guard that uses up most."""
+        used = [
+            f"{coefficient} * g_{j}" for j, guard in enumerate(self.guards) if (coefficient := self.coefficient(guard.argument, k))
+        ]
+        text = used[0]
+        for other in used[1:]:
+            text = f"max({text}, {other})"
+        return f"max({text}, 0.0)"
 
     # ---- higher orders ------------------------------------------------------------------------------------------------------
 
