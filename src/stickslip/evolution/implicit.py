@@ -25,6 +25,7 @@ from stickslip.evolution.stages import (
     rate_at_load,
     rounding_of_law,
     solve_stages,
+    stays_in_sight,
 )
 from stickslip.evolution.workspace import Run
 
@@ -207,13 +208,13 @@ def turn_with_load(run: Run, left: float) -> float:
 
 
 @kernel
-def judged_error(run: Run, force: float) -> float:
-    """Return the error of the step's polynomials as `error_of`; where it is too large, rounding in the law is allowed for.
+def judged_error(run: Run, force: float, before: float) -> float:
+    """Return the error of the step's polynomials as `error_of`. Infinity stands for polynomials that are no solution at all.
 
-    Infinity stands for polynomials that are no solution at all.
+    An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
     """
     error = error_of(run, force, 0.0, 0.0)
-    if error > 1.0:
+    if error > 1.0 and error > 0.5 * before:
         lost, lost_state = rounding_of_law(run, run.k[at.K_SPEED])
         error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
     return error if settle_start(run) else math.inf
@@ -236,8 +237,8 @@ def first_length(run: Run, left: float) -> float:
 def collocate(run: Run, left: float) -> float:
     """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
 
-    The step is repeated, shorter, until its error is below the tolerance. An error that does not shrink with the step is
-    rounding, after PATIENCE attempts in a row that have shown it. The polynomials are NaN if all attempts fail.
+    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. An error that
+    does not shrink with the step is rounding, after PATIENCE attempts in a row. The polynomials are NaN if all attempts fail.
     """
     speed = abs(run.state[at.SPEED])
     if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
@@ -245,14 +246,13 @@ def collocate(run: Run, left: float) -> float:
     guess = longest = first_length(run, left)
     before, in_vain = math.inf, 0
     for _ in range(ATTEMPTS):
-        load_ahead(run, guess)
-        run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
-        run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
-        force = start_of_step(run)
-        if solve_stages(run, run.k[at.K_SPEED], force):
+        force = begin_step(run, guess)
+        solved = solve_stages(run, run.k[at.K_SPEED], force)
+        used = stays_in_sight(run, run.k[at.K_SPEED]) if solved else math.inf
+        if used <= 1.0:
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
-            error = judged_error(run, force)
+            error = judged_error(run, force, before)
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
             if error <= 1.0 or in_vain >= PATIENCE:
@@ -262,10 +262,19 @@ def collocate(run: Run, left: float) -> float:
             guess *= max(min(factor, 0.8), 0.1)
         else:
             before = math.inf
-            guess *= 0.25
+            guess *= max(min(0.9 / used, 0.8), 0.1) if solved else 0.25
     fill(run.jet, math.nan)
     fill(run.state_jet, math.nan)
     return guess
+
+
+@inlined
+def begin_step(run: Run, guess: float) -> float:
+    """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
+    load_ahead(run, guess)
+    run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
+    run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
+    return start_of_step(run)
 
 
 @kernel

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
 from stickslip.evolution.collocation import (
@@ -22,7 +24,7 @@ from stickslip.evolution.collocation import (
     STAGES,
     VALUE_IN_MIDDLE,
 )
-from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined, kernel
+from stickslip.evolution.compiled import ahead, call_guards, call_state_value, call_value, floats, inlined, kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import evaluate
 from stickslip.evolution.workspace import Run
@@ -205,9 +207,12 @@ def contact_between(run: Run, h: float, nudge: float) -> None:
 
 @inlined
 def yielding(run: Run, h: float) -> tuple[float, float]:
-    """Return the change of slip rate per load that is missing, and of the state per missing change, over a step of h seconds."""
-    resistance = abs(run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[BY_RATE]) + run.par[at.INERTIA] / h
-    return 1.0 / resistance if run.counts[at.MODE] != 0 else 0.0, h / (1.0 + h * abs(run.value[CHANGE_BY_STATE]))
+    """Return the error of slip rate per load that is missing, and of the state per missing change, over a step of h seconds.
+
+    What is missing of a derivative turns its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
+    """
+    resistance = abs(run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[BY_RATE]) + STAGES * run.par[at.INERTIA] / h
+    return 1.0 / resistance if run.counts[at.MODE] != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
 
 
 @kernel
@@ -227,6 +232,50 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
         missed = larger(missed, abs(missing) * by_load)
         missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
     return missed, missed_state if run.counts[at.HAS_STATE] == 1 else 0.0
+
+
+@inlined
+def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
+    """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
+    piece = run.counts[at.PIECE]
+    slip = run.state[at.LAW_SLIP] + walked + run.slip_shift[piece]
+    call_guards(run.guards_at[piece], constants_of(run, piece), slip, rate, state, out)
+
+
+@kernel
+def stays_in_sight(run: Run, h: float) -> float:
+    """Return the share of its room that the hardest pressed guard of the law uses up in a step of h seconds: it must not exceed 1.
+
+    A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes back where the argument
+    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts, from
+    the start over the points and the places between them: a part that is passed over makes it move there and back.
+    """
+    n, chi = run.guard_count[run.counts[at.PIECE]], run.k[at.K_CHI] * h
+    if n == 0:
+        return 0.0
+    room = np.zeros(5 * n)  # for every guard argument and pull at the last place, the same here, and the share that is used up
+    last, here, pull = 0, 2 * n, room[0:n].copy()
+    table = floats(room.ctypes.data)
+    for i in range(2 * STAGES + 1):
+        point = (i + 1) // 2
+        if i % 2 == 1:
+            values_between(run, point - 1)
+            look_at_guards(run, chi * run.spare[WALKED], run.spare[RATE], run.spare[STATE], ahead(table, here))
+        else:
+            walked = 0.0
+            for j in range(POINTS):
+                walked += INTEGRAL[point, j] * run.stage_rate[j]
+            look_at_guards(run, chi * walked, run.stage_rate[point], run.stage_state[point], ahead(table, here))
+        for j in range(n):
+            if i == 0:
+                pull[j] = room[here + 2 * j + 1]
+            else:
+                room[4 * n + j] += max(pull[j] * (room[here + 2 * j] - room[last + 2 * j]), 0.0)
+        last, here = here, last
+    largest = 0.0
+    for j in range(n):
+        largest = max(largest, room[4 * n + j])
+    return largest
 
 
 @kernel
