@@ -216,6 +216,22 @@ def ended(run: Run) -> int:
     return at.LOCKED if run.counts[at.IS_LOCKED] == 1 else at.FINISHED
 
 
+@inlined
+def is_finite(run: Run) -> bool:
+    """Return True if the contact's slip, slip rate and state are numbers."""
+    return math.isfinite(run.state[at.RATE_NOW] + run.state[at.SLIP_NOW] + run.state[at.STATE_NOW])
+
+
+@kernel
+def take_back(run: Run, length: int, xi: float) -> None:
+    """Drop the pieces that a step has added to a history of `length` pieces: they are not finite. The run ends before them."""
+    if run.counts[at.LENGTH] > length:
+        real = ahead(run.real, REAL * length)
+        run.state[at.SLIP_NOW], run.state[at.LAW_SLIP] = real[at.S_SLIP], real[at.S_LAW_SLIP]
+        run.counts[at.LENGTH] = length
+    run.state[at.XI] = xi
+
+
 @kernel
 def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> int:
     """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
@@ -265,6 +281,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             return at.END_AHEAD
         xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
         if run.state[at.XI] < xi_to:
+            length, xi = run.counts[at.LENGTH], run.state[at.XI]
             if run.counts[at.MODE] == 0:
                 stick(run, xi_to)
             elif is_implicit(run):
@@ -274,7 +291,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 return at.SLIPS
             else:
                 slip(run, xi_to)
-            if not math.isfinite(run.state[at.RATE_NOW]):
+            if not is_finite(run):
+                take_back(run, length, xi)
                 return at.FAILED
         elif run.counts[at.AT_FOLD] != 0:
             leave_fold_piece(run)
