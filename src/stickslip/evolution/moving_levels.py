@@ -218,7 +218,7 @@ def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
 
 @kernel
 def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
-    """Write the levels of Maxwell's rule at the present law slip into the setup, where branches are kept up to their ends so far."""
+    """Write the levels of Maxwell's rule at the present slip into the setup, where branches are kept up to their ends so far."""
     run = borrow(places)
     contact = Contact(run, run.counts[at.PIECE], run.state[at.LAW_SLIP], scan, table)
     for k in range(run.branches):
