@@ -32,7 +32,7 @@ class Setups(NamedTuple):
     """Members that are alike but for their numbers. The engine's tables have a row a member, or one for all of them."""
 
     par: Floats  # (members, PARAMETERS)
-    address: Integers  # (3, pieces), the same for all
+    address: Integers  # (5, pieces), the same for all
     jets: Integers  # (pieces,): the formulas' series for lanes; (0,) where members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Floats  # (members, 3, pieces)
@@ -54,7 +54,7 @@ class Alike(NamedTuple):
     """What the members of a group have in common, whatever their numbers."""
 
     problem: Problem  # of one of them
-    address: Integers  # (3, pieces), of the law's functions
+    address: Integers  # (5, pieces), of the law's functions
     jets: Integers  # as in `Setups`
     prepare: Integers  # (pieces,)
     size: int  # of the constants of a piece

@@ -113,6 +113,16 @@ class CompiledFormula:
             spec.loader.exec_module(module)
         return getattr(module, part)
 
+    @property
+    def guard_count(self) -> int:
+        """How many guards the formula has."""
+        return len(self._writer.guards)
+
+    @cached_property
+    def guards(self) -> int:
+        """Address of guards(c, dx, s, w, out)."""
+        return int(self._function("guards").address)
+
     @cached_property
     def prepare(self) -> Callable[..., None]:
         """prepare(parameters, reference slip, constants) through ctypes."""
@@ -179,6 +189,12 @@ def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) 
 @intrinsic
 def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
     """state_value(c, dx, s, w, out) of the formula at `address`."""
+    return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
+
+
+@intrinsic
+def call_guards(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
+    """guards(c, dx, s, w, out) of the formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
 
 

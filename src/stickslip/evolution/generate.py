@@ -7,7 +7,11 @@ value      mu(x, s) - mu(x_ref, 0) with its derivatives with respect to s and x
 state_value  mu(x, s, w) - mu(x_ref, 0, 0) with its derivatives with respect to s, x and the state w, and the same of dw/dt
 rate_jet   massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
 motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
-rate_jets, motion_jets  the same for several runs side by side (see `lanes`)
+guards     for each guard of the formula (see `evolution.guards`) its argument and how hard the step is held back there
+rate_jets, motion_jets  the two series for several runs side by side (see `lanes`)
+
+Behind the ORDER + 1 coefficients of the series, the jets of a formula with guards leave those of a bound: the step may be as long
+as its sum stays below 1.
 
 Friction is kept as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
 released from the very edge of equilibrium keeps its digits. s >= 0 is the magnitude of the slip rate, q its integral, and
@@ -21,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from stickslip.evolution.guards import HIDDEN, IN_SIGHT
 from stickslip.evolution.recurrences import Recurrences
 from stickslip.friction.expression import RATE, SLIP, STATE, Expression
 
@@ -31,6 +36,7 @@ SIGNATURES = {
     "prepare": ("p[]", "x_ref", "c[]"),
     "value": ("c[]", "dx", "s", "out[]"),
     "state_value": ("c[]", "dx", "s", "w", "out[]"),
+    "guards": ("c[]", "dx", "s", "w", "out[]"),
     "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jet": ("c[]", "k[]", "L[]", "s[]"),
     "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
@@ -50,37 +56,63 @@ _array = types.CPointer(types.float64)
 _options = dict(cache=True, nopython=True, error_model="numpy", fastmath={{"contract"}})
 
 
+# f(now) - f(reference), where now = reference + step: near the reference without cancellation, far from it by the values.
+
+
 @njit(error_model="numpy")
-def exp_difference(value, argument, step):
+def exp_difference(value, now, step, largest):
     if abs(step) < 1.0:
         return value * expm1(step)
-    return exp(argument + step) - value  # nothing is lost, and value may be 0 where expm1(step) is infinite
+    return exp(min(now, largest)) - value
 
 
 @njit(error_model="numpy")
-def power_difference(base, step, exponent):
-    if base > 0.0 and step > -base:
-        return base**exponent * expm1(exponent * log1p(step / base))
-    return (base + step) ** exponent - base**exponent
+def log_difference(reference, now, step):
+    if abs(step) < 0.5 * abs(reference):
+        return log1p(step / reference)
+    return log(now / reference)
 
 
 @njit(error_model="numpy")
-def exp_value(reference, difference, step, argument):
-    """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
-    return reference + difference if abs(step) < 1.0 else exp(argument)
-
-
-@njit(error_model="numpy")
-def arcsinh_difference(base, step):
-    root, other = sqrt(1.0 + base * base), sqrt(1.0 + (base + step) * (base + step))
-    return asinh(step * (root - base * (2.0 * base + step) / (root + other)))
-
-
-@njit(error_model="numpy")
-def tanh_difference(value, argument, step):
+def tanh_difference(value, now, step):
     if abs(step) < 1.0:
-        return sinh(step) / cosh(argument) / cosh(argument + step)
-    return tanh(argument + step) - value  # 1 - value**2 would have no digits left far from the step
+        return sinh(step) / cosh(now - step) / cosh(now)  # 1 - value**2 would have no digits left where value is nearly 1
+    return tanh(now) - value
+
+
+@njit(error_model="numpy")
+def power_difference(reference, now, step, exponent):
+    if abs(step) < 0.5 * reference:
+        return reference**exponent * expm1(exponent * log1p(step / reference))
+    return now**exponent - reference**exponent
+
+
+@njit(error_model="numpy")
+def arcsinh_difference(reference, now, step):
+    root, other = sqrt(1.0 + reference * reference), sqrt(1.0 + now * now)
+    if abs(step) < 0.5 * root:
+        return asinh(step * (root - reference * (2.0 * reference + step) / (root + other)))
+    return asinh(now) - asinh(reference)
+
+
+@njit(error_model="numpy")
+def power_pull(base, exponent):
+    height = exponent * log(base)  # the power is exp(height)
+    if height == 0.0:
+        return 0.0
+    room = max(abs(height) - {hidden!r}, {in_sight!r})
+    return 1.0 / (base * expm1((-room if height > 0.0 else room) / exponent))
+
+
+@njit(error_model="numpy")
+def exp_value(reference, difference, step, argument, largest):
+    """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
+    return reference + difference if abs(step) < 1.0 else exp(min(argument, largest))
+
+
+@njit(error_model="numpy")
+def power_value(reference, difference, base, exponent):
+    return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
 
 '''
 
@@ -91,10 +123,13 @@ from stickslip.evolution.lanes import POINTER as _array
 from stickslip.evolution.lanes import lane_by_lane
 
 exp_difference = lane_by_lane(exp_difference)
+log_difference = lane_by_lane(log_difference)
+tanh_difference = lane_by_lane(tanh_difference)
 power_difference = lane_by_lane(power_difference)
 exp_value = lane_by_lane(exp_value)
 arcsinh_difference = lane_by_lane(arcsinh_difference)
-tanh_difference = lane_by_lane(tanh_difference)
+power_pull = lane_by_lane(power_pull)
+power_value = lane_by_lane(power_value)
 
 """
 
@@ -146,6 +181,13 @@ class FormulaWriter(Recurrences):
             body += [f"out[{4 * i + j}] = {text or '0.0'}" for j, text in enumerate((level, *slopes))]
         return body
 
+    def guard_values(self) -> list[str]:
+        """guards(c, dx, s, w, out)"""
+        body = ["s_0 = s", *self.order_zero(), *self.pulls()]
+        for j, guard in enumerate(self.guards):
+            body += [f"out[{2 * j}] = {self.coefficient(guard.argument, 0)}", f"out[{2 * j + 1}] = g_{j}"]
+        return body
+
     def rate_jet(self) -> list[str]:
         """Massless contact. k is laid out by `stickslip.evolution.layout`; L holds the load's series; s receives the rate's."""
         body = ["Z = k[0]", "S = k[1]", "A = k[2] * k[3]", "B = k[2] * k[4]", "dx = k[5]", "offset = k[6]"]
@@ -156,7 +198,7 @@ class FormulaWriter(Recurrences):
         else:
             body += [*self.order_zero(), "resistance = 1.0 / Z"]
             body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
-        body += ["s[0] = s_0", "share = S * resistance"]
+        body += ["s[0] = s_0", "share = S * resistance", *self.pulls()]
         for k in range(1, self.limit + 1):
             body.append(f"x_{k} = {_integral('s', k)}")
             self.pending_rate = k
@@ -167,21 +209,26 @@ class FormulaWriter(Recurrences):
             for node in self.dynamic:
                 if self.rate_dependent[node]:
                     body.append(f"n{self.index[node]}_{k} += {self.slope(node, RATE, 'd')} * s_{k}")
-            body += [*self.weights(k), f"s[{k}] = s_{k}"]
+            body += [*self.weights(k), f"s[{k}] = s_{k}", *self.bound(k)]
         return body
+
+    def bound(self, k: int) -> list[str]:
+        """The k-th coefficient of the bound of a formula with guards, behind the series."""
+        return [f"s[{self.limit + 1 + k}] = {self.reach(k)}"] if self.guards else []
 
     def motion_jet(self) -> list[str]:
         """Contact with mass: M ds/dt = L - K q - Z s - S mu. Arguments as for `rate_jet`."""
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
         body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
-        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia"]
+        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.pulls()]
         for k in range(1, self.limit + 1):
             body += [f"q_{k} = {_integral('s', k)}", f"s_{k} = {_integral('a', k)}"]
             body.append(f"s[{k}] = s_{k}")
             if k == self.limit:
+                body += [f"s[{2 * k + 1}] = s[{2 * k}]"] if self.guards else []  # the formula's own coefficients end at k - 1
                 break
-            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k)]
+            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k), *self.bound(k)]
             friction = self.coefficient(self.formula, k)
             force = f"L[{k}] - K * q_{k} - Z * s_{k}{f' - S * {friction}' if friction else ''}"
             body.append(f"a_{k} = ({force}) * inertia")
@@ -193,6 +240,7 @@ class FormulaWriter(Recurrences):
             "prepare": self.prepare,
             "value": self.value,
             "state_value": self.state_value,
+            "guards": self.guard_values,
             "rate_jet": self.rate_jet,
             "motion_jet": self.motion_jet,
             "rate_jets": self.rate_jet,
@@ -206,7 +254,8 @@ class FormulaWriter(Recurrences):
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
         head = f"@cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
-        header = MODULE_HEADER.format(formula=describe(self.formula)) + (LANES_HEADER if part in SIDE_BY_SIDE else "")
+        header = MODULE_HEADER.format(formula=describe(self.formula), hidden=HIDDEN, in_sight=IN_SIGHT)
+        header += LANES_HEADER if part in SIDE_BY_SIDE else ""
         return header + head + body
 
 

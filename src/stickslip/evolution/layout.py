@@ -38,7 +38,9 @@ SLIP_SINCE = 17  # offset at which slip began
 KEPT = 18  # of these, what is set aside where another piece comes in between
 TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brought, in its xi and as an offset
 TARGET = 20  # xi up to which a run may slip that waits for others, to take its step side by side with them
-STATES = 21
+UNBALANCED = 21  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
+ROUNDED = 22  # rounding (m/s) that was found in that step where it seemed not to obey the law
+STATES = 23
 assert KEPT <= TERMS  # it is set aside in a row of scratch space
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
@@ -68,7 +70,7 @@ FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED, SLIPS =
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
-VALUE_AT, JET_AT, STATE_AT = range(3)
+VALUE_AT, JET_AT, STATE_AT, GUARDS_AT, GUARD_COUNT = range(5)
 SLIP_SHIFT, OFFSET, KNOT = range(3)
 RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
 FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
@@ -83,7 +85,7 @@ class Setup(NamedTuple):
     """A problem as the engine sees it. Nothing here changes during a run, but the branches of a law of slip and slip rate."""
 
     par: Floats
-    address: Integers  # (3, pieces of the law): of the functions `value`, `rate_jet` or `motion_jet`, and `state_value`
+    address: Integers  # (5, pieces of the law): of `value`, `rate_jet` or `motion_jet`, `state_value`, `guards`; number of guards
     constants: Floats  # (pieces, size): what `prepare` filled for them
     law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end
     branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends

@@ -6,8 +6,14 @@ and s_k those of slip and slip rate, w_i_k k times the coefficient.
 
 from __future__ import annotations
 
+from stickslip.evolution.guards import guards_of
 from stickslip.friction.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
+LARGEST_EXPONENT = 150.0
+"""Exponents beyond this count as this where exp occurs in denominators only (1): e^150 leaves nothing of a quotient, and its
+squares and series stay numbers."""
+NO_LIMIT = 1e308
+"""Of other exponents (1): where exp is infinite the run ends and says so."""
 FRESH = 4
 """Terms of a sum that wait for the newest coefficients (see `sum_of`)."""
 
@@ -44,6 +50,24 @@ def _vanishes(node: Expression) -> bool:
     return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
 
 
+def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
+    """Return the nodes that reach the formula through denominators alone, by way of sums and products."""
+    parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
+    for node in nodes:
+        for argument in node.arguments:
+            parents[argument].append(node)
+    below: set[Expression] = set()
+    for node in reversed(nodes):
+        ways = parents[node]
+        if ways and all(_divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways):
+            below.add(node)
+    return below
+
+
+def _divides(node: Expression, parent: Expression) -> bool:
+    return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
+
+
 class Recurrences:
     """What is known of a formula's nodes, and the statements that compute them."""
 
@@ -56,6 +80,8 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
+        self.guards = guards_of(self.dynamic)
+        self._only_below = in_denominators_only(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 
@@ -113,11 +139,17 @@ class Recurrences:
         signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
         if node.operation in signs:
             return f"{arguments[0]} {signs[node.operation]} {arguments[1]}"
+        if node.operation == "exp":
+            return f"exp(min({arguments[0]}, {self.largest_exponent(node)}))"
         if node.arguments:
             return f"{'asinh' if node.operation == 'arcsinh' else node.operation}({arguments[0]})"
         if node.operation == "parameter":
             return f"p[{self.parameters.index(node.name)}]"
         return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
+
+    def largest_exponent(self, node: Expression) -> float:
+        """Return the exponent beyond which an exp node stays as it is."""
+        return LARGEST_EXPONENT if node in self._only_below else NO_LIMIT
 
     def order_zero(self) -> list[str]:
         """Differences from the reference and values of every node at dx, s_0."""
@@ -139,7 +171,13 @@ class Recurrences:
         sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
         if node.operation == "exp":
             a = node.arguments[0]
-            return f"exp_value({self.reference(node)}, e{self.index[node]}, {self.difference(a)}, {self.coefficient(a, 0)})"
+            near = f"{self.reference(node)}, e{self.index[node]}, {self.difference(a)}"
+            return f"exp_value({near}, {self.coefficient(a, 0)}, {self.largest_exponent(node)})"
+        if node.operation == "sqrt":
+            return f"sqrt({self.coefficient(node.arguments[0], 0)})"
+        if node.operation == "pow":
+            base, exponent = self.coefficient(node.arguments[0], 0), self.reference(node.arguments[1])
+            return f"power_value({self.reference(node)}, e{self.index[node]}, {base}, {exponent})"
         if sign is None:
             return f"{self.reference(node)} + e{self.index[node]}"
         left, right = (self.coefficient(argument, 0) for argument in node.arguments)
@@ -158,20 +196,21 @@ class Recurrences:
             if node.operation == "mul" and ea and eb and (_vanishes(a) or _vanishes(b)):
                 return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # as it is: there is nothing to take it from
             if node.operation == "mul":
-                return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"({ra}{f' + {ea}' if ea else ''}) * {eb}") if t)
+                return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"{self.coefficient(a, 0)} * {eb}") if t)
             numerator = f"{ea or ''}{f' - {r} * {eb}' if eb else ''}"
-            return f"({numerator}) / ({rb}{f' + {eb}' if eb else ''})"
+            return f"({numerator}) / {self.coefficient(b, 0)}"
         if node.operation in ("sin", "cos"):
             j = self.index[a]
             sine, cosine = (self.reference(Expression(name, (a,))) for name in ("sin", "cos"))
             return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
+        now = self.coefficient(a, 0)  # far from the reference its value has digits that reference + difference lacks
         return {
-            "exp": f"exp_difference({r}, {ra}, {ea})",
-            "log": f"log1p({ea} / {ra})",
-            "sqrt": f"{ea} / (sqrt({ra} + {ea}) + {r})",
-            "tanh": f"tanh_difference({r}, {ra}, {ea})",
-            "arcsinh": f"arcsinh_difference({ra}, {ea})",
-            "pow": f"power_difference({ra}, {ea}, {self.reference(node.arguments[-1])})",
+            "exp": f"exp_difference({r}, {now}, {ea}, {self.largest_exponent(node)})",
+            "log": f"log_difference({ra}, {now}, {ea})",
+            "sqrt": f"{ea} / (sqrt({now}) + {r})",
+            "tanh": f"tanh_difference({r}, {now}, {ea})",
+            "arcsinh": f"arcsinh_difference({ra}, {now}, {ea})",
+            "pow": f"power_difference({ra}, {now}, {ea}, {self.reference(node.arguments[-1])})",
         }[node.operation]
 
     def slopes(self, variable: Expression, tag: str) -> list[str]:
@@ -206,6 +245,26 @@ class Recurrences:
                 }[node.operation]
             lines.append(f"{tag}{self.index[node]} = {rule}")
         return lines
+
+    # ---- guards -------------------------------------------------------------------------------------------------------------
+
+    def pulls(self) -> list[str]:
+        """Name, for each guard, the inverse of how far its argument may move: see `evolution.guards`."""
+        lines = []
+        for j, guard in enumerate(self.guards):
+            exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
+            lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
+        return lines
+
+    def reach(self, k: int) -> str:
+        """The k-th coefficient of the bound on how much of its room a guard has used up, for the guard that uses up most."""
+        used = [
+            f"{coefficient} * g_{j}" for j, guard in enumerate(self.guards) if (coefficient := self.coefficient(guard.argument, k))
+        ]
+        text = used[0]
+        for other in used[1:]:
+            text = f"max({text}, {other})"
+        return f"max({text}, 0.0)"
 
     # ---- higher orders ------------------------------------------------------------------------------------------------------
 

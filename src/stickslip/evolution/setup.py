@@ -183,11 +183,14 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     return address, constants, np.array([[start - reference for reference in references], offsets, knots])
 
 
-def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int]:
-    """Of what is compiled of a formula: a law with a state is only ever stepped implicitly."""
+def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int, int, int]:
+    """Return what `Setup.address` holds of a formula: a law with a state is only ever stepped implicitly."""
+    stepped_implicitly = problem.friction.state is not None or has_inertia(problem)
+    guards = formula.guards if formula.guard_count and stepped_implicitly else 0
     if problem.friction.state:
-        return 0, 0, formula.state_value
-    return formula.value, formula.motion_jet if has_inertia(problem) else formula.rate_jet, 0
+        return 0, 0, formula.state_value, guards, formula.guard_count
+    jet = formula.motion_jet if has_inertia(problem) else formula.rate_jet
+    return formula.value, jet, 0, guards, formula.guard_count
 
 
 def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at.Floats) -> None:

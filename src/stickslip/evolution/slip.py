@@ -42,9 +42,13 @@ from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, s
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
+from stickslip.evolution.verify import HALVINGS, begin_verification, note_rounding, obeys_contact, within_guards
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
+"""Guess at the next step's length (1), relative to the last one."""
+NO_EVENT, ARREST, KNOT = range(3)
+"""What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 
 
 @inlined
@@ -224,27 +228,57 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
         settle_piece(run, abs(run.state[at.RATE_NOW]))
     guess = collocate(run, xi_to - run.state[at.XI])
     note_shock(run)
-    stretch(run, 1.0, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
+    rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
+    stretch(run, 1.0, rate)
     reached = guess >= xi_to - run.state[at.XI]
     if run.counts[at.HAS_STATE] == 0 and run.k[at.K_SPEED] * settling_rate(run) < NOT_STIFF:
         run.counts[at.STIFF] = 0
-    finish_step(run, xi_to, guess, 1.0, reached, False, True)
+    event, turn, end = first_event(run, rate, 1.0)
+    keep_state(run, end)
+    keep_step(run, rate, end, xi_to if reached and end == 1.0 else run.state[at.XI] + end * guess)
+    end_step(run, xi_to, event, turn, False, reached)
 
 
 @inlined
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
-    """Choose the length of an explicit step, and go."""
+    """Choose the length of an explicit step, cut it at the first event, make it shorter until it obeys the law, and go."""
     length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par[at.TOLERANCE]))
-    stretch(run, length, ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]))
-    finish_step(run, target, guess, length, reached, leaves, False)
+    rate, load = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
+    begin_verification(run)
+    stretch(run, length, rate)
+    event, turn, end = first_event(run, rate, length)
+    grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
+    for _ in range(HALVINGS):
+        if is_straight(run) or obeys_contact(run, rate, length * end, grown, rate_end):
+            break
+        if run.state[at.ROUNDED] == 0.0:
+            note_rounding(run, length)
+        length *= 0.5 * end
+        reached, run.state[at.LAST_STEP] = False, min(run.state[at.LAST_STEP], duration_of(run, length))
+        stretch(run, length, rate)
+        event, turn, end = first_event(run, rate, length)
+        grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
+    multiply(run.local, run.powers, load)
+    to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
+    move(run, rate, end * length, grown, rate_end, to)
+    end_step(run, target, event, turn, leaves, reached)
+
+
+@inlined
+def is_straight(run: Run) -> bool:
+    """Return True on the bits next to a fold that are straight lines in the root of time: what these miss is known."""
+    return run.k[at.K_BEND] != 0.0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
 
 
 @inlined
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
     limit = (target - run.state[at.XI]) / guess
-    # as the tolerance would have it: what events and ends of pieces cut off says nothing of the next step's length
-    run.state[at.LAST_STEP] = length * abs(run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * min(length, 1.0))
+    if run.guard_count[run.counts[at.PIECE]] > 0:
+        seen = within_guards(run, min(length, limit))
+        length = seen if seen < min(length, limit) else length
+    # Store the error-controlled length: truncation at an event must not shrink the next guess.
+    run.state[at.LAST_STEP] = duration_of(run, length)
     reached = length >= limit
     if reached:
         length = limit
@@ -254,26 +288,35 @@ def choose_length(run: Run, target: float, guess: float, length: float) -> tuple
 
 
 @inlined
-def finish_step(run: Run, target: float, guess: float, length: float, reached: bool, leaves: bool, implicit: bool) -> None:
-    """Cut the step (of so many guesses) at the first event, record it, and do what the event asks for."""
-    rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
+def duration_of(run: Run, length: float) -> float:
+    """Return how long (s) a step of so many guesses is."""
+    return length * abs(run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * min(length, 1.0))
+
+
+@inlined
+def first_event(run: Run, rate: Floats, length: float) -> tuple[int, int, float]:
+    """Find what ends a step (of so many guesses) early, and cut the step there.
+
+    Returns the event, which knot it passes (1 upwards, -1 down), and the share of the step up to there.
+    """
     arrest = NONE
     if (run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
     knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
     end = min(arrest, knot)
     if end > 1.0 - TIE:
-        arrest, knot, end = NONE, NONE, 1.0
-    to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
+        return NO_EVENT, 0, 1.0
     if end < 1.0:
-        length *= end
-        stretch(run, length, rate)
-    if implicit:
-        keep_state(run, length)
-    keep_step(run, rate, length, to)
-    if arrest == end:
+        stretch(run, length * end, rate)
+    return ARREST if arrest == end else KNOT, turn, end
+
+
+@inlined
+def end_step(run: Run, target: float, event: int, turn: int, leaves: bool, reached: bool) -> None:
+    """Do what the event at the end of a step asks for."""
+    if event == ARREST:
         come_to_rest(run)
-    elif knot == end:
+    elif event == KNOT:
         pass_knot(run, turn)
     elif leaves and (reached or target - run.state[at.XI] < TIE):
         reach_end(run)

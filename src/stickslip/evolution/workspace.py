@@ -31,7 +31,7 @@ PLACES = 23
 
 MATRIX_ROWS = 18
 """Equations of an implicit step: their matrix and right-hand side fill so many rows of TERMS numbers."""
-WORK_ROWS = 14 + MATRIX_ROWS
+WORK_ROWS = 15 + MATRIX_ROWS
 
 
 class Run(NamedTuple):
@@ -41,6 +41,8 @@ class Run(NamedTuple):
     value_at: Integers  # by piece of the law
     jet_at: Integers
     state_at: Integers
+    guards_at: Integers
+    guard_count: Integers
     constants: Floats
     slip_shift: Floats
     offset: Floats
@@ -74,6 +76,7 @@ class Run(NamedTuple):
     local: Floats  # of the step at hand, in units of the guess; zero beyond the degree of the piece
     seen: Floats  # the same in the direction of slip, minus the reference
     jet: Floats
+    reach: Floats  # the bound that the jet of a formula with guards leaves behind the series
     powers: Floats
     k: Floats
     value: Floats
@@ -118,6 +121,8 @@ def borrow(table: Integers) -> Run:
         address,
         ahead(address, pieces),
         ahead(address, 2 * pieces),
+        ahead(address, 3 * pieces),
+        ahead(address, 4 * pieces),
         floats(table[CONSTANTS_AT]),
         law,
         ahead(law, pieces),
@@ -159,6 +164,7 @@ def borrow(table: Integers) -> Run:
         ahead(work, 12 * TERMS),
         ahead(work, 13 * TERMS),
         ahead(work, 14 * TERMS),
+        ahead(work, 15 * TERMS),
         integers(table[NODE_AT]),
         floats(table[HEIGHTS_AT]),
         pieces,

@@ -20,9 +20,10 @@ from stickslip.evolution.layout import TERMS, Floats, Integers
 from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
 from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
+from stickslip.evolution.verify import begin_verification, obeys_contact
 from stickslip.evolution.workspace import DEGREE, PLACES, Run, borrow
 
-SEEN, LOCAL, JET, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(6))
+SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(7))
 LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
 CONSTANTS = TOLERANCE + 1
 """Rows of the block, of `WIDTH` numbers each: behind those of `run.k`; a law's constants fill the last ones."""
@@ -99,6 +100,9 @@ def take_length(run: Run, own: Floats) -> None:
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
         usable = usable_length(run.jet, run.par[at.TOLERANCE])
+    if run.guard_count[run.counts[at.PIECE]] > 0:
+        for k in range(TERMS):
+            run.reach[k] = own[WIDTH * (REACH + k)]
     own[WIDTH * LAST_STEP] = run.state[at.LAST_STEP]
     length, reached = choose_length(run, run.state[at.TARGET], own[WIDTH * GUESS], usable)
     own[WIDTH * LENGTH], own[WIDTH * REACHED] = length, 1.0 if reached else 0.0
@@ -132,13 +136,18 @@ def take_out(run: Run, own: Floats) -> int:
         for k in range(TERMS):
             load[k] = own[WIDTH * (LOAD + k)]
     simple = rate[0] > 0.0 and own[WIDTH * BOUND] > 0.0 and math.isfinite(own[WIDTH * LAST])
+    grown, rate_end = own[WIDTH * GROWN], own[WIDTH * LAST]
+    if simple:
+        powers_of(length, run.powers)
+        begin_verification(run)
+        simple = obeys_contact(run, rate, length, grown, rate_end)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state[at.LAST_STEP] = own[WIDTH * LAST_STEP]
         return ALONE
     run.jet[0] = own[WIDTH * JET]
     note_shock(run)
     to = target if own[WIDTH * REACHED] == 1.0 else run.state[at.XI] + length * own[WIDTH * GUESS]
-    move(run, rate, length, own[WIDTH * GROWN], own[WIDTH * LAST], to)
+    move(run, rate, length, grown, rate_end, to)
     if run.counts[at.HAS_INERTIA] == 1:
         judge_stiffness(run)
     goes_on = run.state[at.XI] < target and run.counts[at.STALLED] == 0 and run.counts[at.STIFF] == 0
