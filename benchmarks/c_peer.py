@@ -48,7 +48,9 @@ def header(writer: FormulaWriter) -> str:
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
     defines.append(f"#define GUARDS {len(writer.guards)}")
     return (
-        "\n".join([*defines, *SINES, *NAMES]) + "\n\n" + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+        "\n".join([*defines, *SINES, *NAMES])
+        + "\n\n"
+        + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
     )
 
 

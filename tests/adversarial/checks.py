@@ -51,10 +51,10 @@ def decided_truth(case: Case) -> Truth | None:
 
 
 def off_the_law(run: ss.Solution, points: int = 4001) -> float:
-    """Largest |traction - S mu| while slipping, as a share of S, at times that do not know the steps of the run."""
+    """Largest ||traction| - S mu| while slipping, as a share of S, at times that do not know the steps of the run."""
     times = np.linspace(0.0, run.history.duration, points)[1:]
     rate, normal, law = run.slip_rate(times), run.problem.normal, run.problem.friction
     slips = np.abs(rate) > 0.0
     slip = run.problem.law_slip + run.slip(times) - run.problem.initial_slip
-    found: NDArray[np.float64] = np.abs(run.traction(times) - normal * law.coefficient(slip, np.abs(rate)))
+    found: NDArray[np.float64] = np.abs(np.abs(run.traction(times)) - normal * law.coefficient(slip, np.abs(rate)))
     return float(found[slips].max(initial=0.0)) / normal

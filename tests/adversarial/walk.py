@@ -18,7 +18,7 @@ WIDTHS, SHARE = 0.5, 0.4
 """A step crosses at most so much of a width, or so much of the distance to the feature, whichever is larger."""
 
 
-MOST_STEPS = 6_000
+MOST_STEPS = 20_000
 
 
 class TooStiffError(RuntimeError):

@@ -59,7 +59,9 @@ def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
     below: set[Expression] = set()
     for node in reversed(nodes):
         ways = parents[node]
-        if ways and all(_divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways):
+        if ways and all(
+            _divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways
+        ):
             below.add(node)
     return below
 
