@@ -74,7 +74,7 @@ class Drawing:
             mass, stiffness, normal = self.log(-1, 12), self.log(1, 13), self.log(1, 14)
             damping = float(self.one_of(0.0, 0.0, 0.1, 3.0)) * math.sqrt(mass * stiffness)
             block = ss.SpringBlock(mass, stiffness, normal, damping)
-            self.slip, self.time, self.rate = normal / stiffness, block.period, normal / math.sqrt(mass * stiffness)
+            self.slip, self.time, self.rate = normal / stiffness, float(block.period), normal / math.sqrt(mass * stiffness)
             return block
         density, speed, thickness, normal = self.log(3, 4), self.log(3, 3.7), self.log(0, 4.5), self.log(6, 8.5)
         impedance = density * speed
@@ -182,7 +182,7 @@ class Drawing:
             given["initial_load"] = normal * float(rng.uniform(-1.0, 1.0))
             given["initial_state"] = self.time * self.log(-3, 3)
         rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 7) if rng.random() < 0.1 else 1.0)
-        return Draw(kind, ss.Problem(body, law, **given), rounds * self.time, float(self.one_of(*RTOLS)))
+        return Draw(kind, ss.Problem(body, law, **given), float(rounds * self.time), float(self.one_of(*RTOLS)))
 
 
 def draw(seed: int, index: int, only: str | None = None) -> Draw:
