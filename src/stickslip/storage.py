@@ -86,6 +86,7 @@ def origin(solution: Solution) -> dict[str, Any]:
         "status": solution.status.name,
         "status_message": solution.status.message,
         "status_ok": int(solution.status.ok),
+        "lumping": solution.lumping_note,
     }
 
 
@@ -273,9 +274,8 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    return Solution(
-        scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol, scenario.shortest_event
-    )
+    about = scenario.events, scenario.creep_rtol, scenario.shortest_event, str(attributes.get("lumping", ""))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -44,22 +44,33 @@ def _derivatives() -> NDArray[np.float64]:
     return matrix
 
 
-def _integrals() -> NDArray[np.float64]:
-    """Row i: the same for the integral from 0 to point i, by Gauss's rule on each."""
+def _values(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Row i: the same for the value at a place that is none of the points."""
+    basis = _WEIGHT / (places[:, None] - POINT)
+    return np.asarray(basis / basis.sum(axis=1, keepdims=True))
+
+
+def _integrals(ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Row i: the same for the integral from 0 to end i, by Gauss's rule on each."""
     nodes, weights = legendre.leggauss(POINTS)
-    matrix = np.zeros((POINTS, POINTS))
-    for i, end in enumerate(POINT[1:], 1):
-        places = 0.5 * end * (1.0 + nodes)
-        basis = _WEIGHT / (places[:, None] - POINT)
-        matrix[i] = 0.5 * end * weights @ (basis / basis.sum(axis=1, keepdims=True))
+    matrix = np.zeros((len(ends), POINTS))
+    for i, end in enumerate(ends):
+        if end > 0.0:
+            matrix[i] = 0.5 * end * weights @ _values(0.5 * end * (1.0 + nodes))
     return matrix
 
 
 POINT = _radau()
 _WEIGHT = _barycentric()
-DERIVATIVE, INTEGRAL = _derivatives(), _integrals()
+DERIVATIVE, INTEGRAL = _derivatives(), _integrals(POINT)
+MIDDLE = 0.5 * (POINT[1:] + POINT[:-1])
+"""Places halfway between the points, where a step is verified: what it misses of the equation is largest near them."""
+VALUE_IN_MIDDLE, INTEGRAL_TO_MIDDLE = _values(MIDDLE), _integrals(MIDDLE)
+DERIVATIVE_IN_MIDDLE = VALUE_IN_MIDDLE @ DERIVATIVE
 _VANDERMONDE = np.vander(POINT, increasing=True)
 TO_POWERS = np.linalg.inv(_VANDERMONDE)
+TO_POWERS_SUM = abs(TO_POWERS).sum(axis=1)
+"""Factors by which rounding of the values at the points is larger in the coefficients."""
 
 
 @kernel

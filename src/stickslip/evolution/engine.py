@@ -92,11 +92,17 @@ def echo_piece(run: Run) -> bool:
     run.load[1] += par[at.INFLOW_RATE] * run.state[at.SPEED]
     run.load[2] += par[at.INFLOW_RATE] * run.state[at.BEND]
     jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts[at.LUMPED] == 1
-    run.counts[at.LUMPED] = 1 if run.state[at.THETA_TO] - run.state[at.THETA_FROM] < par[at.SHORTEST] else 0
+    run.counts[at.LUMPED] = 1 if run.counts[at.LUMPS] == 1 and width_of(run) < par[at.SHORTEST] else 0
     if run.counts[at.LUMPED] == 1:
         lump(run)
     run.counts[at.ARRIVING] = at.ECHO if (jumps or run.counts[at.LUMPED] == 1) and par[at.REFLECTION] != 0.0 else at.NO_CAUSE
     return True
+
+
+@inlined
+def width_of(run: Run) -> float:
+    """Return the length (s) of the piece of load that has just been brought."""
+    return run.state[at.THETA_TO] - run.state[at.THETA_FROM]
 
 
 @kernel
@@ -172,6 +178,8 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     if run.counts[at.SPARSE] == 1:
         end_trip(run)
         return True
+    if run.counts[at.LUMPS] == 0 and run.counts[at.LENGTH] - run.counts[at.ROW_FROM] > run.counts[at.LUMP_ABOVE]:
+        run.counts[at.LUMPS], run.counts[at.LUMPED_SINCE] = 1, run.counts[at.ROW] + 1
     if pays(run):
         plant(run)
         return True
@@ -191,6 +199,10 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     if run.counts[at.IS_BLOCK] == 1:
         run.state[at.LOAD_NOW] = total(ahead(run.stored_load, TERMS * (run.counts[at.LENGTH] - 1)))
     run.counts[at.ROW] += 1 + leap
+    if run.counts[at.MOVED] == 1:
+        run.counts[at.CREEP_IN] -= 1
+        if run.counts[at.CREEP_IN] == 0:
+            run.counts[at.PAUSE_AT] = run.counts[at.ROW]
     run.counts[at.PREVIOUS_FROM], run.counts[at.PREVIOUS_TO] = run.counts[at.ROW_FROM], run.counts[at.LENGTH]
     run.counts[at.ROW_FROM] = run.counts[at.LENGTH]
     run.counts[at.SOURCE] = run.counts[at.MOVED] = 0
@@ -202,6 +214,22 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
 def ended(run: Run) -> int:
     """What to say at the end of the run."""
     return at.LOCKED if run.counts[at.IS_LOCKED] == 1 else at.FINISHED
+
+
+@inlined
+def is_finite(run: Run) -> bool:
+    """Return True if the contact's slip, slip rate and state are numbers."""
+    return math.isfinite(run.state[at.RATE_NOW] + run.state[at.SLIP_NOW] + run.state[at.STATE_NOW])
+
+
+@kernel
+def take_back(run: Run, length: int, xi: float) -> None:
+    """Drop the pieces that a step has added to a history of `length` pieces: they are not finite. The run ends before them."""
+    if run.counts[at.LENGTH] > length:
+        real = ahead(run.real, REAL * length)
+        run.state[at.SLIP_NOW], run.state[at.LAW_SLIP] = real[at.S_SLIP], real[at.S_LAW_SLIP]
+        run.counts[at.LENGTH] = length
+    run.state[at.XI] = xi
 
 
 @kernel
@@ -253,6 +281,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             return at.END_AHEAD
         xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
         if run.state[at.XI] < xi_to:
+            length, xi = run.counts[at.LENGTH], run.state[at.XI]
             if run.counts[at.MODE] == 0:
                 stick(run, xi_to)
             elif is_implicit(run):
@@ -262,7 +291,8 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 return at.SLIPS
             else:
                 slip(run, xi_to)
-            if not math.isfinite(run.state[at.RATE_NOW]):
+            if not is_finite(run):
+                take_back(run, length, xi)
                 return at.FAILED
         elif run.counts[at.AT_FOLD] != 0:
             leave_fold_piece(run)

@@ -95,7 +95,7 @@ def starts_at_fold(run: Run) -> bool:
     """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
     branch = run.counts[at.BRANCH]
     fold = run.rate_from[branch]
-    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or fold == 0.0 or is_knot(run, fold):
+    if run.counts[at.EDGE] == 0 or run.counts[at.AT_FOLD] != 0 or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
     return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
@@ -113,7 +113,10 @@ def load_outruns_fold(run: Run) -> bool:
 
 @inlined
 def depart_from_fold(run: Run, left: float) -> None:
-    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
+    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time.
+
+    The bit is so short that the load is a straight line in time along it, in the echo of an earlier fold too.
+    """
     width, forwards = DEPARTURE * left, run.part
     restrict(run.load, run.state[at.XI], width, forwards)
     set_aside(run, width)

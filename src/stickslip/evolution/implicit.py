@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.branch import load_ahead, onset_of_slip
-from stickslip.evolution.collocation import POINTS, STAGES, interpolate, last_terms
+from stickslip.evolution.branch import TIE, load_ahead, onset_of_slip
+from stickslip.evolution.collocation import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
-from stickslip.evolution.layout import Floats
-from stickslip.evolution.polynomial import NONE, copy, fill, scale, total
+from stickslip.evolution.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
 from stickslip.evolution.record import record
 from stickslip.evolution.stages import (
     BY_RATE,
@@ -21,8 +20,12 @@ from stickslip.evolution.stages import (
     CHANGE_BY_STATE,
     MU,
     contact_at,
+    defects,
+    larger,
     rate_at_load,
+    rounding_of_law,
     solve_stages,
+    stays_in_sight,
 )
 from stickslip.evolution.workspace import Run
 
@@ -35,8 +38,14 @@ CHECKED = 16
 LONGEST_GROWTH = 4.0
 """Growth (as an exponent) of a disturbance over a step, at most."""
 ROUNDING = 1e-15
-BACKWARDS = 1e3
-"""Error, in units of the tolerance, beyond which a step is never kept."""
+LOAD_ROUNDING = 1e-14
+"""Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+DEFECT_ROUNDING = 1e-14
+"""Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
+LAW_ROUNDING = 5.0
+"""Rounding of the law that is allowed for, in units of the largest that was seen in a few evaluations."""
+LARGEST_ROUNDING, PATIENCE = 1e3, 8
+"""Error, in units of the tolerance, beyond which a step is never kept; attempts, each shorter, whose error has not halved."""
 FORGOTTEN = 1e-18
 """Share of friction below which what is left of the state at rest is dropped."""
 
@@ -103,34 +112,117 @@ def start_of_step(run: Run) -> float:
 
 
 @kernel
-def error_of(run: Run) -> float:
-    """Error of the step's polynomials, in units of the tolerance and of what rounding of the load makes of slip rate and state."""
-    par, value = run.par, run.value
+def strength_ahead(run: Run) -> float:
+    """Put the static strength (minus the reference) over a step at rest into run.jet, from the states at its points.
+
+    Returns by how much it misses the law between the points, in units of the tolerance.
+    """
+    par = run.par
+    largest, missed = ROUNDING / par[at.TOLERANCE] * par[at.REFERENCE] + abs(run.seen[0]), 0.0
+    for i in range(POINTS):
+        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
+        run.stage_rate[i] = par[at.NORMAL] * run.value[MU]
+        largest = max(largest, abs(run.stage_rate[i]))
+    interpolate(run.stage_rate, run.jet, run.spare)
+    for i in range(STAGES):
+        contact_at(run, run.state[at.LAW_SLIP], 0.0, evaluate(run.state_jet, MIDDLE[i]))
+        missed = larger(missed, abs(par[at.NORMAL] * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+    fill(run.stage_rate, 0.0)
+    return max(missed, last_terms(run.jet)) / (par[at.TOLERANCE] * largest)
+
+
+@kernel
+def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
+    """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
+
+    The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
+    between the points, where a feature of the law may lie that none of the points sees. `lost` is what is known to be lost by
+    rounding in the law itself.
+    """
+    par, value, h = run.par, run.value, run.k[at.K_SPEED]
     fastest, farthest = par[at.RATE_FLOOR], par[at.STATE_SCALE] + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
-    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / run.k[at.K_SPEED]  # as at the last stage
+    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / h  # as at the last stage
     noise = ROUNDING * (par[at.REFERENCE] + abs(run.seen[0])) / resistance if resistance > 0.0 else 0.0
-    error = last_terms(run.jet) / (par[at.TOLERANCE] * fastest + noise)
+    state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
+    missed, missed_state = defects(run, h, force)
+    missed = max(missed - DEFECT_ROUNDING * fastest, 0.0)
+    error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise + lost)
     if run.counts[at.HAS_STATE] == 1:
-        if value[CHANGE_BY_STATE] != 0.0:
-            noise *= abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE])
-        error = max(error, last_terms(run.state_jet) / (par[at.TOLERANCE] * farthest + noise))
+        missed_state = max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
+        state_noise += lost_state
+        error = max(error, max(last_terms(run.state_jet), missed_state) / (par[at.TOLERANCE] * farthest + state_noise))
+    if run.counts[at.MODE] == 0:
+        error = max(error, strength_ahead(run))
     return error
 
 
 @inlined
-def starts_backwards(run: Run) -> bool:
-    """Whether the polynomial of a slip rate that rises from rest falls at first: it is not good enough there."""
-    return run.counts[at.MODE] != 0 and run.stage_rate[0] == 0.0 and run.stage_rate[1] > 0.0 and run.jet[1] < 0.0
+def settle_start(run: Run) -> bool:
+    """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
+
+    Leading coefficients that are negative by the rounding of the interpolation alone are set to zero: a contact with mass leaves
+    rest with a slip rate that grows as the square of time, or even later.
+    """
+    if run.counts[at.MODE] == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
+        return True
+    fastest = 0.0
+    for i in range(1, POINTS):
+        fastest = max(fastest, abs(run.stage_rate[i]))
+    for k in range(1, POINTS):
+        if run.jet[k] >= 0.0:
+            return True
+        if run.jet[k] < -ROUNDING * TO_POWERS_SUM[k] * fastest:
+            return False
+        run.jet[k] = 0.0
+    return True
 
 
 @kernel
-def collocate(run: Run, left: float) -> float:
-    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+def turn_with_load(run: Run, left: float) -> float:
+    """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
 
-    The step is repeated, shorter, until its error is below the tolerance, or no longer shrinks with it: that is rounding.
+    Friction is an odd function of the slip rate there, and zero at rest. Without mass the slip rate has the sign of the load at
+    every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
+    slip rate: near a load of zero that rate may lie far below the error of the polynomial.
     """
+    part = run.part
+    restrict(run.load, run.state[at.XI], left, part)
+    size = run.par[at.REFERENCE]
+    for k in range(at.TERMS):
+        size += abs(part[k])
+    part[0] += run.par[at.REFERENCE]
+    if abs(part[0]) <= LOAD_ROUNDING * size:
+        part[0] = 0.0
+    first, direction = first_descent(part, run.spare), 1
+    if first <= TIE:
+        for k in range(at.TERMS):
+            part[k] = -part[k]
+        part[0] = max(part[0], 0.0)
+        first, direction = first_descent(part, run.spare), -1
+    if direction > 0 and part[0] == 0.0 and math.isinf(first) and size == run.par[at.REFERENCE]:
+        return left  # no load at all
+    run.counts[at.MODE] = direction
+    return min(first, 1.0) * left if run.counts[at.HAS_INERTIA] == 0 and first > TIE else left
+
+
+@kernel
+def judged_error(run: Run, force: float, before: float) -> float:
+    """Return the error of the step's polynomials as `error_of`. Infinity stands for polynomials that are no solution at all.
+
+    An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
+    """
+    error = error_of(run, force, 0.0, 0.0)
+    if error > 1.0 and error > 0.5 * before:
+        lost, lost_state = rounding_of_law(run, run.k[at.K_SPEED])
+        error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
+    return error if settle_start(run) else math.inf
+
+
+@kernel
+def first_length(run: Run, left: float) -> float:
+    """Return the length in xi with which to try an implicit step: short enough for a disturbance that grows."""
     speed = abs(run.state[at.SPEED])
     guess = min(left, run.state[at.LAST_STEP] / speed)
     if 0.5 * left < guess < left:
@@ -138,31 +230,51 @@ def collocate(run: Run, left: float) -> float:
     load_ahead(run, guess)
     start_of_step(run)
     growth = growth_rate(run) if run.counts[at.MODE] != 0 else 0.0
-    if growth * guess * speed > LONGEST_GROWTH:
-        guess = LONGEST_GROWTH / (growth * speed)
-    before = math.inf
+    return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
+
+
+@kernel
+def collocate(run: Run, left: float) -> float:
+    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+
+    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. An error that
+    does not shrink with the step is rounding, after PATIENCE attempts in a row. The polynomials are NaN if all attempts fail.
+    """
+    speed = abs(run.state[at.SPEED])
+    if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
+        left = turn_with_load(run, left)
+    guess = longest = first_length(run, left)
+    before, in_vain = math.inf, 0
     for _ in range(ATTEMPTS):
-        load_ahead(run, guess)
-        run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
-        run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
-        force = start_of_step(run)
-        if solve_stages(run, run.k[at.K_SPEED], force):
+        force = begin_step(run, guess)
+        solved = solve_stages(run, run.k[at.K_SPEED], force)
+        used = stays_in_sight(run, run.k[at.K_SPEED]) if solved else math.inf
+        if used <= 1.0:
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
-            error = error_of(run)
-            factor = 0.9 * max(error, 1e-12) ** (-1.0 / (STAGES + 1.0))
-            if starts_backwards(run):
-                error = max(error, BACKWARDS)
-            if error <= 1.0 or (error < BACKWARDS and error > 0.5 * before):
-                run.state[at.LAST_STEP] = guess * speed * min(factor, 5.0)
+            error = judged_error(run, force, before)
+            factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
+            in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
+            if error <= 1.0 or in_vain >= PATIENCE:
+                run.state[at.LAST_STEP] = speed * (guess * min(factor, 5.0) if error <= 1.0 else longest)
                 return guess
             before = error
             guess *= max(min(factor, 0.8), 0.1)
         else:
             before = math.inf
-            guess *= 0.25
+            guess *= max(min(0.9 / used, 0.8), 0.1) if solved else 0.25
     fill(run.jet, math.nan)
+    fill(run.state_jet, math.nan)
     return guess
+
+
+@inlined
+def begin_step(run: Run, guess: float) -> float:
+    """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
+    load_ahead(run, guess)
+    run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
+    run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
+    return start_of_step(run)
 
 
 @kernel
@@ -189,20 +301,13 @@ def forgotten(run: Run) -> bool:
 
 
 @kernel
-def strength_ahead(run: Run, out: Floats) -> None:
-    """The static strength (minus the reference) over a step at rest, from the states at its points."""
-    for i in range(POINTS):
-        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
-        run.stage_rate[i] = run.par[at.NORMAL] * run.value[MU]
-    interpolate(run.stage_rate, out, run.spare)
-
-
-@kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
     width = collocate(run, xi_to - run.state[at.XI])
+    if not math.isfinite(run.jet[0]):
+        run.state[at.RATE_NOW] = math.nan
+        return
     reached = width >= xi_to - run.state[at.XI]
-    strength_ahead(run, run.jet)
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
     fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
     copy(run.local, load, at.TERMS)

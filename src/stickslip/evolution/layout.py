@@ -22,7 +22,7 @@ TERMS = ORDER + 1
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
 STATE_SCALE, RATE_FLOOR = 17, 18
-SHORTEST = 20  # pieces of load that are shorter, s, are lumped
+SHORTEST = 20  # pieces of load that are shorter, s, are lumped while LUMPS is set
 HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
 TONE, TONE_FREQUENCY, TONE_PHASE = range(21, 24)  # of a loading that varies: F has TONE sin(TONE_FREQUENCY t + TONE_PHASE)
 PARAMETERS = 24
@@ -53,7 +53,9 @@ LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip be
 PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
 VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now, and at the end of the row before
 WAITS = 44  # explicit steps of slip are left to the caller
-COUNTS = 45
+CREEP_IN = 45  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
+LUMPS, LUMP_ABOVE, LUMPED_SINCE = 46, 47, 48  # short pieces are lumped; pieces of a round trip above which they are; row since when
+COUNTS = 49
 
 NEVER = 2**62
 """No row."""

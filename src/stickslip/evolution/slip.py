@@ -47,6 +47,8 @@ from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
 """Guess at the next step's length (1), relative to the last one."""
+SHORTEST_GUESS = 1e-12
+"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 NO_EVENT, ARREST, KNOT = range(3)
 """What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 
@@ -55,7 +57,7 @@ NO_EVENT, ARREST, KNOT = range(3)
 def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
     speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
-    return min(left, LONGEST_GUESS * run.state[at.LAST_STEP] / speed) if speed > 0.0 else left
+    return min(left, max(LONGEST_GUESS * run.state[at.LAST_STEP] / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
 
 
 @inlined

@@ -9,16 +9,32 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
-from stickslip.evolution.collocation import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES
-from stickslip.evolution.compiled import ahead, call_state_value, call_value, inlined, kernel
+from stickslip.evolution.collocation import (
+    DERIVATIVE,
+    DERIVATIVE_IN_MIDDLE,
+    INTEGRAL,
+    INTEGRAL_TO_MIDDLE,
+    MIDDLE,
+    POINT,
+    POINTS,
+    STAGES,
+    VALUE_IN_MIDDLE,
+)
+from stickslip.evolution.compiled import ahead, call_guards, call_state_value, call_value, floats, inlined, kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import evaluate
 from stickslip.evolution.workspace import Run
 
 MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
 """What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
+RATE, ACCELERATION, WALKED, STATE, EVOLVED, BETWEEN = range(6)
+"""What `values_between` leaves in run.spare."""
+NUDGE = 1e-15
+"""Relative change of a number that is rounding: 4 ulp or more."""
 ITERATIONS = 40
 
 
@@ -43,6 +59,8 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
     """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
     impedance, normal = run.par[at.IMPEDANCE], run.par[at.NORMAL]
     low, high = 0.0, (load + run.par[at.REFERENCE]) / impedance
+    if high <= 0.0:
+        return 0.0
     s = guess if low < guess < high else 0.5 * high
     for _ in range(200):
         contact_at(run, run.state[at.LAW_SLIP], s, run.state[at.STATE_NOW])
@@ -162,3 +180,124 @@ def solve_stages(run: Run, h: float, force: float) -> bool:
             return False
         before = change
     return False
+
+
+@kernel
+def values_between(run: Run, i: int) -> None:
+    """Put slip rate, its change and integral, state and its change halfway between points i and i + 1 into run.spare."""
+    v, w, out = run.stage_rate, run.stage_state, run.spare
+    for k in range(BETWEEN):
+        out[k] = 0.0
+    for j in range(POINTS):
+        out[RATE] += VALUE_IN_MIDDLE[i, j] * v[j]
+        out[ACCELERATION] += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
+        out[WALKED] += INTEGRAL_TO_MIDDLE[i, j] * v[j]
+    if run.counts[at.HAS_STATE] == 1:
+        for j in range(POINTS):
+            out[STATE] += VALUE_IN_MIDDLE[i, j] * w[j]
+            out[EVOLVED] += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+
+
+@inlined
+def contact_between(run: Run, h: float, nudge: float) -> None:
+    """Evaluate the contact where `values_between` has looked; all of its arguments are larger by a relative nudge."""
+    slip = run.state[at.LAW_SLIP] + run.k[at.K_CHI] * h * run.spare[WALKED]
+    contact_at(run, slip * (1.0 + nudge), run.spare[RATE] * (1.0 + nudge), run.spare[STATE] * (1.0 + nudge))
+
+
+@inlined
+def yielding(run: Run, h: float) -> tuple[float, float]:
+    """Return the error of slip rate per load that is missing, and of the state per missing change, over a step of h seconds.
+
+    What is missing of a derivative turns its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
+    """
+    resistance = abs(run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[BY_RATE]) + STAGES * run.par[at.INERTIA] / h
+    return 1.0 / resistance if run.counts[at.MODE] != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
+
+
+@kernel
+def defects(run: Run, h: float, force: float) -> tuple[float, float]:
+    """Return by how much the polynomials through the stages miss the equations halfway between the points.
+
+    The first number is in units of slip rate, the second in units of the state.
+    """
+    par, value, middle = run.par, run.value, run.spare
+    missed, missed_state = 0.0, 0.0
+    for i in range(STAGES):
+        values_between(run, i)
+        contact_between(run, h, 0.0)
+        by_load, by_change = yielding(run, h)
+        resisted = par[at.IMPEDANCE] * middle[RATE] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * middle[WALKED]
+        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par[at.INERTIA] / h * middle[ACCELERATION]
+        missed = larger(missed, abs(missing) * by_load)
+        missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
+    return missed, missed_state if run.counts[at.HAS_STATE] == 1 else 0.0
+
+
+@inlined
+def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
+    """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
+    piece = run.counts[at.PIECE]
+    slip = run.state[at.LAW_SLIP] + walked + run.slip_shift[piece]
+    call_guards(run.guards_at[piece], constants_of(run, piece), slip, rate, state, out)
+
+
+@kernel
+def stays_in_sight(run: Run, h: float) -> float:
+    """Return the share of its room that the hardest pressed guard of the law uses up in a step of h seconds: it must not exceed 1.
+
+    A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes back where the argument
+    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts, from
+    the start over the points and the places between them: a part that is passed over makes it move there and back.
+    """
+    n, chi = run.guard_count[run.counts[at.PIECE]], run.k[at.K_CHI] * h
+    if n == 0:
+        return 0.0
+    room = np.zeros(5 * n)  # for every guard argument and pull at the last place, the same here, and the share that is used up
+    last, here, pull = 0, 2 * n, room[0:n].copy()
+    table = floats(room.ctypes.data)
+    for i in range(2 * STAGES + 1):
+        point = (i + 1) // 2
+        if i % 2 == 1:
+            values_between(run, point - 1)
+            look_at_guards(run, chi * run.spare[WALKED], run.spare[RATE], run.spare[STATE], ahead(table, here))
+        else:
+            walked = 0.0
+            for j in range(POINTS):
+                walked += INTEGRAL[point, j] * run.stage_rate[j]
+            look_at_guards(run, chi * walked, run.stage_rate[point], run.stage_state[point], ahead(table, here))
+        for j in range(n):
+            if i == 0:
+                pull[j] = room[here + 2 * j + 1]
+            else:
+                room[4 * n + j] += max(pull[j] * (room[here + 2 * j] - room[last + 2 * j]), 0.0)
+        last, here = here, last
+    largest = 0.0
+    for j in range(n):
+        largest = max(largest, room[4 * n + j])
+    return largest
+
+
+@kernel
+def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
+    """Return what rounding in the law's formulas makes of slip rate and state: by how much they answer to a nudge of rounding.
+
+    A formula may lose any number of digits, and nothing but the formula knows how many.
+    """
+    lost, lost_state = 0.0, 0.0
+    for i in range(STAGES):
+        values_between(run, i)
+        contact_between(run, h, 0.0)
+        friction, change = run.value[MU], run.value[CHANGE]
+        by_load, by_change = yielding(run, h)
+        for nudge in (-NUDGE, NUDGE):
+            contact_between(run, h, nudge)
+            lost = max(lost, abs(run.value[MU] - friction) * run.par[at.NORMAL] * by_load)
+            lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
+    return lost, lost_state
+
+
+@inlined
+def larger(x: float, y: float) -> float:
+    """Return the larger of two numbers, and infinity where the second is none."""
+    return math.inf if math.isnan(y) else max(x, y)

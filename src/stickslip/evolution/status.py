@@ -38,7 +38,8 @@ STATUSES = {
     FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
     FULL_HISTORY: Status(
         "too many pieces",
-        "the history reached its limit of pieces: shorten the duration, loosen rtol or creep_rtol, or raise max_pieces",
+        "the history reached its limit of pieces (a million takes 0.44 GB): shorten the duration, loosen rtol or creep_rtol, keep"
+        " events only (a catalogue), or raise max_pieces",
         False,
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),

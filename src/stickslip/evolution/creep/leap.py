@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
 from stickslip.evolution.creep.averaged import AveragedCreep, Strength
+from stickslip.evolution.creep.conditions import PATIENCE
 from stickslip.evolution.creep.landing import Piece, landing
 from stickslip.evolution.creep.pattern import Pattern, monotone_parts
 from stickslip.evolution.creep.plan import Plan, Planner
@@ -42,6 +43,8 @@ class CreepLeaps:
 
     problem: Problem
     tolerance: float
+    patient: bool = False
+    """Leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
     taken: list[tuple[float, ...]] = field(default_factory=list)
     """What `History.creep` holds, of each leap."""
 
@@ -52,7 +55,10 @@ class CreepLeaps:
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
 
     def begin(self, count: Integers) -> None:
-        """Have the engine pause after the first round trip."""
+        """Have the engine pause after the first round trip, or when creep has lasted."""
+        if self.patient:
+            count[at.CREEP_IN], count[at.PAUSE_FOR] = PATIENCE, 1
+            return
         count[[at.PAUSE_AT, at.PAUSE_FOR]] = 1
 
     def table(self, count: Integers) -> Floats:
