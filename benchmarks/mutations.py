@@ -55,8 +55,9 @@ REST = ("tests/long_runs", "tests/scenarios", "tests/exports", "tests/studies", 
 class Copy:
     """A copy of the tree with a compile cache of its own, in which one mutant at a time is tried."""
 
-    def __init__(self, folder: Path, cache: Path | None) -> None:
+    def __init__(self, folder: Path) -> None:
         self.root, self.cache = folder / "tree", folder / "cache"
+        shutil.rmtree(self.root, ignore_errors=True)
         self.root.mkdir(parents=True)
         for part in PARTS:
             source = TREE / part
@@ -64,8 +65,6 @@ class Copy:
                 shutil.copytree(source, self.root / part, ignore=shutil.ignore_patterns("__pycache__"))
             elif source.exists():
                 shutil.copy2(source, self.root / part)
-        if cache is not None and cache.exists():
-            shutil.copytree(cache, self.cache)
 
     def run(self, arguments: list[str], limit: float) -> subprocess.CompletedProcess[str]:
         """Run Python in the copy; TimeoutExpired after `limit` seconds."""
@@ -140,9 +139,10 @@ def campaign(options: argparse.Namespace) -> list[dict[str, Any]]:
     if options.names:
         wanted = [one for one in wanted if one.name in options.names]
     todo = [one for one in wanted if one.name not in {result["mutant"] for result in results}]
-    with tempfile.TemporaryDirectory(prefix="mutations-") as folder:
+    with tempfile.TemporaryDirectory(prefix="mutations-") as temporary:
+        folder = options.folder or temporary
         copies: SimpleQueue[Copy] = SimpleQueue()
-        made = [Copy(Path(folder) / str(n), options.cache) for n in range(options.jobs)]
+        made = [Copy(Path(folder) / str(n)) for n in range(options.jobs)]
         for copy in made:
             copy.known = tuple(f"--deselect={test}" for test in options.deselect)
             copies.put(copy)
@@ -207,7 +207,7 @@ def main() -> int:
     parser.add_argument("--only", nargs="*", choices=PACKAGES, help="packages of the random mutants")
     parser.add_argument("--results", default="mutations.jsonl")
     parser.add_argument("--deselect", nargs="*", default=[], help="tests that fail without any mutant")
-    parser.add_argument("--cache", type=Path, help="a compile cache to start from")
+    parser.add_argument("--folder", type=Path, help="where the copies lie, and what is compiled is kept for the next campaign")
     options = parser.parse_args()
     table(campaign(options))
     return 0
