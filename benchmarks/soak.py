@@ -24,7 +24,7 @@ from stickslip.friction import LAWS
 
 LIMIT = 5.0
 """Seconds that the engine may take for a problem."""
-COMPILING = 180.0
+COMPILING = 600.0
 """Seconds after which a silent worker has hung: it may compile a formula."""
 
 
