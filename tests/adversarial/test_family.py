@@ -27,7 +27,7 @@ def _agrees(template: str, seed: int) -> None:
     case = draw(template, seed)
     truth = decided_truth(case)
     if truth is None:
-        pytest.skip(f"rounding decides {case.name}")
+        pytest.skip(f"rounding decides {case.name}, or it is stiff")
     found = errors(ss.simulate(case.problem, case.duration), truth)
     assert found.largest < CLAIM, f"{case.name}: {found}"
 
@@ -47,6 +47,6 @@ def test_slip_and_end_are_those_of_scipy_for_many_laws(template: str, seed: int)
 
 @pytest.mark.parametrize("template", TEMPLATES)
 def test_most_of_the_family_is_decided_in_double_precision(template: str) -> None:
-    """At least half of the cases of each template are tests: the rest graze a feature."""
+    """At least half of the cases of each template are tests: the rest graze a feature or are stiff."""
     decided = [decided_truth(draw(template, seed)) is not None for seed in range(4)]
     assert sum(decided) >= 2

@@ -18,6 +18,13 @@ WIDTHS, SHARE = 0.5, 0.4
 """A step crosses at most so much of a width, or so much of the distance to the feature, whichever is larger."""
 
 
+MOST_STEPS = 20_000
+
+
+class TooStiffError(RuntimeError):
+    """An explicit method would need more than MOST_STEPS steps."""
+
+
 class Place(NamedTuple):
     """A coordinate that meets a feature: its value from (t, y), and where and how wide the feature is."""
 
@@ -63,12 +70,14 @@ def walk(right: Right, start: float, state: Sequence[float], end: float, places:
     tolerance = 1e-3 * RTOL * np.asarray(scale, float)
     solver = DOP853(right, t, y, end, rtol=RTOL, atol=tolerance, first_step=1e-9 * (end - start))
     factor = 1.0
-    while t < end:
+    for _ in range(MOST_STEPS):
+        if t >= end:
+            return path
         solver.max_step = factor * _longest(right, t, y, places, end - start)
         solver.h_abs = min(solver.h_abs, solver.max_step)
         solver.step()
         if solver.status == "failed":
-            raise RuntimeError(f"the truth cannot go on at {t:g} s")
+            raise TooStiffError(f"the truth cannot go on at {t:g} s")
         dense = solver.dense_output()
         if _strays(t, y, solver, dense, places):
             factor *= 0.5
@@ -84,7 +93,7 @@ def walk(right: Right, start: float, state: Sequence[float], end: float, places:
             return path
         path.ends.append(new)
         t, y = new, solver.y.copy()
-    return path
+    raise TooStiffError(f"stiff at {t:g} of {end:g} s")
 
 
 def _longest(right: Right, t: float, y: Floats, places: Sequence[Place], span: float) -> float:
