@@ -87,6 +87,7 @@ def origin(solution: Solution) -> dict[str, Any]:
         "status_message": solution.status.message,
         "status_ok": int(solution.status.ok),
         "lumping": solution.lumping_note,
+        "rounding": solution.rounding_note,
     }
 
 
@@ -274,7 +275,8 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    about = scenario.events, scenario.creep_rtol, scenario.shortest_event, str(attributes.get("lumping", ""))
+    notes = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
+    about = scenario.events, scenario.creep_rtol, scenario.shortest_event, *notes
     return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about)
 
 

@@ -38,6 +38,8 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
         screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
     if solution.horizon_note:
         screen.print(f"predictability: {solution.horizon_note}\n", soft_wrap=True)
+    if solution.rounding_note:
+        screen.print(f"rounding: {solution.rounding_note}\n", soft_wrap=True)
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
@@ -47,7 +49,7 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
     _say_how(screen, scenario, found.notes.get("creep", ""), found.notes.get("lumping", ""))
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy")):
+    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
         if name in found.notes:
             screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
     for file in found.files:

@@ -20,6 +20,7 @@ from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.phases import standing_behind
 from stickslip.evolution.setup import prepare
+from stickslip.evolution.status import rounding_note
 from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 
@@ -99,6 +100,11 @@ class RunInProgress:
     def lumping_note(self) -> str:
         """Return one line on automatic lumping; empty where it did not begin."""
         return lumping_note(self.count, self.setup.par, self.shortest_event)
+
+    @property
+    def rounding_note(self) -> str:
+        """Return one line on steps in which rounding hides the law; empty where there are none."""
+        return rounding_note(int(self.count[at.ROUGH]), float(self.state[at.ROUGHEST]))
 
     @property
     def creep(self) -> Floats:

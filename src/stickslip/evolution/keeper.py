@@ -54,7 +54,8 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
     history = History(kept, run.problem, row_time(run.problem), float(run.setup.par[at.RAMP]), reached, creep=run.creep)
     found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
-    return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event, lumping_note=run.lumping_note)
+    found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
+    return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
 
 
 @dataclass(kw_only=True)

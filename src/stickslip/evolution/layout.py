@@ -40,7 +40,8 @@ TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brough
 TARGET = 20  # xi up to which a run may slip that waits for others, to take its step side by side with them
 UNBALANCED = 21  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
 ROUNDED = 22  # rounding (m/s) that was found in that step where it seemed not to obey the law
-STATES = 23
+ROUGHEST = 23  # largest share of the slip rate that rounding in the law has taken, where that is more than the tolerance
+STATES = 24
 assert KEPT <= TERMS  # it is set aside in a row of scratch space
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
@@ -55,7 +56,8 @@ VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now
 WAITS = 44  # explicit steps of slip are left to the caller
 CREEP_IN = 45  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
 LUMPS, LUMP_ABOVE, LUMPED_SINCE = 46, 47, 48  # short pieces are lumped; pieces of a round trip above which they are; row since when
-COUNTS = 49
+ROUGH = 49  # steps with such rounding
+COUNTS = 50
 
 NEVER = 2**62
 """No row."""

@@ -42,7 +42,7 @@ from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, s
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
-from stickslip.evolution.verify import HALVINGS, begin_verification, note_rounding, obeys_contact, within_guards
+from stickslip.evolution.verify import HALVINGS, begin_verification, note_rough_step, note_rounding, obeys_contact, within_guards
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
@@ -260,6 +260,8 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         stretch(run, length, rate)
         event, turn, end = first_event(run, rate, length)
         grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
+    if run.state[at.ROUNDED] > 0.0:
+        note_rough_step(run, rate, rate_end)
     multiply(run.local, run.powers, load)
     to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
     move(run, rate, end * length, grown, rate_end, to)

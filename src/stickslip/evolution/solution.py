@@ -48,6 +48,8 @@ class Solution(Readings):
     """Events shorter than this (s) are lumped, as it was asked for: None is automatic, 0 lumps none."""
     lumping_note: str = ""
     """One line on automatic lumping; empty where it did not begin."""
+    rounding_note: str = ""
+    """One line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
@@ -158,6 +160,7 @@ class Solution(Readings):
             ("selection", self.selection_note),
             *([("creep", self.creep_note)] if self.creep_note else []),
             *([("lumping", self.lumping_note)] if self.lumping_note else []),
+            *([("rounding", self.rounding_note)] if self.rounding_note else []),
             *([("trapped", self.trapped_note)] if self.trapped_note else []),
             *([("horizon", self.horizon_note)] if self.horizon_note else []),
         ]

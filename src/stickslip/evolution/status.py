@@ -19,6 +19,16 @@ class Status:
         return f"{self.name}: {self.message}"
 
 
+def rounding_note(steps: int, share: float) -> str:
+    """Return one line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
+    if steps == 0:
+        return ""
+    return (
+        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: it loses"
+        " digits far from where slip began, and double precision does not decide more"
+    )
+
+
 FULL_HISTORY = -2
 INTERRUPTED = -3
 ENOUGH_EVENTS = -4

@@ -137,6 +137,15 @@ def note_rounding(run: Run, length: float) -> None:
     run.state[at.ROUNDED] = EXTRA * missing
 
 
+@kernel
+def note_rough_step(run: Run, rate: Floats, rate_end: float) -> None:
+    """Count the step if rounding in the law has made it miss the contact equation by more than the tolerance allows."""
+    share = run.state[at.ROUNDED] / largest_rate(rate, rate_end)
+    if share > (ALLOWED_SLOPE if run.counts[at.HAS_INERTIA] == 1 else ALLOWED) * run.par[at.TOLERANCE]:
+        run.counts[at.ROUGH] += 1
+        run.state[at.ROUGHEST] = max(run.state[at.ROUGHEST], share)
+
+
 @inlined
 def begin_verification(run: Run) -> None:
     """Nothing is known yet of the step at hand: no ignored force, no rounding."""

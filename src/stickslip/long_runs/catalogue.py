@@ -258,6 +258,7 @@ class CatalogueKeeper(Keeper):
             "trapped": trapped_note(solution),
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
+            "rounding": run.rounding_note,
         }
         return {name: note for name, note in notes.items() if note}
 
