@@ -275,9 +275,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    notes = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
-    about = scenario.events, scenario.creep_rtol, scenario.shortest_event, *notes
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about)
+    about = scenario.events, scenario.creep_rtol, scenario.shortest_event
+    lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:
