@@ -91,6 +91,26 @@ def test_a_bump_has_its_critical_normal_stress(width):
     assert margin(problem) == pytest.approx(1.0 - S / exact, rel=1e-12, abs=0)
 
 
+def test_narrow_folds_that_move_with_slip():
+    """The bump moves along the rate as the contact slips: at every slip its two folds are found."""
+    law = FromExpression(f"0.5 + {HEIGHT}*exp(-((v - 1 - 0.1*sin(u))/w)**2)", {"w": 1e-4})
+    exact = [float(one) - 1.0 for one in folds_of_bump(1e-4)]
+    for slip in (0.0, 0.7, 2.0, 5.0):
+        first, second = branches_of(resistance(slab_problem(law), slip))
+        center = 1.0 + 0.1 * math.sin(slip)
+        assert [first.rate_to - center, second.rate_from - center] == pytest.approx(exact, rel=0, abs=1e-14)
+
+
+def test_compiled_scans_are_given_the_folds_that_a_grid_misses():
+    g = resistance(bump(1e-4))
+    rising = g.slope(searching.scan_rates(g)) > 0.0
+    assert np.count_nonzero(rising[1:] != rising[:-1]) == 2
+    plain = g.slope(searching.search_grid(g)) > 0.0
+    assert plain.all()
+    seen = resistance(slab_problem(ss.friction.ExponentialStribeck(0.6, 0.4, rate=0.1, exponent=2)))
+    assert np.array_equal(searching.scan_rates(seen), searching.search_grid(seen))
+
+
 @pytest.mark.parametrize("kind", RATE_LAWS)
 def test_the_example_of_every_law_is_proven(kind):
     problem = slab_problem(example_of(kind))

@@ -77,17 +77,39 @@ def _agreed(g: Resistance, proof: Certificate, rising: bool, folds: list[float])
     """Return whether g rises from rest on, and its folds: what is proven, and what the search says where nothing is."""
     if proof.verdict == "searched":
         return rising, folds
-    left, found = list(folds), []
-    for turn in proof.turns:
-        seen = next((fold for fold in left if within(fold, turn)), None)
-        if seen is not None:
-            left.remove(seen)
-        found.append(_fold(g, *turn) if seen is None else seen)
+    seen, left = _matched(proof, folds)
+    found = [_fold(g, *turn) if fold is None else fold for turn, fold in zip(proof.turns, seen, strict=True)]
     found += [fold for fold in left if any(within(fold, one) for one in proof.undecided)]
     starts = rising if proof.rises_at_rest is None else proof.rises_at_rest
     if starts != (len(found) % 2 == 0):  # what is undecided has been searched in vain: g must rise in the end
         return rising, folds
     return starts, sorted(found)
+
+
+def _matched(proof: Certificate, folds: list[float]) -> tuple[list[float | None], list[float]]:
+    """Return for each proven turn the fold that the search has found in it, None where it has missed it, and the other folds."""
+    left = list(folds)
+    found: list[float | None] = []
+    for turn in proof.turns:
+        seen = next((fold for fold in left if within(fold, turn)), None)
+        if seen is not None:
+            left.remove(seen)
+        found.append(seen)
+    return found, left
+
+
+def scan_rates(g: Resistance) -> NDArray[np.float64]:
+    """Return slip rates (m/s) between which compiled code looks for folds: the search grid, and proven intervals that it misses.
+
+    The intervals are those at the law slip of `g`. Where a law moves a narrow feature out of them as it slips, it is missed again.
+    """
+    rates = search_grid(g)
+    if g.law.bends_one_way:
+        return rates
+    proof = certificate(g)
+    found, _ = _matched(proof, _searched(g)[1])
+    missed = [turn for turn, fold in zip(proof.turns, found, strict=True) if fold is None]
+    return np.unique(np.concatenate((rates, np.ravel(missed)))) if missed else rates
 
 
 def within(rate: float, interval: tuple[float, float]) -> bool:

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
-from stickslip.contact.branches import search_grid
+from stickslip.contact.branches import scan_rates
 from stickslip.contact.resistance import resistance
 from stickslip.contact.selection import selection_table
 from stickslip.evolution import layout as at
@@ -218,7 +218,7 @@ class RuleFollower:
     @cached_property
     def _scan(self) -> tuple[Floats, Floats]:
         """Slip rates (m/s) at which compiled code looks for branches, and room for what it finds."""
-        rates = search_grid(resistance(self.problem))
+        rates = scan_rates(resistance(self.problem))
         return rates, new_branches(rates)
 
     def _storms(self) -> bool:
