@@ -124,6 +124,15 @@ def test_slip_may_begin_at_a_fold_in_the_echo_of_another_fold() -> None:
     assert apart(ss.Problem(slab, law, pull_rate=pull, initial_load=load, selection="maximal"), 14) <= NEAR_A_JUMP
 
 
+def test_slip_leaves_a_fold_however_slowly_the_load_rises_there() -> None:
+    """In round trip 16 a slip begins 5e-20 s before the end of a piece: a ten-billionth of that changes no digit of the load."""
+    slab = ss.ElasticSlab(2762.8853959025905, 3156.3184842157657, 2310.653797874799, 51369519.71593251)
+    law = ss.friction.HyperbolicRate(0.7353774625497741, 0.39611894237993317, 0.812474254319943)
+    load, pull = 33125762.083326515, 0.8456491254756452
+    case = ss.Problem(slab, law, pull_rate=pull, initial_load=load, selection="maximal")
+    assert ss.simulate(case, 16.5 * slab.two_way_time, rtol=1e-12).status.ok
+
+
 def test_a_slip_that_time_does_not_resolve_leaves_no_nan() -> None:
     """After 1960 shocks a slip lasts 1e-17 of a round trip; the step after it once had no length."""
     slab = ss.ElasticSlab(2349.811952496922, 885.3007476053658, 34.11172680378936, 125745793.85344447)
