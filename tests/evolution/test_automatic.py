@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.batch import run_members
 from stickslip.evolution.creep.conditions import PATIENCE, creep_tolerance
+from stickslip.evolution.creep.leap import CreepLeaps
 from stickslip.evolution.lumping import AUTOMATIC_SHARE, MOST_PIECES
 from stickslip.evolution.status import STATUSES
 from tests.evolution.creep_truth import GROWN, ROUND, printed
@@ -183,3 +184,16 @@ def test_a_file_is_as_large_as_is_said(tmp_path: Path) -> None:
     run = ss.simulate(printed(1), 150 * ROUND)
     size = run.save(tmp_path / "run.nc").stat().st_size
     assert size / len(run.history) == pytest.approx(440.0, rel=0.1, abs=0.0)
+
+
+def test_a_run_that_slides_for_ever_is_hardly_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    """3000 round trips under a fast pull, without a leap: the same run, with twelve looks at most."""
+    looks, look = [], CreepLeaps.at_row_end
+    monkeypatch.setattr(CreepLeaps, "at_row_end", lambda *a: looks.append(0) or look(*a))
+    slab = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+    sliding = ss.Problem(slab, ss.friction.SinusoidalSlip(0.6, 0.001, 5.0), pull_rate=0.1, initial_excess=0.0)
+    exact, run = ss.simulate(sliding, 3000 * ROUND, creep_rtol=0.0), ss.simulate(sliding, 3000 * ROUND)
+    assert len(run.creep) == 0
+    assert 0 < len(looks) <= 12
+    assert len(run.history) == len(exact.history)
+    assert same_pieces(run, exact, len(exact.history))

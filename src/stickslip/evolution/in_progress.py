@@ -42,9 +42,9 @@ class RunInProgress:
     echoes: Echoes
     follower: RuleFollower
     leaps: CreepLeaps | None = None
-    creep_rtol: float | None = 0.0
+    creep_rtol: float | None = None
     """As it was asked for, None where it is automatic; so is shortest_event (s)."""
-    shortest_event: float | None = 0.0
+    shortest_event: float | None = None
     before_end: Checkpoint | None = None
     forgotten: int = 0
 
@@ -52,7 +52,7 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = 0.0, shortest_event: float | None = 0.0) -> Self:
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = None, shortest_event: float | None = None) -> Self:
         """Return a run at t = 0."""
         setup, state, count = prepare(problem, rtol, shortest_event)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
@@ -70,8 +70,8 @@ class RunInProgress:
         history: History,
         checkpoint: Checkpoint,
         rtol: float,
-        creep_rtol: float | None = 0.0,
-        shortest_event: float | None = 0.0,
+        creep_rtol: float | None = None,
+        shortest_event: float | None = None,
     ) -> Self:
         """Return a run where another one stood; in its history nothing is changed."""
         run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)

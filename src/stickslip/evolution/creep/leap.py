@@ -25,7 +25,12 @@ if TYPE_CHECKING:
     from stickslip.evolution.in_progress import RunInProgress
 
 SHORTEST_LEAP = 16
-LONGEST_WAIT = 16
+LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
+"""Round trips between two looks that found no leap: a look takes some milliseconds, as much as thousands of pieces.
+
+A run that leaps automatically may be one that slides for ever and never creeps: until there is a first leap, looks must not take
+most of its time. After it they are frequent again: where 128 round trips of the creep after a pulse are run, it ends in a storm.
+"""
 FAST = 1000.0
 """Slip rates beyond so many pull rates are no creep that the tolerance would let pass: not worth a closer look."""
 CHECKED = 1
@@ -91,7 +96,8 @@ class CreepLeaps:
             run.restore(before)
             plan = self._planner(run, plan.trips // 2).plan()
         count[at.PAUSE_AT] = count[at.ROW] + count[at.PAUSE_FOR]
-        count[at.PAUSE_FOR] = min(2 * count[at.PAUSE_FOR], LONGEST_WAIT)
+        unproven = self.patient and count[at.CREEP_LEAPS] == 0
+        count[at.PAUSE_FOR] = min(2 * count[at.PAUSE_FOR], LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 
