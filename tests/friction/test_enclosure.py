@@ -132,6 +132,31 @@ def test_bounds_at_single_rates_are_tight():
         assert np.all(high - low <= 1e-14)
 
 
+CELL_FUNCTIONS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    name: (getattr(iv, name), getattr(np, name)) for name in ("sin", "cos", "exp", "tanh", "arcsinh", "square")
+} | {
+    "sech_squared": (iv.sech_squared, lambda x: np.cosh(x) ** -2),
+    "arcsinh_slope": (iv.arcsinh_slope, lambda x: 1.0 / np.hypot(1.0, x)),
+    "logistic": (iv.logistic, lambda x: 1.0 / (1.0 + np.exp(x))),
+}
+
+
+@pytest.mark.parametrize("name", CELL_FUNCTIONS)
+def test_functions_of_cells_are_the_hull_of_their_values(name):
+    """Sampled at 2001 places: no value lies outside by more than 1e-14, and no bound by more than the samples may miss."""
+    function, numeric = CELL_FUNCTIONS[name]
+    rng = np.random.default_rng(11)
+    low = np.concatenate((rng.uniform(-20.0, 20.0, 300), 0.25 * np.pi * np.arange(-20, 20)))
+    high = low + rng.exponential(2.0, low.shape)
+    least, most = iv.ends(function(iv.interval(low, high)))
+    values = numeric(np.linspace(low, high, 2001))
+    steepest = np.max(np.abs(np.diff(values, axis=0)), axis=0)
+    size = 1e-14 * (1.0 + np.max(np.abs(values), axis=0))
+    for outside in (least - values.min(axis=0), values.max(axis=0) - most):
+        assert np.all(outside <= size)
+        assert np.all(outside >= -steepest - size)
+
+
 @pytest.mark.parametrize("formula", [lambda v: 1.0 / (1.0 + v), lambda v: exp(-v), OPERATIONS["tanh"], OPERATIONS["arcsinh"]])
 def test_cells_without_end(formula):
     tree = formula(RATE)

@@ -71,7 +71,7 @@ class _Signs:
     @property
     def turns(self) -> NDArray[np.bool_]:
         """Whether each cell holds exactly one root."""
-        return (self.bend != 0) & (self.at_low * self.at_high < 0)
+        return np.asarray((self.bend != 0) & (self.at_low * self.at_high < 0))
 
 
 def _certified(bounds: SlopeBounds) -> Certificate:
@@ -120,7 +120,7 @@ def _merged(intervals: list[Interval]) -> tuple[Interval, ...]:
 
 def sign_of(bounds: Floats) -> NDArray[np.int8]:
     """Return the sign that all numbers between two bounds have, 0 where they do not share one."""
-    return (bounds[0] > 0.0).astype(np.int8) - (bounds[1] < 0.0).astype(np.int8)
+    return np.asarray((bounds[0] > 0.0).astype(np.int8) - (bounds[1] < 0.0).astype(np.int8))
 
 
 def _signs(bounds: SlopeBounds, cells: Cells) -> _Signs:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.contact.certified import MOST_EVALUATIONS, Verdict
 from stickslip.contact.resistance import Resistance
@@ -19,7 +20,9 @@ from stickslip.friction.enclosure import NotEnclosedError
 _AT_A_TIME, _FEWEST_PARTS, _MOST_PARTS = 256, 2, 16
 """Cells that a round of cutting aims at, and between how many parts each of them is cut into."""
 _TOLERANCE = 1e-12
-"""Distance of the two bounds, relative to Z, at which the search ends: it needs cells of its root times the law's scale."""
+"""Distance of the two bounds, relative to Z or to g' there, at which the search ends: cells are then its root times the scale."""
+_NEAR = 1e3
+"""Rounding may keep the two bounds apart by this multiple of the tolerance, and the smallest g' still counts as proven."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +41,10 @@ class Lowest:
 
 
 def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
-    """Enclose the smallest g', to a tolerance relative to Z."""
+    """Enclose the smallest g', to a tolerance relative to Z or to itself, whichever is larger."""
     bounds = SlopeBounds(g)
     try:
-        return _lowest(bounds, tolerance * g.impedance)
+        return _lowest(bounds, tolerance)
     except NotEnclosedError:
         return Lowest("searched")
 
@@ -67,7 +70,8 @@ def _lowest(bounds: SlopeBounds, tolerance: float) -> Lowest:
         if here[i] < most:
             most, place = float(here[i]), (float(cells.low[i]), float(cells.high[i]))
         least, final = _least(seen)
-        done = (least >= most - tolerance) | final
+        slack = tolerance * max(bounds.g.impedance, abs(most))
+        done = (least >= most - slack) | final
         settled = min(settled, float(least[done].min(initial=math.inf)))
         cells = cells[~done]
         parts = _parts(len(cells))
@@ -75,14 +79,15 @@ def _lowest(bounds: SlopeBounds, tolerance: float) -> Lowest:
             return Lowest("not decided", min(settled, float(least[~done].min())), most, *place)
         cells = cells.split(parts)
     least_of_all = min(settled, most)
-    return Lowest("proven" if most - least_of_all <= 1e3 * tolerance else "not decided", least_of_all, most, *place)
+    near = most - least_of_all <= _NEAR * tolerance * max(bounds.g.impedance, abs(most))
+    return Lowest("proven" if near else "not decided", least_of_all, most, *place)
 
 
 def _parts(count: int) -> int:
     return int(np.clip(_AT_A_TIME // max(count, 1), _FEWEST_PARTS, _MOST_PARTS))
 
 
-def _least(seen: Looks) -> tuple[Floats, Floats]:
+def _least(seen: Looks) -> tuple[Floats, NDArray[np.bool_]]:
     """Return a lower bound of g' on each cell, and whether cutting the cell would not raise it."""
     monotone = (seen.second[0] > 0.0) | (seen.second[1] < 0.0)
     ends = np.minimum(seen.at_low[0], seen.at_high[0])

@@ -19,6 +19,8 @@ FASTEST = 1e100
 """Slip rate (m/s) up to which g' is bounded: beyond it squares overflow, and nothing moves."""
 _BELOW, _ABOVE = 1e-4, 1e4
 """Between these multiples of the slowest and the fastest scale of a contact the first cells are one for each factor of 2."""
+_SLOWEST = 1e-100
+"""Slip rate (m/s) below which one cell is enough, and products of rates underflow."""
 _FAR = 1e12
 """Ratio of the ends of the first cells beyond the fastest scale."""
 _JUST_ABOVE_ONE = 1.0 + 8.0 * float(np.finfo(float).eps)
@@ -139,7 +141,7 @@ class SlopeBounds:
 
     def first_cells(self) -> Cells:
         """Return cells that cover all slip rates from 0 to `FASTEST`: geometric over the scales of the contact, cut at knots."""
-        low, high = min(self.g.scales) * _BELOW, max(self.g.scales) * _ABOVE
+        low, high = max(min(self.g.scales) * _BELOW, _SLOWEST), min(max(self.g.scales) * _ABOVE, FASTEST)
         count = math.ceil(math.log2(high / low))
         inner = low * np.exp2(np.arange(count + 1))
         far = inner[-1] * _FAR ** np.arange(1, 20)

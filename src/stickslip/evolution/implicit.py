@@ -42,6 +42,10 @@ LOAD_ROUNDING = 1e-14
 """Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
 DEFECT_ROUNDING = 1e-14
 """Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
+ALLOWED = 0.1
+"""Share of the defect (1) that counts: it turns its sign at every point, and leaves hardly anything in slip and state."""
+LEAST_TREND = 0.7
+"""Change of the length (1) that a step expects at least of the next one, when it had to become shorter itself."""
 LAW_ROUNDING = 5.0
 """Rounding of the law that is allowed for, in units of the largest that was seen in a few evaluations."""
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
@@ -147,10 +151,10 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     noise = ROUNDING * (par[at.REFERENCE] + abs(run.seen[0])) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
     missed, missed_state = defects(run, h, force)
-    missed = max(missed - DEFECT_ROUNDING * fastest, 0.0)
+    missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
     error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise + lost)
     if run.counts[at.HAS_STATE] == 1:
-        missed_state = max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
+        missed_state = ALLOWED * max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
         state_noise += lost_state
         error = max(error, max(last_terms(run.state_jet), missed_state) / (par[at.TOLERANCE] * farthest + state_noise))
     if run.counts[at.MODE] == 0:
@@ -244,19 +248,21 @@ def collocate(run: Run, left: float) -> float:
     if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
         left = turn_with_load(run, left)
     guess = longest = first_length(run, left)
-    before, in_vain = math.inf, 0
+    before, in_vain, solution_over = math.inf, 0, 0.0
     for _ in range(ATTEMPTS):
         force = begin_step(run, guess)
-        solved = solve_stages(run, run.k[at.K_SPEED], force)
-        used = stays_in_sight(run, run.k[at.K_SPEED]) if solved else math.inf
-        if used <= 1.0:
+        solved = solve_stages(run, run.k[at.K_SPEED], force, guess / solution_over if solution_over > 0.0 else 0.0)
+        used, solution_over = stays_in_sight(run, run.k[at.K_SPEED]) if solved else math.inf, guess if solved else 0.0
+        if solved:
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
+        if used <= 1.0:
             error = judged_error(run, force, before)
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
             if error <= 1.0 or in_vain >= PATIENCE:
-                run.state[at.LAST_STEP] = speed * (guess * min(factor, 5.0) if error <= 1.0 else longest)
+                change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0  # steps that had to shrink go on to
+                run.state[at.LAST_STEP] = speed * (guess * min(factor, change) if error <= 1.0 else longest)
                 return guess
             before = error
             guess *= max(min(factor, 0.8), 0.1)

@@ -120,6 +120,7 @@ class RunInProgress:
             return code
         self.setup = renewed(self.problem, self.setup, self.state, self.count)
         self._lend()
+        self.follower.set_levels(self._table)
         return OUT_OF_BUDGET
 
     def grow(self, max_pieces: int) -> bool:

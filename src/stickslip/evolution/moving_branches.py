@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,7 @@ from stickslip.contact.branches import search_grid
 from stickslip.contact.resistance import resistance
 from stickslip.contact.selection import selection_table
 from stickslip.evolution import layout as at
+from stickslip.evolution.branch_scan import new_branches
 from stickslip.evolution.engine import advance
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_levels import (
@@ -27,11 +28,12 @@ from stickslip.evolution.moving_levels import (
     EXACT,
     FIRST_PLACE,
     LAST_PLACE,
+    MAXWELL,
     NEXT,
     ROUNDING,
     SHORTEST,
     crossing_in,
-    new_branches,
+    set_maxwell_levels,
 )
 from stickslip.evolution.polynomial import RECIPROCAL
 from stickslip.evolution.workspace import EXIT
@@ -92,9 +94,18 @@ def branch_of(rows: Floats, rate: float) -> int:
     return int(np.argmin(np.maximum(np.maximum(rows[at.RATE_FROM] - rate, rate - rows[at.RATE_TO]), 0.0)))
 
 
+def has_levels_to_set(problem: Problem) -> bool:
+    """Whether compiled code sets the levels of the rule: those of Maxwell's take Python tenths of a second."""
+    return COMPILED_RULES.get(problem.rule) == MAXWELL
+
+
 def renewed(problem: Problem, setup: Setup, state: Floats, count: Integers) -> Setup:
-    """The setup with the branches at the present law slip; state and count take note of it."""
-    rows, setup.par[at.STICK_TO] = branch_rows(problem, float(state[at.LAW_SLIP]))
+    """The setup with the branches at the present law slip; state and count take note of it.
+
+    Under Maxwell's rule its levels are still to be set (`RuleFollower.set_levels`).
+    """
+    case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
+    rows, setup.par[at.STICK_TO] = branch_rows(case, float(state[at.LAW_SLIP]))
     count[at.BRANCH] = branch_of(rows, abs(float(state[at.RATE_NOW])))
     state[at.TABLE_SLIP] = state[at.LAW_SLIP]
     return setup._replace(branch=rows)
@@ -188,6 +199,11 @@ class RuleFollower:
             elif code != OUT_OF_BUDGET:
                 return code
         return OUT_OF_BUDGET
+
+    def set_levels(self, table: Integers) -> None:
+        """Put what `renewed` has left out into the setup that is lent."""
+        if has_levels_to_set(self.problem):
+            set_maxwell_levels(table, *self._scan)
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Where a step in slip that has just been made crosses a level of the rule."""

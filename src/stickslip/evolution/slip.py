@@ -276,7 +276,7 @@ def is_straight(run: Run) -> bool:
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
     limit = (target - run.state[at.XI]) / guess
-    if run.guard_count[run.counts[at.PIECE]] > 0:
+    if run.guard_count[run.counts[at.PIECE]] > 0 and not is_straight(run):
         seen = within_guards(run, min(length, limit))
         length = seen if seen < min(length, limit) else length
     # Store the error-controlled length: truncation at an event must not shrink the next guess.

@@ -31,8 +31,8 @@ from stickslip.evolution.workspace import Run
 
 MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
 """What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
-RATE, ACCELERATION, WALKED, STATE, EVOLVED, BETWEEN = range(6)
-"""What `values_between` leaves in run.spare."""
+RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
+"""What `look_between` leaves in a row of run.matrix."""
 NUDGE = 1e-15
 """Relative change of a number that is rounding: 4 ulp or more."""
 ITERATIONS = 40
@@ -162,10 +162,16 @@ def correct(run: Run, size: int) -> float:
 
 
 @kernel
-def solve_stages(run: Run, h: float, force: float) -> bool:
-    """Slip rates and states at the points of a step of h seconds, from the values at its start. False if they are not found."""
+def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
+    """Find slip rates and states at the points of a step of h seconds, from the values at its start. False if that fails.
+
+    Newton's method begins with the values at the start; or, where share > 0, with the polynomials of a longer step of which
+    this one is such a share. After it, `look_between` has looked between the points.
+    """
     for i in range(1, POINTS):
         run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
+        if share > 0.0:
+            run.stage_rate[i], run.stage_state[i] = evaluate(run.jet, share * POINT[i]), evaluate(run.state_jet, share * POINT[i])
     size = 2 * STAGES if run.counts[at.HAS_STATE] == 1 else STAGES
     before = math.inf
     for _ in range(ITERATIONS):
@@ -175,6 +181,7 @@ def solve_stages(run: Run, h: float, force: float) -> bool:
         change = correct(run, size)
         # Newton squares its error: the next change would be lost in the tolerance; or the last digits go round in circles
         if change <= 1e-2 * math.sqrt(run.par[at.TOLERANCE]) or 0.1 * before < change < 1e-9:
+            look_between(run)
             return True
         if math.isinf(change):
             return False
@@ -183,26 +190,29 @@ def solve_stages(run: Run, h: float, force: float) -> bool:
 
 
 @kernel
-def values_between(run: Run, i: int) -> None:
-    """Put slip rate, its change and integral, state and its change halfway between points i and i + 1 into run.spare."""
-    v, w, out = run.stage_rate, run.stage_state, run.spare
-    for k in range(BETWEEN):
-        out[k] = 0.0
-    for j in range(POINTS):
-        out[RATE] += VALUE_IN_MIDDLE[i, j] * v[j]
-        out[ACCELERATION] += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
-        out[WALKED] += INTEGRAL_TO_MIDDLE[i, j] * v[j]
-    if run.counts[at.HAS_STATE] == 1:
+def look_between(run: Run) -> None:
+    """Put slip rate, its change and integral, state and its change halfway between the points into rows of run.matrix."""
+    v, w, remembers = run.stage_rate, run.stage_state, run.counts[at.HAS_STATE] == 1
+    for i in range(STAGES):
+        rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(POINTS):
-            out[STATE] += VALUE_IN_MIDDLE[i, j] * w[j]
-            out[EVOLVED] += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+            rate += VALUE_IN_MIDDLE[i, j] * v[j]
+            acceleration += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
+            walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
+        if remembers:
+            for j in range(POINTS):
+                state += VALUE_IN_MIDDLE[i, j] * w[j]
+                evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+        row = ahead(run.matrix, TERMS * i)
+        row[RATE], row[ACCELERATION], row[WALKED], row[STATE], row[EVOLVED] = rate, acceleration, walked, state, evolved
 
 
 @inlined
-def contact_between(run: Run, h: float, nudge: float) -> None:
-    """Evaluate the contact where `values_between` has looked; all of its arguments are larger by a relative nudge."""
-    slip = run.state[at.LAW_SLIP] + run.k[at.K_CHI] * h * run.spare[WALKED]
-    contact_at(run, slip * (1.0 + nudge), run.spare[RATE] * (1.0 + nudge), run.spare[STATE] * (1.0 + nudge))
+def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
+    """Evaluate the contact at a place where `look_between` has looked; all of its arguments are larger by a relative nudge."""
+    row = ahead(run.matrix, TERMS * i)
+    slip = run.state[at.LAW_SLIP] + run.k[at.K_CHI] * h * row[WALKED]
+    contact_at(run, slip * (1.0 + nudge), row[RATE] * (1.0 + nudge), row[STATE] * (1.0 + nudge))
 
 
 @inlined
@@ -221,11 +231,11 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
 
     The first number is in units of slip rate, the second in units of the state.
     """
-    par, value, middle = run.par, run.value, run.spare
+    par, value = run.par, run.value
     missed, missed_state = 0.0, 0.0
     for i in range(STAGES):
-        values_between(run, i)
-        contact_between(run, h, 0.0)
+        middle = ahead(run.matrix, TERMS * i)
+        contact_between(run, i, h, 0.0)
         by_load, by_change = yielding(run, h)
         resisted = par[at.IMPEDANCE] * middle[RATE] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * middle[WALKED]
         missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par[at.INERTIA] / h * middle[ACCELERATION]
@@ -259,8 +269,8 @@ def stays_in_sight(run: Run, h: float) -> float:
     for i in range(2 * STAGES + 1):
         point = (i + 1) // 2
         if i % 2 == 1:
-            values_between(run, point - 1)
-            look_at_guards(run, chi * run.spare[WALKED], run.spare[RATE], run.spare[STATE], ahead(table, here))
+            row = ahead(run.matrix, TERMS * (point - 1))
+            look_at_guards(run, chi * row[WALKED], row[RATE], row[STATE], ahead(table, here))
         else:
             walked = 0.0
             for j in range(POINTS):
@@ -286,12 +296,11 @@ def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
     """
     lost, lost_state = 0.0, 0.0
     for i in range(STAGES):
-        values_between(run, i)
-        contact_between(run, h, 0.0)
+        contact_between(run, i, h, 0.0)
         friction, change = run.value[MU], run.value[CHANGE]
         by_load, by_change = yielding(run, h)
         for nudge in (-NUDGE, NUDGE):
-            contact_between(run, h, nudge)
+            contact_between(run, i, h, nudge)
             lost = max(lost, abs(run.value[MU] - friction) * run.par[at.NORMAL] * by_load)
             lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
     return lost, lost_state

@@ -51,7 +51,8 @@ class LaggedFriction(FrictionLaw):
 
     @property
     def pieces(self) -> tuple[Formula, ...]:
-        return (_with_lag(self.rate.pieces[0]),)
+        lagged = _with_lag(self.rate.pieces[0])
+        return (_with_direct_effect(lagged) if self.direct > 0.0 else lagged,)
 
     @property
     def state_rate(self) -> Formula:
@@ -81,10 +82,17 @@ class LaggedFriction(FrictionLaw):
 
 def _with_lag(formula: Formula) -> Formula:
     def lagged(law: Any, u: Any, v: Any, w: Any) -> Any:
-        direct = arcsinh(v / (2.0 * law.direct_rate)) - arcsinh(w / (2.0 * law.direct_rate))
-        return formula(Prefixed(law, _PREFIX), u, w) + law.direct * direct
+        return formula(Prefixed(law, _PREFIX), u, w)
 
     return lagged
+
+
+def _with_direct_effect(formula: Formula) -> Formula:
+    def direct(law: Any, u: Any, v: Any, w: Any) -> Any:
+        gained = arcsinh(v / (2.0 * law.direct_rate)) - arcsinh(w / (2.0 * law.direct_rate))
+        return formula(law, u, v, w) + law.direct * gained
+
+    return direct
 
 
 def _catch_up(law: Any, u: Any, v: Any, w: Any) -> Any:

@@ -231,7 +231,7 @@ class CatalogueKeeper(Keeper):
             self.stream.forget(dropped)
             self._remember(run)
             self.looked = self.stands(run)
-        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.max_pieces)
+        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
 
     def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint, whose rows are on the disk before."""

@@ -202,8 +202,7 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     places = [f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}" for one, value in found]
     proofs = [_proof(contact) if one.name == "body.normal_stress" else "" for one, _ in found]
     return [
-        Fact(one.name, value, one.unit, place + proof)
-        for (one, value), place, proof in zip(found, places, proofs, strict=True)
+        Fact(one.name, value, one.unit, place + proof) for (one, value), place, proof in zip(found, places, proofs, strict=True)
     ]
 
 
