@@ -119,7 +119,7 @@ class Tally:
 
 def _short(wrong: str) -> str:
     """What was wrong without its number."""
-    return wrong.rsplit(" by ", 1)[0]
+    return wrong.rsplit(" by ", 1)[0].split(" at piece ")[0]
 
 
 def say(text: str) -> None:
