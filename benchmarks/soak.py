@@ -35,6 +35,8 @@ def outcome_of(seed: int, index: int, only: str | None, limit: float) -> tuple[s
     except InputError as error:
         return only or "-", Outcome("not drawn: " + str(error)[:50]), ""
     outcome = run(drawn, limit)
+    if outcome.status == "too slow":
+        outcome = run(drawn, limit)  # what was compiled the first time is there now
     return drawn.kind, outcome, repr(drawn) if outcome.wrong else ""
 
 
@@ -117,7 +119,7 @@ class Tally:
 
 def _short(wrong: str) -> str:
     """What was wrong without its number."""
-    return wrong.rsplit(" by ", 1)[0]
+    return wrong.rsplit(" by ", 1)[0].split(" at piece ")[0]
 
 
 def say(text: str) -> None:
