@@ -75,8 +75,8 @@ def log_difference(reference, now, step):
 
 @njit(error_model="numpy")
 def tanh_difference(value, now, step):
-    if abs(step) < 1.0:
-        return sinh(step) / cosh(now - step) / cosh(now)  # 1 - value**2 would have no digits left where value is nearly 1
+    if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
+        return sinh(step) / cosh(now - step) / cosh(now)
     return tanh(now) - value
 
 

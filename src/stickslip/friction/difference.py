@@ -126,7 +126,8 @@ def _sqrt(a: _Node) -> _Node:
 def _tanh(a: _Node) -> _Node:
     """tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference; farther off nothing is lost by subtracting."""
     start, end = np.tanh(a.reference), np.tanh(a.value)
-    near = np.abs(a.step) < 1.0
+    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)  # both may be 1 but for their last digits
+    near = (np.abs(a.step) < 1.0) | one_side
     with np.errstate(over="ignore"):  # 1 / cosh is 0 there, and so is the slope
         across = np.cosh(a.value)
         step = np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
