@@ -45,7 +45,7 @@ from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
-SHORTEST_GUESS = 1e-12
+SHORTEST_GUESS = 1e-16
 """Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 
 
