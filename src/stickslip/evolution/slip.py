@@ -47,7 +47,10 @@ from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
 """Guess at the next step's length (1), relative to the last one."""
-SHORTEST_GUESS = 1e-12
+SHORTEST_GUESS = 1e-16
+"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
+NO_EVENT, ARREST, KNOT = range(3)
+"""What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 """Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 NO_EVENT, ARREST, KNOT = range(3)
 """What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
