@@ -102,6 +102,8 @@ class Copy:
                 done = self.run(["-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-n", "0", *present, *self.known], left)
             except subprocess.TimeoutExpired:
                 return "survived", f"so far: the time was up in {group[0]}"
+            if done.returncode < 0:
+                raise KeyboardInterrupt  # somebody has ended the tests: that is no verdict
             if done.returncode == 1:
                 return "caught", next((line for line in done.stdout.splitlines() if line.startswith("FAILED")), "?")[7:160]
             if done.returncode not in (0, 5):
