@@ -274,7 +274,7 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
 @inlined
 def is_straight(run: Run) -> bool:
     """Return True on the bits next to a fold that are straight lines in the root of time: what these miss is known."""
-    return run.k[at.K_BEND] != 0.0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
+    return run.counts[at.AT_FOLD] != 0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
 
 
 @inlined
