@@ -192,3 +192,29 @@ def test_rate_and_state_slides_through_a_load_of_zero() -> None:
     assert run.state(times) == pytest.approx(law.outer_state(done.y[1]), rel=1e-9, abs=0.0)
     assert (run.slip_rate(np.array([0.5, 1.0])) < 0.0).all()
     assert (run.slip_rate(np.array([5.0, 5.6])) > 0.0).all()
+
+
+@pytest.mark.parametrize(("thickness", "normal"), [(1e4, 1e8), (3e3, 1e8), (1e4, 3e7), (5e4, 2e8)])
+def test_a_load_that_passes_through_zero_turns_the_slip(thickness: float, normal: float) -> None:
+    """The slip rate has the sign of the load at all times: what rounding makes of a rate near zero turns nothing."""
+    slab = ss.ElasticSlab(2800, 3500, thickness, normal)
+    problem = ss.Problem(
+        slab, ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-2), pull_rate=0.5, initial_load=-2e7, initial_state=1e6
+    )
+    run = ss.simulate(problem, 12.0, rtol=1e-8)
+    assert run.status.ok
+    times = np.linspace(0.01, 12.0, 500)
+    load = run.load(times)
+    mode = run.history.mode(run.history.find(times, "right"))
+    clear = np.abs(load) > 1.0
+    assert (mode[clear] == np.sign(load[clear])).all()
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize(("mass", "lag"), [(3e3, 0.0), (0.0, 0.05), (1e5, 0.05)])
+def test_the_tolerance_rules_the_error(mass: float, lag: float, rtol: float) -> None:
+    """Slip after 1.2 s, relative to scipy's: below rtol."""
+    slide = Slide("0.5 + 0.1/(1 + 2*v)" + ("" if lag > 0.0 else " + 0.02*sin(3*u)"), "v", 1.0, mass, lag)
+    unknowns, derivative, _ = slide.equations()
+    done = solve_ivp(derivative, (0.0, 1.2), np.zeros(unknowns), method="DOP853", rtol=1e-13, atol=1e-16)
+    assert float(ss.simulate(slide.problem, 1.2, rtol=rtol).slip(1.2)) == pytest.approx(float(done.y[0, -1]), rel=rtol, abs=0.0)
