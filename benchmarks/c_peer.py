@@ -25,6 +25,9 @@ FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenm
 SINES = ("#define sine(e) (2.0 * sin(0.5 * (e)) * cos(0.5 * (e)))", "#define versine(e) (2.0 * sin(0.5 * (e)) * sin(0.5 * (e)))")
 """What `evolution.sines` does, by the C library: the compiler makes one call of all."""
 
+NAMES = ("#define abs(x) fabs(x)", "#define max(x, y) fmax(x, y)")
+"""What the statements call otherwise than C."""
+
 
 def c_function(writer: FormulaWriter, part: str) -> str:
     """The straight-line statements of a formula's function as C: what is missing is declarations and semicolons."""
@@ -43,8 +46,11 @@ def header(writer: FormulaWriter) -> str:
     """law.h: the layout's names as numbers, and the law."""
     names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
+    defines.append(f"#define GUARDS {len(writer.guards)}")
     return (
-        "\n".join([*defines, *SINES]) + "\n\n" + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+        "\n".join([*defines, *SINES, *NAMES])
+        + "\n\n"
+        + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
     )
 
 

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+import stickslip as ss
 from stickslip import InputError
 from stickslip.units import COMMON_UNITS, si_factor, split_quantity, to_si
 
@@ -87,3 +88,9 @@ def test_pint_is_not_imported_before_a_unit_is_met() -> None:
 
     code = "import sys, stickslip.scenarios.scenario as s, stickslip.scenarios.templates; sys.exit('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_year_is_julian_everywhere() -> None:
+    """365.25 days: in `ss.YEAR` and in texts with units."""
+    assert ss.YEAR == 365.25 * 86_400.0
+    assert to_si(1.0, "year", "s") == ss.YEAR

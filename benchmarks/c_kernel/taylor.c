@@ -2,7 +2,8 @@
 
    It reads the same table of addresses as the engine (`stickslip.evolution.workspace.lend`) and writes the same history. `law.h`
    (names of the layout, and the law's `value` and `jet` from the same recurrences) is written by `benchmarks.c_peer`.
-   Left out, since the benchmark's problems do not meet them: folds reached from a slipping branch, knots of a law, leaps. */
+   Left out, since the benchmark's problems do not meet them: folds reached from a slipping branch, knots of a law, leaps, and what
+   is done where a step turns out to be wrong: that it is not is verified at the end of every step, as in the engine. */
 
 #include <math.h>
 #include <stdint.h>
@@ -19,7 +20,7 @@ typedef struct {
     const double *first_theta, *first_load, *first_slope, *first_jump;
     double *state, *real, *all_load, *all_rate;
     int64_t *count, *whole, branches, loads, capacity;
-    double load[TERMS], local[TERMS], seen[TERMS], jet[TERMS], powers[TERMS], k[12], value[4];
+    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS], k[12], value[4];
 } Run;
 
 static double reciprocal[2 * TERMS], bernstein[TERMS][TERMS], low_bernstein[LOW][LOW];
@@ -365,10 +366,42 @@ static void stretch(Run *r, double length, double *restrict rate) {
     for (int k = 0; k < TERMS; k++) rate[k] = r->jet[k] * r->powers[k];
 }
 
+/* Whether no guard of the formula ends the step: a bound on how much of its room the hardest pressed one uses up. */
+static int within_guards(const Run *r, double length) {
+    double used = 0.0;
+    if (!GUARDS) return 1;
+    for (int k = TERMS - 1; k > 0; k--) used = (used + r->jet[TERMS + k]) * length;
+    return !(used > 1.0);
+}
+
+/* Whether the contact equation holds at the end of a step, to the tolerance or to rounding. */
+static int obeys_contact(Run *r, const double *rate, double length, double grown, double rate_end) {
+    double dx = r->k[K_SLIP] + r->k[K_CHI] * grown, load = r->seen[0], now[4], unbalanced = 0.0, slope = 0.0;
+    for (int k = 1; k <= r->count[DEGREE]; k++) load += r->powers[k] * r->seen[k];
+    if (r->k[K_FREE] == 0.0) {
+        value(r->c, r->k[K_SLIP], 0.0, now);
+        unbalanced = r->seen[0] - r->par[NORMAL] * (now[0] + r->offset[0]) - r->k[K_FORCE];
+    }
+    value(r->c, dx, rate_end, now);
+    double friction = now[0] + r->offset[0], normal = r->par[NORMAL], impedance = r->par[IMPEDANCE];
+    double missing = load - impedance * rate_end - normal * friction - unbalanced;
+    double terms = r->par[REFERENCE] + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
+    double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
+    double size = (r->count[HAS_INERTIA] ? 300.0 : 10.0) * r->par[TOLERANCE] * largest;
+    if (!r->count[HAS_INERTIA]) {
+        double resistance = impedance + normal * fmax(now[1], 0.0);
+        return fabs(missing) / resistance <= size + 1e-14 * terms / resistance;
+    }
+    for (int k = 1; k < TERMS; k++) slope += k * rate[k];
+    double pace = (r->k[K_SPEED] + r->k[K_BEND] * length) * length / r->par[INERTIA];
+    return fabs((missing - r->par[STIFFNESS] * grown) * pace - slope) <= size + 1e-14 * terms * pace;
+}
+
 static void keep_step(Run *r, double *restrict rate, double length, double to) {
     double direction = r->count[MODE], speed = r->k[K_SPEED] * length, bend = r->k[K_BEND] * length * length;
     double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->all_load + TERMS * r->count[LENGTH];
     if (bend != 0.0) grown += bend * integral(rate, 2);
+    if (!within_guards(r, length) || !obeys_contact(r, rate, length, grown, rate_end)) abort();
     for (int k = 0; k < TERMS; k++) load[k] = r->local[k] * r->powers[k];
     if (r->count[IS_BLOCK]) {
         double straight = direction * r->par[STIFFNESS] * speed;

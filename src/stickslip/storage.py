@@ -86,6 +86,8 @@ def origin(solution: Solution) -> dict[str, Any]:
         "status": solution.status.name,
         "status_message": solution.status.message,
         "status_ok": int(solution.status.ok),
+        "lumping": solution.lumping_note,
+        "rounding": solution.rounding_note,
     }
 
 
@@ -273,9 +275,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    return Solution(
-        scenario.problem, duration, rtol, status, history, checkpoint, scenario.events, scenario.creep_rtol, scenario.shortest_event
-    )
+    about = scenario.events, scenario.creep_rtol, scenario.shortest_event
+    lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -13,6 +13,7 @@ from stickslip.batch.kernels.turns import RULES
 from stickslip.batch.many import groups
 from stickslip.batch.setups import Setups, set_up
 from stickslip.evolution import layout as at
+from stickslip.evolution.automatic import wait_for_creep
 from stickslip.evolution.drive import split_time
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.tables import default_event_rate
@@ -46,6 +47,7 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
             alone = one(case, drawn, place)
             problem = alone.problem
             setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
+            wait_for_creep(count, problem, alone.creep_rtol)
             assert row_of(setups.par, n)[at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
             others = np.arange(at.PARAMETERS) != at.STICK_TO
             assert np.array_equal(row_of(setups.par, n)[others], setup.par[others])

@@ -6,6 +6,7 @@ import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -152,3 +153,32 @@ def test_progress_is_told_in_sensible_units():
     assert so_far(report) == "150 of 10000 years, 31 slip events, stuck, 120 years a second, 1.4 min left"
     start = Report(0.0, 12.0, 1, 4, 0, "slipping", float("nan"), float("nan"))
     assert so_far(start) == "0 of 12 s, 1 of 4 slip events, slipping"
+
+
+def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
+    """The summary says so, and check beforehand; 0 is another scenario, and stays one when it is written."""
+    shown = command("run", "fig5-slab-printed", "--until", "2 hours", "--out", "run.nc")
+    assert shown.code == 0
+    assert re.search(r"creep_rtol 1e-06 \(automatic; 0 runs every round trip\): 1 leap over 1\d\d\d round trips", shown.out)
+    assert "automatic: leaps over creep after 200" in re.sub(r"\s+", " ", command("check", "fig5-slab-printed").out)
+    assert "automatic: events shorter than this are lumped" in re.sub(r"\s+", " ", command("check", "fig6-slab").out)
+    for option, expected in (({}, None), ({"creep_rtol": 0.0, "shortest_event": 0.0}, 0.0)):
+        scenario = replace(ss.load_scenario("fig5-slab-printed"), **option)
+        (tmp_path / "mine.toml").write_text(scenario.to_toml())
+        again = ss.load_scenario(tmp_path / "mine.toml")
+        assert again == scenario
+        assert (again.creep_rtol, again.shortest_event) == (expected, expected)
+    assert ss.load(tmp_path / "run.nc").creep_rtol is None
+
+
+def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("stickslip.evolution.keeper.MAX_PIECES", 500)
+    arguments = "run", "fig5-slab-printed", "--until", "10 minutes", "--out", "run.nc"
+    shown = command(*arguments)
+    assert shown.code == 1
+    assert "too many pieces" in shown.out
+    assert "not written: run.nc" in shown.out
+    assert not (tmp_path / "run.nc").exists()
+    assert "\nwritten: run.nc" in command(*arguments, "--max-pieces", "600").out
+    assert command("run", "--resume", "run.nc", "--max-pieces", "20000").code == 0
+    assert ss.load(tmp_path / "run.nc").status.name == "finished"

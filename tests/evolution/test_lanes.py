@@ -95,7 +95,7 @@ def test_series_side_by_side_are_those_of_each_run(name: str) -> None:
     part = "motion_jet" if name in WITH_MASS else "rate_jet"
     functions, constants = compiled(FORMULAS[name], 0.21)
     random = np.random.default_rng(8)
-    c, k, load, side_by_side = aligned(len(constants)), aligned(12), series(5), aligned(TERMS)
+    c, k, load, side_by_side = aligned(len(constants)), aligned(12), series(5), aligned(2 * TERMS)
     c[:] = constants[:, None]
     k[:] = np.array([9.8, 100.0, 1.0, 0.05, 0.01, 0.0, 0.0, 3.0, 0.5, 0.1, 1.0, 0.0])[:, None]
     k[5], k[3] = random.uniform(0.0, 0.3, WIDTH), random.uniform(0.02, 0.1, WIDTH)

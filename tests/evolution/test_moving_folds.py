@@ -11,6 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
+from stickslip.contact.branches import search_grid
+from stickslip.contact.resistance import resistance as contact_resistance
+from stickslip.evolution import moving_branches
+from stickslip.evolution.branch_scan import branches_at, new_branches
+from stickslip.evolution.in_progress import RunInProgress
 
 F = ss.friction
 Z, S = 9.8e6, 1e8
@@ -219,3 +224,39 @@ def test_a_step_at_rest_added_to_a_slip_law_changes_where_slip_begins_and_nothin
     assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=0.0, abs=1e-11)
     assert ours.catalogue(0.0).end.iloc[0] == pytest.approx(theirs.catalogue(0.0).end.iloc[0], rel=1e-11, abs=0.0)
     assert float(theirs.slip(5.0)) > 1.0
+
+
+LOSSY = replace(SLAB, driver_impedance=5 * Z)
+"""Echoes come back with a third less: loads that rise and fall, and jumps both ways."""
+
+
+@pytest.mark.parametrize("selection", ["minimal", "maximal", "maxwell"])
+@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+def test_compiled_levels_are_those_of_the_table(
+    law: ss.friction.FrictionLaw, selection: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same run with the levels of `contact.selection`, worked out in Python in every step: shocks and slip to 1e-12."""
+    case = ss.Problem(LOSSY, law, pull_rate=0.3, far_stress_rate=3e6, initial_excess=1e6, selection=selection)
+    ours = ss.simulate(case, 1.5 * ROUND)
+    monkeypatch.setattr(moving_branches, "COMPILED_RULES", {})
+    theirs = ss.simulate(case, 1.5 * ROUND)
+    assert ours.status.name == theirs.status.name
+    assert list(ours.shocks.cause) == list(theirs.shocks.cause)
+    assert ours.shocks.time.to_numpy() == pytest.approx(theirs.shocks.time.to_numpy(), rel=1e-12, abs=1e-15)
+    times = np.linspace(0.0, min(run.history.end[-1] for run in (ours, theirs)), 101)[:-1]
+    assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize("law_slip", [0.0, 0.21, 0.9])
+@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.FrictionLaw, law_slip: float) -> None:
+    """Ends and levels of the branches at a law slip, in compiled code and by `contact.branches`, to rounding of g."""
+    case = ss.Problem(SLAB, law, initial_excess=1e6)
+    run = RunInProgress.begin(case, 1e-10)
+    scan = search_grid(contact_resistance(case))
+    table = new_branches(scan)
+    found = branches_at(run._table, law_slip, int(law.piece_at(law_slip)), scan, table)
+    expected, _ = moving_branches.branch_rows(case, law_slip)
+    assert found == expected.shape[1]
+    assert table[:2, :found] == pytest.approx(expected[:2], rel=1e-9, abs=1e-300)
+    assert table[2:4, :found] == pytest.approx(expected[4:6], rel=0.0, abs=1e-14 * S)

@@ -112,6 +112,16 @@ def test_pulses_change_with_excess_and_with_the_law(verdicts: dict[int, Verdict]
     assert sorted(set(law)) == law
 
 
+def test_hysteresis_is_read_at_the_load(verdicts: dict[int, Verdict]) -> None:
+    """Stick on the way up, the fast root of the contact equation on the way down: Z v + S (muD + (muS - muD)/(1 + v)) = load."""
+    folds = 6.4471887242357346e7, 8e7
+    excess = 0.5 * sum(folds) - 0.3e8  # (Z v - excess)(1 + v) + S (muS - muD) = 0
+    half = 0.5 * (excess / 9.8e6 - 1.0)
+    fast = half + math.sqrt(half**2 + (excess - 0.5e8) / 9.8e6)
+    rates = [m.value for m in verdicts[17].measured if m.label.startswith("slip rate at 72.236 MPa")]
+    assert rates == pytest.approx([0.0, fast], rel=1e-9, abs=0.0)
+
+
 def test_slip_law_answers_smoothly(verdicts: dict[int, Verdict]) -> None:
     spread = [m.value for m in verdicts[10].measured if m.label.startswith("relative change")]
     assert len(spread) == 2

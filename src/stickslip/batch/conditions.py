@@ -34,8 +34,8 @@ def of_scenario(scenario: Scenario) -> str:
         return "[run] events: a batch runs for a time, not until so many events are over"
     if scenario.problem.varies:
         return "[loading] a batch runs under a loading that does not vary in time"
-    if scenario.creep_rtol > 0.0:
-        return "[run] creep_rtol: a batch makes no leaps over creep"
+    if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
+        return "[run] creep_rtol: a batch makes no leaps over creep from the start of a run"
     return ""
 
 

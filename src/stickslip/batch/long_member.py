@@ -1,4 +1,7 @@
-"""A member whose history is too long to be kept: run by itself, its events folded as they become known, the rest forgotten."""
+"""A member whose history is too long to be kept, or that creeps for long: run by itself, as `simulate` would run it.
+
+Its events are folded as they become known, and the rest is forgotten.
+"""
 
 from __future__ import annotations
 
@@ -95,7 +98,7 @@ class Folding:
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
     """Run a member in bounded memory and fill in its numbers, but for the contact equation's. Returns the code of its end."""
     problem = scenario.problem
-    run = RunInProgress.begin(problem, scenario.rtol, shortest_event=scenario.shortest_event)
+    run = RunInProgress.begin(problem, scenario.rtol, scenario.creep_rtol, scenario.shortest_event)
     run.reserve(capacity)
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par[at.RAMP]))
     out[:] = np.nan

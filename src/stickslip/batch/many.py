@@ -152,7 +152,7 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     if isinstance(body, ElasticSlab):
         if body.p_wave_speed is not None:
             fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
-        if scenario.shortest_event > 0.0:
+        if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
             fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
         problem = with_numbers(scenario.problem, numbers.problem)
         pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)

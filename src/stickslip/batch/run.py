@@ -19,7 +19,7 @@ from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.errors import InputError
 from stickslip.evolution.lanes import WIDTH
-from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.layout import PAUSED, Floats, Integers
 from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
 from stickslip.scenarios.scenario import Scenario
 
@@ -146,7 +146,7 @@ class _Batch:
                 break
             if work.stage[lane] == AT_END:
                 work = work.with_more_points()
-            elif work.capacity < LARGEST_CAPACITY:
+            elif work.code[lane] != PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
                 n, work.stage[lane] = work.member[lane], FREE

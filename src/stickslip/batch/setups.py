@@ -12,6 +12,7 @@ from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.many import Values, many, member, shared
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
+from stickslip.evolution.automatic import set_lumping, wait_for_creep
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.layout import Floats, Integers
 from stickslip.evolution.moving_branches import branch_rows, has_inertia, is_algebraic
@@ -71,7 +72,10 @@ def alike(scenario: Scenario, values: Values) -> Alike:
         address = np.array([addresses_of(formula, problem) for formula in compiled], np.int64).T.copy()
         jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64)
         prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
-    return Alike(problem, address, jets, prepare, max(formula.size for formula in compiled), *start_of(problem))
+    state, counts = start_of(problem)
+    set_lumping(counts, problem, scenario.shortest_event)
+    wait_for_creep(counts, problem, scenario.creep_rtol)
+    return Alike(problem, address, jets, prepare, max(formula.size for formula in compiled), state, counts)
 
 
 def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Setups:

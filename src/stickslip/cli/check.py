@@ -15,10 +15,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.console import Console
 
+    from stickslip.contact.enclosed_folds import Fold
     from stickslip.contact.uniqueness import Uniqueness
     from stickslip.problem import Problem
     from stickslip.scenarios.examine import Examination, Fact
     from stickslip.scenarios.scenario import Scenario
+
+MOST_UNDECIDED = 10
+"""Intervals of slip rates that are listed where it is not decided whether they hold a fold."""
 
 
 def check(
@@ -37,7 +41,8 @@ def check(
     Shows every value as it is understood, with units (SI); what follows from
     them (impedance, travel time, strength, excess); whether the contact slips
     at once; static stability and growth; whether the slip rate is unique, the
-    critical values, the folds and what will jump; and warnings. Numbers marked
+    critical values, the folds with what is proven of them, and what will jump;
+    and warnings. Numbers marked
     with * rest on the selection rule.
 
     --figure draws the set K: every pair of slip rate and load that solves the
@@ -125,12 +130,22 @@ def _print_findings(screen: Console, found: Examination) -> None:
     for fact in found.critical:
         shown.add_row("critical value", f"{fact.name} = {_exact(fact.value, fact.unit)}; {fact.meaning}")
     for fold in found.uniqueness.folds:
-        shown.add_row("fold", f"slip rate {fold.rate:.9g} m/s, load {fold.load:.12g} Pa")
+        shown.add_row("fold", f"slip rate {fold.rate:.9g} m/s, load {fold.load:.12g} Pa{_proof(fold)}")
+    for low, high in found.uniqueness.undecided[:MOST_UNDECIDED]:
+        shown.add_row("not decided", f"whether there is a fold between {low:.9g} and {high:.9g} m/s")
     for name, text in _by_rule(found.uniqueness):
         shown.add_row(name, text)
     for warning in found.warnings:
         shown.add_row("warning", warning, style="yellow")
     screen.print(shown)
+
+
+def _proof(fold: Fold) -> str:
+    """How closely a fold is proven."""
+    if fold.enclosure is None:
+        return "; not proven"
+    low, high = fold.enclosure
+    return f"; proven to within {high - low:.1g} m/s" if high > low else "; proven, at a kink of the law"
 
 
 def _exact(value: float | str, unit: str) -> str:

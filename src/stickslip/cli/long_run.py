@@ -30,6 +30,7 @@ class Request:
     rtol: float | None
     creep_rtol: float | None
     shortest_event: str | None
+    max_pieces: int | None
     selection: str | None
     resume: Path | None
     out: Path | None
@@ -67,6 +68,10 @@ class Request:
         from stickslip.storage import is_catalogue
 
         return is_catalogue(self.resume)
+
+    def writes(self, solution: Solution) -> bool:
+        """Return True if a solution goes into its file: no history that is full, unless its size was asked for."""
+        return self.max_pieces is not None or solution.status.name != "too many pieces"
 
     @property
     def duration(self) -> float | None:
@@ -111,7 +116,7 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
     """Run with a history, from the start or from where it stopped. Raises InputError."""
     if request.resume is None:
         chosen = request.scenario()
-        keep = {} if request.out is None else {"checkpoint": request.out}
+        keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
     from stickslip.long_runs.resume import resume
@@ -120,7 +125,8 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
 
     check_same(request, load(request.resume).problem)
     with progress(request.resume.stem) as report:
-        solution = resume(request.resume, request.duration, events=request.wanted_events, progress=report, checkpoint=request.out)
+        how: dict[str, Any] = {"events": request.wanted_events, "checkpoint": request.out, "max_pieces": request.max_pieces}
+        solution = resume(request.resume, request.duration, progress=report, **how)
     return Scenario.of(solution, request.resume.stem), solution
 
 
@@ -128,7 +134,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run without a history, from the start or from where it stopped. Raises InputError."""
     from stickslip.evolution.in_progress import RunInProgress
     from stickslip.evolution.keeper import Orders
-    from stickslip.long_runs.catalogue import Paused, begin, check_energies
+    from stickslip.long_runs.catalogue import Paused, begin, check_energies, leaps_with
     from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
@@ -136,12 +142,14 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
         assert request.catalog is not None
         check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
-            run = RunInProgress.begin(chosen.problem, chosen.rtol, chosen.creep_rtol, chosen.shortest_event)
-            return chosen, begin(run, Orders(chosen.duration, chosen.events, report), request.catalog, energies=request.energies)
+            creep_rtol = leaps_with(request.energies, chosen.creep_rtol)
+            orders = Orders(chosen.duration, chosen.events, report, max_pieces=request.max_pieces)
+            run = RunInProgress.begin(chosen.problem, chosen.rtol, creep_rtol, chosen.shortest_event)
+            return chosen, begin(run, orders, request.catalog, energies=request.energies)
     paused = Paused.read(request.resume)
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:
-        found = paused.go_on(request.duration, request.wanted_events, report)
+        found = paused.go_on(request.duration, request.wanted_events, report, max_pieces=request.max_pieces)
     goal = paused.stopped.duration if request.duration is None else request.duration
     return replace(Scenario.of(paused.stopped, request.resume.stem), duration=goal), found
 

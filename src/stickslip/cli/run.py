@@ -62,8 +62,9 @@ def run(
     creep_rtol: Annotated[
         float | None,
         typer.Option(
-            help="Leap over slow creep between pulses (a slab under a law of slip), with an error of slip of at most this "
-            "times the slip so far: 1e-6, say. 0 runs every round trip.",
+            help="Leap over slow creep between pulses (a slab under a law of slip) from the start, with an error of slip of at "
+            "most this times the slip so far. Not given: after 200 round trips, with an error that follows rtol (1e-6). 0 runs "
+            "every round trip.",
             show_default=False,
         ),
     ] = None,
@@ -71,7 +72,16 @@ def run(
         str | None,
         typer.Option(
             help='Lump slip events that are shorter than this, say "1 ms" (a slab under rate weakening ends in ever '
-            "shorter ones). 0 resolves them all.",
+            "shorter ones). Not given: only where a round trip has more than 4096 pieces. 0 resolves them all.",
+            show_default=False,
+        ),
+    ] = None,
+    max_pieces: Annotated[
+        int | None,
+        typer.Option(
+            help="Let the history have so many pieces (0.44 kB each), and write it whatever ended the run. Not given: a "
+            "million, and a run that needs more is not written.",
+            min=1,
             show_default=False,
         ),
     ] = None,
@@ -94,7 +104,7 @@ def run(
       stickslip run mine.toml --out mine.nc --figure mine.png
       stickslip run fig6-slab --until "480 years" --selection maxwell
       stickslip run fig6-slab --space-time waves.png --animation slab.gif
-      stickslip run fig5-slab-printed --until "3 days" --creep-rtol 1e-6
+      stickslip run fig5-slab-printed --until "3 days"
       stickslip run cycles-block --until "10000 years" --catalog events.csv
       stickslip run --resume mine.nc --until "1000 years"
 
@@ -108,7 +118,8 @@ def run(
     from stickslip.cli.summary import show_catalogue, show_solution
 
     drawn = Pictures(figure, path, catalog_figure, energy, space_time, animation)
-    request = Request(scenario, until, events, rtol, creep_rtol, shortest_event, selection, resume, out, catalog, energies, drawn)
+    how = rtol, creep_rtol, shortest_event, max_pieces, selection
+    request = Request(scenario, until, events, *how, resume, out, catalog, energies, drawn)
     request.check()
     if request.keeps_events_only:
         chosen, found = list_events(request)
@@ -118,6 +129,9 @@ def run(
         drawn.check_problem(request.scenario().problem)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
+    if (out or resume) and not request.writes(solution):
+        typer.echo(f"not written: {out or resume} ({len(solution.history)} pieces; --max-pieces allows more, and writes them)")
+        out = resume = None
     for written in (out or resume, *drawn.draw(solution)):
         if written is not None:
             typer.echo(f"written: {written}")

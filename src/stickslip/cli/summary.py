@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.show import clean, console, number, table, with_unit
+from stickslip.evolution.creep.conditions import creep_tolerance
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -27,7 +28,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     screen, force = console(), scenario.problem.load_unit
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
-    _say_how(screen, scenario, solution.creep_note)
+    _say_how(screen, scenario, solution.creep_note, solution.lumping_note)
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
@@ -37,6 +38,8 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
         screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
     if solution.horizon_note:
         screen.print(f"predictability: {solution.horizon_note}\n", soft_wrap=True)
+    if solution.rounding_note:
+        screen.print(f"rounding: {solution.rounding_note}\n", soft_wrap=True)
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
@@ -44,22 +47,27 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen = console()
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
-    _say_how(screen, scenario, found.notes.get("creep", ""))
+    _say_how(screen, scenario, found.notes.get("creep", ""), found.notes.get("lumping", ""))
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy")):
+    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
         if name in found.notes:
             screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
     for file in found.files:
         screen.print(f"written: {file}", soft_wrap=True)
 
 
-def _say_how(screen: Console, scenario: Scenario, creep: str) -> None:
-    """Duration, tolerances, and leaps over creep, if they were allowed."""
+def _say_how(screen: Console, scenario: Scenario, creep: str, lumping: str) -> None:
+    """Print duration and tolerances, and the leaps over creep and the lumping that were asked for or came by themselves."""
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
-    if scenario.shortest_event > 0.0:
+    if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
         screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
-    if scenario.creep_rtol > 0.0:
+    if lumping:
+        screen.print(f"shortest_event automatic: {lumping}", soft_wrap=True)
+    if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
+    elif creep:
+        tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)
+        screen.print(f"creep_rtol {tolerance:g} (automatic; 0 runs every round trip): {creep}", soft_wrap=True)
 
 
 def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.contact.certified import Certificate, certificate
 from stickslip.contact.resistance import Resistance, resistance
 from stickslip.contact.roots import bracketed_newton
 from stickslip.errors import InputError
@@ -20,6 +21,8 @@ _POINTS_PER_DECADE = 64
 _EVEN_POINTS, _EVEN_REACH = 2001, 10.0
 _BELOW, _ABOVE = 1e-8, 1e4
 """How far the search for folds reaches beyond the slowest and the fastest scale of the contact."""
+_ROUNDING = 1e-9
+"""Relative distance by which a fold that is found by rounded values of g' may lie outside an interval that holds it."""
 
 
 @dataclass(frozen=True)
@@ -44,19 +47,74 @@ def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, .
     return branches_of(resistance(problem, law_slip))
 
 
-def branches_of(g: Resistance) -> tuple[Branch, ...]:
-    """The stable branches of a resistance, slowest first; folds are polished to rounding."""
+def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch, ...]:
+    """The stable branches of a resistance, slowest first; folds are polished to rounding.
+
+    They are searched on a grid of slip rates, and compared with `proof` (default: worked out here) unless friction bends one way
+    only, where a grid misses nothing: a fold that the grid has missed is added, one that is only rounding is left out.
+    """
     if not g.law.depends_on_rate:
         return (Branch(0.0, math.inf, g.start, math.inf),)
+    rising, folds = _searched(g)
+    if not g.law.bends_one_way:
+        rising, folds = _agreed(g, proof or certificate(g), rising, folds)
+    ends = [*([0.0] if rising else []), *folds, math.inf]
+    return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
+
+
+def _searched(g: Resistance) -> tuple[bool, list[float]]:
+    """Whether g rises from rest on, and its folds, by a search on a grid. Raises InputError where g falls at the fastest rate."""
     rates = _refined_grid(g)
     rising = g.slope(rates) > 0.0
     rising[0] |= bool(g.slope(0.0) == 0.0 and rising[1])
     if not rising[-1]:
         raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {rates[-1]:.3g} m/s")
     turns = np.flatnonzero(rising[1:] != rising[:-1])
-    folds = [_fold(g, rates[i], rates[i + 1]) for i in turns]
-    ends = [*([0.0] if rising[0] else []), *folds, math.inf]
-    return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
+    return bool(rising[0]), [_fold(g, rates[i], rates[i + 1]) for i in turns]
+
+
+def _agreed(g: Resistance, proof: Certificate, rising: bool, folds: list[float]) -> tuple[bool, list[float]]:
+    """Return whether g rises from rest on, and its folds: what is proven, and what the search says where nothing is."""
+    if proof.verdict == "searched":
+        return rising, folds
+    seen, left = _matched(proof, folds)
+    found = [_fold(g, *turn) if fold is None else fold for turn, fold in zip(proof.turns, seen, strict=True)]
+    found += [fold for fold in left if any(within(fold, one) for one in proof.undecided)]
+    starts = rising if proof.rises_at_rest is None else proof.rises_at_rest
+    if starts != (len(found) % 2 == 0):  # what is undecided has been searched in vain: g must rise in the end
+        return rising, folds
+    return starts, sorted(found)
+
+
+def _matched(proof: Certificate, folds: list[float]) -> tuple[list[float | None], list[float]]:
+    """Return for each proven turn the fold that the search has found in it, None where it has missed it, and the other folds."""
+    left = list(folds)
+    found: list[float | None] = []
+    for turn in proof.turns:
+        seen = next((fold for fold in left if within(fold, turn)), None)
+        if seen is not None:
+            left.remove(seen)
+        found.append(seen)
+    return found, left
+
+
+def scan_rates(g: Resistance) -> NDArray[np.float64]:
+    """Return slip rates (m/s) between which compiled code looks for folds: the search grid, and proven intervals that it misses.
+
+    The intervals are those at the law slip of `g`. Where a law moves a narrow feature out of them as it slips, it is missed again.
+    """
+    rates = search_grid(g)
+    if g.law.bends_one_way:
+        return rates
+    proof = certificate(g)
+    found, _ = _matched(proof, _searched(g)[1])
+    missed = [turn for turn, fold in zip(proof.turns, found, strict=True) if fold is None]
+    return np.unique(np.concatenate((rates, np.ravel(missed)))) if missed else rates
+
+
+def within(rate: float, interval: tuple[float, float]) -> bool:
+    """Whether a rate lies in an interval, but for the rounding of a fold."""
+    return interval[0] * (1.0 - _ROUNDING) <= rate <= interval[1] * (1.0 + _ROUNDING)
 
 
 def _branch(g: Resistance, low: float, high: float) -> Branch:

@@ -15,6 +15,8 @@ from typing import Literal
 import numpy as np
 
 from stickslip.contact.branches import search_grid
+from stickslip.contact.certified import Verdict
+from stickslip.contact.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.resistance import Resistance, resistance
 from stickslip.contact.roots import sign_change
 from stickslip.errors import InputError
@@ -25,6 +27,10 @@ Regime = Literal["regular", "irregular"]
 
 _DECADES, _PER_DECADE = 9, 4
 """How far from the present value the search goes, both ways, and in which steps."""
+_MISSED = 1e-6
+"""Share of Z by which g' must be lower elsewhere than where the grid has found it: less would cost time at each point of a map."""
+_STEPS = tuple(2.0**-k for k in range(50, 25, -4))
+"""Relative distances from a critical value at which the regimes are proven, the smallest first."""
 _LOWEST = 5
 """How many of the lowest points of g' on the grid are looked at closely."""
 
@@ -43,6 +49,12 @@ class Critical:
     regimes: tuple[Regime, ...]
     searched: tuple[float, float]
     """The values between which a change was looked for: outside nothing is known."""
+    certificate: Verdict = "searched"
+    """"proven": interval arithmetic shows that the regime differs on the two sides of each of `enclosures`, and that it is the
+    stated one at the present value. "not decided": it fails to show one of these. "searched": the law has no sure bounds. Whether
+    there are further changes between the values that were looked at is never proven."""
+    enclosures: tuple[tuple[float, float] | None, ...] = ()
+    """For each of `values`, numbers below and above it at which the regime is proven to differ; None where that fails."""
 
     @property
     def value(self) -> float | None:
@@ -51,7 +63,23 @@ class Critical:
 
 
 def steepest_fall(g: Resistance) -> tuple[float, float]:
-    """The slip rate (m/s) at which g rises least or falls most steeply, and g' there (Pa s/m)."""
+    """The slip rate (m/s) at which g rises least or falls most steeply, and g' there (Pa s/m), to the rounding of g'.
+
+    It is searched on a grid. Bounds of g' say where the grid has missed a lower one, and there it is searched again.
+    """
+    rate, slope = _searched_fall(g)
+    if g.law.bends_one_way:
+        return rate, slope
+    lowest = lowest_slope(g, _MISSED)
+    if not lowest.at_most < slope - _MISSED * g.impedance:
+        return rate, slope
+    width = lowest.rate_to - lowest.rate_from
+    slope, rate = _lowest_between(g, max(lowest.rate_from - width, 0.0), lowest.rate_to + width)
+    return rate, slope
+
+
+def _searched_fall(g: Resistance) -> tuple[float, float]:
+    """As `steepest_fall`, by the grid alone."""
     rates = search_grid(g)
     slope = g.slope(rates)
     lowest = np.flatnonzero((slope <= np.append(slope[1:], np.inf)) & (slope <= np.append(np.inf, slope[:-1])))
@@ -117,7 +145,33 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     values = [sign_change(margin_at, low[0], high[0]) for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0)]
     changes = [points[0][1] < 0.0, *(high[1] < 0.0 for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0))]
     regimes: tuple[Regime, ...] = tuple("irregular" if falls else "regular" for falls in changes)
-    return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]))
+    enclosures = tuple(_proven_change(found, value, law_slip) for value in values)
+    verdict: Verdict = "proven" if None not in enclosures else "not decided"
+    if _proven(found, found.value, law_slip) != ("irregular" if here < 0.0 else "regular"):
+        enclosed = bounded(resistance(problem, law_slip))
+        verdict = "not decided" if enclosed else "searched"
+    return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]), verdict, enclosures)
+
+
+def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | None:
+    """The regime at a value of a parameter, with proof; None where it is not decided."""
+    try:
+        g = resistance(found.put(value), law_slip)
+    except InputError:
+        return None
+    if not g.law.depends_on_rate:
+        return "regular"
+    return "irregular" if g.law.static_excess > 0.0 else proven_regime(g)
+
+
+def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tuple[float, float] | None:
+    """The narrowest interval that was found around a critical value, at the ends of which the regime is proven to differ."""
+    for step in _STEPS:
+        low, high = sorted((value * (1.0 - step), value * (1.0 + step)))
+        regimes = _proven(found, low, law_slip), _proven(found, high, law_slip)
+        if None not in regimes and regimes[0] != regimes[1]:
+            return low, high
+    return None
 
 
 def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> list[tuple[float, float]]:

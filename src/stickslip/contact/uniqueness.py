@@ -13,21 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import Branch, branches_of, rates_at
+from stickslip.contact.certified import Certificate, Verdict, certificate
 from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
 from stickslip.contact.loop import Jump, Loop, jumps_of, loop_of
+from stickslip.contact.lowest import lowest_slope, normal_stress_between
 from stickslip.contact.resistance import Plateau, Resistance, resistance
 from stickslip.contact.selection import table_of
 from stickslip.errors import InputError
 from stickslip.parameters import parameter
 from stickslip.problem import Problem
-
-
-@dataclass(frozen=True)
-class Fold:
-    """A slip rate (m/s) at which g turns, and the load (Pa) there."""
-
-    rate: float
-    load: float
 
 
 @dataclass(frozen=True)
@@ -44,6 +39,13 @@ class Uniqueness:
     form, else the normal stress."""
     critical_value: float | None = None
     """Where along it the regime changes, in SI."""
+    critical_stress_between: tuple[float, float] | None = None
+    """Numbers between which the critical normal stress (Pa) is proven to lie; None where friction is not proven to fall."""
+    certificate: Verdict = "proven"
+    """"proven": `folds` are all there are, by interval arithmetic or because the slip rate is a state. "not decided": the same
+    but for the slip rates in `undecided`, where a search on a grid is taken. "searched": on a grid, without proof."""
+    undecided: tuple[tuple[float, float], ...] = ()
+    """Intervals of slip rates (m/s) in which g may turn, or touch a slope of 0, as far as rounding lets one see."""
     folds: tuple[Fold, ...] = ()
     jumps: tuple[Jump, ...] = ()
     window: tuple[float, float] | None = None
@@ -124,17 +126,21 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
     if problem.friction.state is not None:
         return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, law_slip)
-    stable = branches_of(g)
-    table = table_of(problem, g, stable)
+    proof = certificate(g) if g.law.depends_on_rate else Certificate("proven")
+    stable = branches_of(g, proof)
+    table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     window, critical = _window(stable), _critical(problem, g)
     jumps = jumps_of(g, stable, table) if window else ()
     return Uniqueness(
         regime="continuum" if g.plateaus else "irregular" if window else "regular",
         rule=problem.rule,
-        summary=_summary(problem, g, critical, window, jumps),
+        summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
-        folds=_folds(g, stable),
+        critical_stress_between=_stress_between(g),
+        certificate=proof.verdict,
+        undecided=proof.undecided,
+        folds=folds,
         jumps=jumps,
         window=window,
         resistance=g,
@@ -152,9 +158,16 @@ def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
     return None if stress is None else ("normal_stress", stress)
 
 
-def _folds(g: Resistance, stable: tuple[Branch, ...]) -> tuple[Fold, ...]:
+def _stress_between(g: Resistance) -> tuple[float, float] | None:
+    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
+        return None
+    return normal_stress_between(g, lowest_slope(g))
+
+
+def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tuple[Fold, ...]:
     ends = {end: None for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))}
-    return tuple(Fold(rate, g.strength + excess) for rate, excess in ends if 0.0 < rate < np.inf)
+    moving = sorted((rate, excess) for rate, excess in ends if 0.0 < rate < np.inf)
+    return tuple(Fold(rate, g.strength + excess, enclosure(g, proof, rate)) for rate, excess in moving)
 
 
 def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:

@@ -201,7 +201,7 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 def leave_out_ends(run: Run, real: Floats) -> None:
     """Of the load in a piece leave only what is not too near its ends: slip there alone would be too short to be resolved."""
     width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
-    share = run.par[at.SHORTEST] / width
+    share = run.par[at.SHORTEST] / width if run.counts[at.LUMPS] == 1 else 0.0
     if share >= 0.5:
         mean = mean_of(run.part, real[at.S_SPEED], real[at.S_BEND], width)
         fill(run.part, 0.0)

@@ -92,11 +92,17 @@ def echo_piece(run: Run) -> bool:
     run.load[1] += par[at.INFLOW_RATE] * run.state[at.SPEED]
     run.load[2] += par[at.INFLOW_RATE] * run.state[at.BEND]
     jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts[at.LUMPED] == 1
-    run.counts[at.LUMPED] = 1 if run.state[at.THETA_TO] - run.state[at.THETA_FROM] < par[at.SHORTEST] else 0
+    run.counts[at.LUMPED] = 1 if run.counts[at.LUMPS] == 1 and width_of(run) < par[at.SHORTEST] else 0
     if run.counts[at.LUMPED] == 1:
         lump(run)
     run.counts[at.ARRIVING] = at.ECHO if (jumps or run.counts[at.LUMPED] == 1) and par[at.REFLECTION] != 0.0 else at.NO_CAUSE
     return True
+
+
+@inlined
+def width_of(run: Run) -> float:
+    """Return the length (s) of the piece of load that has just been brought."""
+    return run.state[at.THETA_TO] - run.state[at.THETA_FROM]
 
 
 @kernel
@@ -172,6 +178,8 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     if run.counts[at.SPARSE] == 1:
         end_trip(run)
         return True
+    if run.counts[at.LUMPS] == 0 and run.counts[at.LENGTH] - run.counts[at.ROW_FROM] > run.counts[at.LUMP_ABOVE]:
+        run.counts[at.LUMPS], run.counts[at.LUMPED_SINCE] = 1, run.counts[at.ROW] + 1
     if pays(run):
         plant(run)
         return True
@@ -191,6 +199,10 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     if run.counts[at.IS_BLOCK] == 1:
         run.state[at.LOAD_NOW] = total(ahead(run.stored_load, TERMS * (run.counts[at.LENGTH] - 1)))
     run.counts[at.ROW] += 1 + leap
+    if run.counts[at.MOVED] == 1:
+        run.counts[at.CREEP_IN] -= 1
+        if run.counts[at.CREEP_IN] == 0:
+            run.counts[at.PAUSE_AT] = run.counts[at.ROW]
     run.counts[at.PREVIOUS_FROM], run.counts[at.PREVIOUS_TO] = run.counts[at.ROW_FROM], run.counts[at.LENGTH]
     run.counts[at.ROW_FROM] = run.counts[at.LENGTH]
     run.counts[at.SOURCE] = run.counts[at.MOVED] = 0

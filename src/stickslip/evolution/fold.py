@@ -16,6 +16,8 @@ SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
 APPROACHING, DEPARTING, PASSING = 1, 2, 3
 AT_THE_FOLD = 1e-14
+ROUNDING = 1e-14
+"""Relative difference of two loads that are surely not the same one."""
 LAST_TO_FOLD = 1e-4
 DEPARTURE = 1e-10
 """Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
@@ -95,7 +97,7 @@ def starts_at_fold(run: Run) -> bool:
     """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
     branch = run.counts[at.BRANCH]
     fold = run.rate_from[branch]
-    if run.counts[at.EDGE] == 0 or run.state[at.BEND] != 0.0 or fold == 0.0 or is_knot(run, fold):
+    if run.counts[at.EDGE] == 0 or run.counts[at.AT_FOLD] != 0 or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
     return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
@@ -113,9 +115,16 @@ def load_outruns_fold(run: Run) -> bool:
 
 @inlined
 def depart_from_fold(run: Run, left: float) -> None:
-    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time."""
+    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time.
+
+    The bit is so short that the load is a straight line in time along it, in the echo of an earlier fold too.
+    """
     width, forwards = DEPARTURE * left, run.part
     restrict(run.load, run.state[at.XI], width, forwards)
+    rise, seen = run.counts[at.MODE] * forwards[1], ROUNDING * abs(run.excess_from[run.counts[at.BRANCH]])
+    if 0.0 < rise < seen:  # the end of the bit would be the fold itself
+        width = min(width * seen / rise, left)
+        restrict(run.load, run.state[at.XI], width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
     theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
@@ -167,7 +176,8 @@ def leave_fold_piece(run: Run) -> None:
     way = theta_at(run, 1.0) - theta_at(run, 0.0)
     if run.counts[at.AT_FOLD] == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
         state[at.LAST_STEP] = way
-    rate, slipped, law_slip, last = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP]
+    rate, slipped, law_slip = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP]
+    last = state[at.LAST_STEP] if state[at.LAST_STEP] > 0.0 else run.kept[at.LAST_STEP]  # a piece that time does not resolve
     copy(run.kept, run.state, at.KEPT)
     state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP] = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)

@@ -46,7 +46,7 @@ SIGNATURES = {
 
 MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
 
-from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
+from math import asinh, cos, cosh, exp, expm1, log, log1p, sin, sinh, sqrt, tanh
 
 from numba import cfunc, njit, types
 
@@ -60,10 +60,10 @@ _options = dict(cache=True, nopython=True, error_model="numpy", fastmath={{"cont
 
 
 @njit(error_model="numpy")
-def exp_difference(value, now, step):
+def exp_difference(value, now, step, largest):
     if abs(step) < 1.0:
         return value * expm1(step)
-    return exp(now) - value
+    return exp(min(now, largest)) - value
 
 
 @njit(error_model="numpy")
@@ -75,9 +75,8 @@ def log_difference(reference, now, step):
 
 @njit(error_model="numpy")
 def tanh_difference(value, now, step):
-    if abs(step) < 1.0:
-        turned = tanh(step)
-        return turned * (1.0 - value * value) / (1.0 + value * turned)
+    if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
+        return sinh(step) / cosh(now - step) / cosh(now)
     return tanh(now) - value
 
 
@@ -106,9 +105,9 @@ def power_pull(base, exponent):
 
 
 @njit(error_model="numpy")
-def exp_value(reference, difference, step, argument):
+def exp_value(reference, difference, step, argument, largest):
     """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
-    return reference + difference if abs(step) < 1.0 else exp(argument)
+    return reference + difference if abs(step) < 1.0 else exp(min(argument, largest))
 
 
 @njit(error_model="numpy")

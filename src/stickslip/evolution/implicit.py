@@ -261,6 +261,9 @@ def collocate(run: Run, left: float) -> float:
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
             if error <= 1.0 or in_vain >= PATIENCE:
+                if error > 1.0:
+                    run.counts[at.ROUGH] += 1
+                    run.state[at.ROUGHEST] = max(run.state[at.ROUGHEST], error * run.par[at.TOLERANCE])
                 change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0  # steps that had to shrink go on to
                 run.state[at.LAST_STEP] = speed * (guess * min(factor, change) if error <= 1.0 else longest)
                 return guess

@@ -8,7 +8,9 @@ from typing import Self
 import numpy as np
 
 from stickslip.evolution import layout as at
+from stickslip.evolution.automatic import lumping_note
 from stickslip.evolution.checkpoint import Checkpoint, engine
+from stickslip.evolution.creep.conditions import creep_tolerance
 from stickslip.evolution.creep.leap import CreepLeaps
 from stickslip.evolution.echoes import Echoes, new_echoes, replant
 from stickslip.evolution.echoes import resized as with_room
@@ -18,6 +20,7 @@ from stickslip.evolution.layout import Floats, Integers, Setup, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.evolution.phases import standing_behind
 from stickslip.evolution.setup import prepare
+from stickslip.evolution.status import rounding_note
 from stickslip.evolution.workspace import WORK_ROWS, lend
 from stickslip.problem import Problem
 
@@ -39,6 +42,9 @@ class RunInProgress:
     echoes: Echoes
     follower: RuleFollower
     leaps: CreepLeaps | None = None
+    creep_rtol: float | None = None
+    """As it was asked for, None where it is automatic; so is shortest_event (s)."""
+    shortest_event: float | None = None
     before_end: Checkpoint | None = None
     forgotten: int = 0
 
@@ -46,22 +52,28 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(cls, problem: Problem, rtol: float, creep_rtol: float = 0.0, shortest_event: float = 0.0) -> Self:
-        """At t = 0."""
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = None, shortest_event: float | None = None) -> Self:
+        """Return a run at t = 0."""
         setup, state, count = prepare(problem, rtol, shortest_event)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
-        leaps = CreepLeaps(problem, creep_rtol) if creep_rtol > 0.0 else None
+        tolerance = creep_tolerance(problem, creep_rtol, rtol)
+        leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
             leaps.begin(count)
         scratch, echoes = np.zeros((WORK_ROWS, at.TERMS)), new_echoes(FIRST_CAPACITY)
-        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower, leaps)
+        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower, leaps, creep_rtol, shortest_event)
 
     @classmethod
     def at_checkpoint(
-        cls, history: History, checkpoint: Checkpoint, rtol: float, creep_rtol: float = 0.0, shortest_event: float = 0.0
+        cls,
+        history: History,
+        checkpoint: Checkpoint,
+        rtol: float,
+        creep_rtol: float | None = None,
+        shortest_event: float | None = None,
     ) -> Self:
-        """Where another run stood; in its history nothing is changed."""
+        """Return a run where another one stood; in its history nothing is changed."""
         run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
@@ -85,6 +97,16 @@ class RunInProgress:
         return float(self.count[at.ROW] * row_time(self.problem) + self.state[at.THETA_FROM] + xi * (speed + xi * bend))
 
     @property
+    def lumping_note(self) -> str:
+        """Return one line on automatic lumping; empty where it did not begin."""
+        return lumping_note(self.count, self.setup.par, self.shortest_event)
+
+    @property
+    def rounding_note(self) -> str:
+        """Return one line on steps in which rounding hides the law; empty where there are none."""
+        return rounding_note(int(self.count[at.ROUGH]), float(self.state[at.ROUGHEST]))
+
+    @property
     def creep(self) -> Floats:
         """Leaps over creep so far, as in `History.creep`."""
         return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
@@ -104,6 +126,7 @@ class RunInProgress:
             return code
         self.setup = renewed(self.problem, self.setup, self.state, self.count)
         self._lend()
+        self.follower.set_levels(self._table)
         return OUT_OF_BUDGET
 
     def grow(self, max_pieces: int) -> bool:

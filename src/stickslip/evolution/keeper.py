@@ -15,10 +15,13 @@ from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.inflow import row_time
 from stickslip.evolution.report import Progress, Reporter
 from stickslip.evolution.solution import Solution
-from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY
+from stickslip.evolution.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY
 from stickslip.evolution.tables import default_event_rate
 
-MAX_PIECES = 4_000_000
+MAX_PIECES = 1_000_000
+"""Pieces of a history, if nothing is said."""
+PIECE_SIZE = 8 * (6 + 8 + 2 * at.TERMS)
+"""Bytes of a piece, in memory and in a file."""
 CHECKPOINT_EVERY = 30.0
 
 
@@ -31,7 +34,17 @@ class Orders:
     progress: Progress | None = None
     checkpoint: Path | None = None
     checkpoint_every: float = CHECKPOINT_EVERY
-    max_pieces: int = MAX_PIECES
+    max_pieces: int | None = None
+    """None: MAX_PIECES, and a history that reaches them is not written."""
+
+    @property
+    def most_pieces(self) -> int:
+        """Pieces that the history may have."""
+        return MAX_PIECES if self.max_pieces is None else self.max_pieces
+
+    def keeps(self, code: int) -> bool:
+        """Return True if a run with this end is to be written to its file: no giant for which nobody has asked."""
+        return code != FULL_HISTORY or self.max_pieces is not None
 
 
 def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
@@ -41,7 +54,8 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
     history = History(kept, run.problem, row_time(run.problem), float(run.setup.par[at.RAMP]), reached, creep=run.creep)
     found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
-    return replace(found, creep_rtol=run.leaps.tolerance if run.leaps else 0.0, shortest_event=float(run.setup.par[at.SHORTEST]))
+    found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
+    return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
 
 
 @dataclass(kw_only=True)
@@ -112,4 +126,4 @@ class Keeper:
 
     def make_room(self, run: RunInProgress) -> bool:
         """See `drive.Watch`: the history grows."""
-        return run.grow(self.orders.max_pieces)
+        return run.grow(self.orders.most_pieces)

@@ -22,7 +22,7 @@ TERMS = ORDER + 1
 ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
 REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
 STATE_SCALE, RATE_FLOOR = 17, 18
-SHORTEST = 20  # pieces of load that are shorter, s, are lumped
+SHORTEST = 20  # pieces of load that are shorter, s, are lumped while LUMPS is set
 HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
 TONE, TONE_FREQUENCY, TONE_PHASE = range(21, 24)  # of a loading that varies: F has TONE sin(TONE_FREQUENCY t + TONE_PHASE)
 PARAMETERS = 24
@@ -40,7 +40,8 @@ TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brough
 TARGET = 20  # xi up to which a run may slip that waits for others, to take its step side by side with them
 UNBALANCED = 21  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
 ROUNDED = 22  # rounding (m/s) that was found in that step where it seemed not to obey the law
-STATES = 23
+ROUGHEST = 23  # largest share of the slip rate that rounding in the law has taken, where that is more than the tolerance
+STATES = 24
 assert KEPT <= TERMS  # it is set aside in a row of scratch space
 
 # ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
@@ -53,7 +54,10 @@ LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip be
 PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
 VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now, and at the end of the row before
 WAITS = 44  # explicit steps of slip are left to the caller
-COUNTS = 45
+CREEP_IN = 45  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
+LUMPS, LUMP_ABOVE, LUMPED_SINCE = 46, 47, 48  # short pieces are lumped; pieces of a round trip above which they are; row since when
+ROUGH = 49  # steps with such rounding
+COUNTS = 50
 
 NEVER = 2**62
 """No row."""

@@ -1,7 +1,8 @@
 """Branches of a massless contact, for the engine: once for a law of slip rate, again and again for a law of slip and slip rate.
 
 Where friction depends on both, folds and the levels of the selection rule move with slip. The slip rate is followed by its series;
-the branches at a slip are worked out only where a choice is due. A rule other than perfect delay is looked at after every step.
+the branches at a slip are worked out only where a choice is due. A rule other than perfect delay is looked at after every step:
+a built-in one in compiled code (`moving_levels`), a user's own by its table, which is Python and costs milliseconds a step.
 """
 
 from __future__ import annotations
@@ -9,15 +10,31 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from stickslip.bodies import ElasticSlab
+from stickslip.contact.branches import scan_rates
+from stickslip.contact.resistance import resistance
 from stickslip.contact.selection import selection_table
 from stickslip.evolution import layout as at
+from stickslip.evolution.branch_scan import new_branches
 from stickslip.evolution.engine import advance
 from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.moving_levels import (
+    COMPILED_RULES,
+    EXACT,
+    FIRST_PLACE,
+    LAST_PLACE,
+    MAXWELL,
+    NEXT,
+    ROUNDING,
+    SHORTEST,
+    crossing_in,
+    set_maxwell_levels,
+)
 from stickslip.evolution.polynomial import RECIPROCAL
 from stickslip.evolution.workspace import EXIT
 from stickslip.friction.difference import difference
@@ -25,14 +42,6 @@ from stickslip.problem import Problem
 
 OUT_OF_BUDGET = -1
 """What `advance` returns when it has made as many steps as it was asked for."""
-ROUNDING = 1e-11
-"""Loads nearer to a level, relative to the strength, have not crossed it."""
-EXACT, SHORTEST = 1e-14, 1e-15
-"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step so well known."""
-PLACES = (0.5, 1.0)
-"""Where in a step the rule is looked at."""
-NEXT = 1e-4
-"""Share of a step: outside the level there too, a load that starts at the level leaves it at once."""
 AT_A_TIME = 100
 """Steps looked at before the caller may say how far the run is."""
 STORM_OF, STORM_IN = 30, 1e-6
@@ -85,9 +94,18 @@ def branch_of(rows: Floats, rate: float) -> int:
     return int(np.argmin(np.maximum(np.maximum(rows[at.RATE_FROM] - rate, rate - rows[at.RATE_TO]), 0.0)))
 
 
+def has_levels_to_set(problem: Problem) -> bool:
+    """Whether compiled code sets the levels of the rule: those of Maxwell's take Python tenths of a second."""
+    return COMPILED_RULES.get(problem.rule) == MAXWELL
+
+
 def renewed(problem: Problem, setup: Setup, state: Floats, count: Integers) -> Setup:
-    """The setup with the branches at the present law slip; state and count take note of it."""
-    rows, setup.par[at.STICK_TO] = branch_rows(problem, float(state[at.LAW_SLIP]))
+    """The setup with the branches at the present law slip; state and count take note of it.
+
+    Under Maxwell's rule its levels are still to be set (`RuleFollower.set_levels`).
+    """
+    case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
+    rows, setup.par[at.STICK_TO] = branch_rows(case, float(state[at.LAW_SLIP]))
     count[at.BRANCH] = branch_of(rows, abs(float(state[at.RATE_NOW])))
     state[at.TABLE_SLIP] = state[at.LAW_SLIP]
     return setup._replace(branch=rows)
@@ -126,7 +144,7 @@ class Step:
     def crossing(self) -> float | None:
         """Where the load first leaves that interval; None if it stays in it."""
         before, slack = 0.0, ROUNDING * self.problem.strength
-        for place in PLACES:
+        for place in (FIRST_PLACE, LAST_PLACE):
             if self.room(place) < -slack:
                 starts_outside = self.room(before) <= slack and self.room(before + NEXT * (place - before)) <= 0.0
                 return before if starts_outside else root_between(self.room, before, place, EXACT * self.problem.strength)
@@ -172,7 +190,7 @@ class RuleFollower:
         for _ in range(min(budget, AT_A_TIME)):
             state, count = self.state.copy(), self.count.copy()
             code = advance(table, *last, 1)
-            place = self._crossing(store, int(count[at.LENGTH]))
+            place = self._crossing(table, store, int(count[at.LENGTH]))
             if place is not None:
                 state[EXIT] = state[at.XI] + place * (self.state[at.XI] - state[at.XI])
                 self.state[:], self.count[:] = state, count
@@ -182,10 +200,26 @@ class RuleFollower:
                 return code
         return OUT_OF_BUDGET
 
-    def _crossing(self, store: Store, length: int) -> float | None:
+    def set_levels(self, table: Integers) -> None:
+        """Put what `renewed` has left out into the setup that is lent."""
+        if has_levels_to_set(self.problem):
+            set_maxwell_levels(table, *self._scan)
+
+    def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Where a step in slip that has just been made crosses a level of the rule."""
         stepped = self.count[at.LENGTH] > length and store.mode[length] != 0 and self.count[at.LEAVING] == 0
-        return Step(self.problem, store, length).crossing() if stepped else None
+        if not stepped:
+            return None
+        if self.problem.rule not in COMPILED_RULES:
+            return Step(self.problem, store, length).crossing()
+        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], *self._scan)
+        return place if place <= 1.0 else None
+
+    @cached_property
+    def _scan(self) -> tuple[Floats, Floats]:
+        """Slip rates (m/s) at which compiled code looks for branches, and room for what it finds."""
+        rates = scan_rates(resistance(self.problem))
+        return rates, new_branches(rates)
 
     def _storms(self) -> bool:
         """Note the time of a crossing: whether many have come with hardly any time between them."""

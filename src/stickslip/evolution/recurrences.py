@@ -9,6 +9,11 @@ from __future__ import annotations
 from stickslip.evolution.guards import guards_of
 from stickslip.friction.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
+LARGEST_EXPONENT = 150.0
+"""Exponents beyond this count as this where exp occurs in denominators only (1): e^150 leaves nothing of a quotient, and its
+squares and series stay numbers."""
+NO_LIMIT = 1e308
+"""Of other exponents (1): where exp is infinite the run ends and says so."""
 FRESH = 4
 """Terms of a sum that wait for the newest coefficients (see `sum_of`)."""
 
@@ -45,6 +50,26 @@ def _vanishes(node: Expression) -> bool:
     return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
 
 
+def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
+    """Return the nodes that reach the formula through denominators alone, by way of sums and products."""
+    parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
+    for node in nodes:
+        for argument in node.arguments:
+            parents[argument].append(node)
+    below: set[Expression] = set()
+    for node in reversed(nodes):
+        ways = parents[node]
+        if ways and all(
+            _divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways
+        ):
+            below.add(node)
+    return below
+
+
+def _divides(node: Expression, parent: Expression) -> bool:
+    return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
+
+
 class Recurrences:
     """What is known of a formula's nodes, and the statements that compute them."""
 
@@ -58,6 +83,7 @@ class Recurrences:
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
         self.guards = guards_of(self.dynamic)
+        self._only_below = in_denominators_only(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 
@@ -115,11 +141,17 @@ class Recurrences:
         signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
         if node.operation in signs:
             return f"{arguments[0]} {signs[node.operation]} {arguments[1]}"
+        if node.operation == "exp":
+            return f"exp(min({arguments[0]}, {self.largest_exponent(node)}))"
         if node.arguments:
             return f"{'asinh' if node.operation == 'arcsinh' else node.operation}({arguments[0]})"
         if node.operation == "parameter":
             return f"p[{self.parameters.index(node.name)}]"
         return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
+
+    def largest_exponent(self, node: Expression) -> float:
+        """Return the exponent beyond which an exp node stays as it is."""
+        return LARGEST_EXPONENT if node in self._only_below else NO_LIMIT
 
     def order_zero(self) -> list[str]:
         """Differences from the reference and values of every node at dx, s_0."""
@@ -141,7 +173,8 @@ class Recurrences:
         sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
         if node.operation == "exp":
             a = node.arguments[0]
-            return f"exp_value({self.reference(node)}, e{self.index[node]}, {self.difference(a)}, {self.coefficient(a, 0)})"
+            near = f"{self.reference(node)}, e{self.index[node]}, {self.difference(a)}"
+            return f"exp_value({near}, {self.coefficient(a, 0)}, {self.largest_exponent(node)})"
         if node.operation == "sqrt":
             return f"sqrt({self.coefficient(node.arguments[0], 0)})"
         if node.operation == "pow":
@@ -174,7 +207,7 @@ class Recurrences:
             return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
         now = self.coefficient(a, 0)  # far from the reference its value has digits that reference + difference lacks
         return {
-            "exp": f"exp_difference({r}, {now}, {ea})",
+            "exp": f"exp_difference({r}, {now}, {ea}, {self.largest_exponent(node)})",
             "log": f"log_difference({ra}, {now}, {ea})",
             "sqrt": f"{ea} / (sqrt({now}) + {r})",
             "tanh": f"tanh_difference({r}, {now}, {ea})",
@@ -221,7 +254,7 @@ class Recurrences:
         """Name, for each guard, the inverse of how far its argument may move: see `evolution.guards`."""
         lines = []
         for j, guard in enumerate(self.guards):
-            exponent = self.reference(guard.exponent) if guard.exponent else ""
+            exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
             lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
         return lines
 

@@ -14,6 +14,7 @@ from stickslip.bodies import ElasticSlab
 from stickslip.contact.selection import rule_of
 from stickslip.errors import InputError
 from stickslip.evolution import layout as at
+from stickslip.evolution.automatic import set_length, set_lumping
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.inflow import inflow_of, row_time, steady_inflow
 from stickslip.evolution.layout import Setup
@@ -23,7 +24,7 @@ from stickslip.problem import Problem
 from stickslip.selection import SelectionRule
 
 
-def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup, at.Floats, at.Integers]:
+def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, at.Floats, at.Integers]:
     """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
 
     Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
@@ -31,12 +32,14 @@ def prepare(problem: Problem, rtol: float, shortest: float = 0.0) -> tuple[Setup
     setup, state, count = _prepared(problem, rule_of(problem))
     par = setup.par.copy()
     set_tolerance(par, rtol, shortest)
-    return setup._replace(par=par), state.copy(), count.copy()
+    count = count.copy()
+    set_lumping(count, problem, shortest)
+    return setup._replace(par=par), state.copy(), count
 
 
-def set_tolerance(par: at.Floats, rtol: Any, shortest: float) -> None:
+def set_tolerance(par: at.Floats, rtol: Any, shortest: float | None) -> None:
     """What the tolerance says in `Setup.par`, or in one with a column a member."""
-    par[at.SHORTEST] = shortest
+    set_length(par, shortest)
     par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
@@ -211,7 +214,7 @@ def start_of(problem: Problem) -> tuple[at.Floats, at.Integers]:
     state[at.STATE_NOW] = problem.state
     if not problem.friction.sticks:
         count[at.MODE] = 1 if problem.load >= 0.0 else -1
-    count[at.PAUSE_AT] = at.NEVER
+    count[at.PAUSE_AT] = count[at.LUMPED_SINCE] = count[at.LUMP_ABOVE] = at.NEVER
     count[at.FOLDS_MOVE] = folds_move(problem)
     count[at.KNOTS_IN_RATE] = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

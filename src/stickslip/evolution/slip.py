@@ -42,11 +42,16 @@ from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, s
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
-from stickslip.evolution.verify import HALVINGS, begin_verification, note_rounding, obeys_contact, within_guards
+from stickslip.evolution.verify import HALVINGS, begin_verification, note_rough_step, note_rounding, obeys_contact, within_guards
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
 """Guess at the next step's length (1), relative to the last one."""
+SHORTEST_GUESS = 1e-16
+"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
+NO_EVENT, ARREST, KNOT = range(3)
+"""What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
+"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 NO_EVENT, ARREST, KNOT = range(3)
 """What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 
@@ -55,7 +60,7 @@ NO_EVENT, ARREST, KNOT = range(3)
 def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
     speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
-    return min(left, LONGEST_GUESS * run.state[at.LAST_STEP] / speed) if speed > 0.0 else left
+    return min(left, max(LONGEST_GUESS * run.state[at.LAST_STEP] / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
 
 
 @inlined
@@ -258,6 +263,8 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         stretch(run, length, rate)
         event, turn, end = first_event(run, rate, length)
         grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
+    if run.state[at.ROUNDED] > 0.0:
+        note_rough_step(run, rate, rate_end)
     multiply(run.local, run.powers, load)
     to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
     move(run, rate, end * length, grown, rate_end, to)
@@ -267,14 +274,14 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
 @inlined
 def is_straight(run: Run) -> bool:
     """Return True on the bits next to a fold that are straight lines in the root of time: what these miss is known."""
-    return run.k[at.K_BEND] != 0.0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
+    return run.counts[at.AT_FOLD] != 0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
 
 
 @inlined
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
     limit = (target - run.state[at.XI]) / guess
-    if run.guard_count[run.counts[at.PIECE]] > 0:
+    if run.guard_count[run.counts[at.PIECE]] > 0 and not is_straight(run):
         seen = within_guards(run, min(length, limit))
         length = seen if seen < min(length, limit) else length
     # Store the error-controlled length: truncation at an event must not shrink the next guess.

@@ -42,10 +42,14 @@ class Solution(Readings):
     """From where the run, or a longer one, can go on (`stickslip.resume`)."""
     events_wanted: int | None = None
     """Slip events after which the run was to stop."""
-    creep_rtol: float = 0.0
-    shortest_event: float = 0.0
-    """Events shorter than this (s) are lumped; 0: none."""
-    """Tolerance of leaps over creep; 0 where every round trip was run."""
+    creep_rtol: float | None = None
+    """Tolerance of leaps over creep as it was asked for: None is automatic, 0 runs every round trip."""
+    shortest_event: float | None = None
+    """Events shorter than this (s) are lumped, as it was asked for: None is automatic, 0 lumps none."""
+    lumping_note: str = ""
+    """One line on automatic lumping; empty where it did not begin."""
+    rounding_note: str = ""
+    """One line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
@@ -155,6 +159,8 @@ class Solution(Readings):
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
             *([("creep", self.creep_note)] if self.creep_note else []),
+            *([("lumping", self.lumping_note)] if self.lumping_note else []),
+            *([("rounding", self.rounding_note)] if self.rounding_note else []),
             *([("trapped", self.trapped_note)] if self.trapped_note else []),
             *([("horizon", self.horizon_note)] if self.horizon_note else []),
         ]

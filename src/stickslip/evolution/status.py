@@ -19,6 +19,16 @@ class Status:
         return f"{self.name}: {self.message}"
 
 
+def rounding_note(steps: int, share: float) -> str:
+    """Return one line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
+    if steps == 0:
+        return ""
+    return (
+        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: it loses"
+        " digits far from where slip began, and double precision does not decide more"
+    )
+
+
 FULL_HISTORY = -2
 INTERRUPTED = -3
 ENOUGH_EVENTS = -4
@@ -38,7 +48,8 @@ STATUSES = {
     FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
     FULL_HISTORY: Status(
         "too many pieces",
-        "the history reached its limit of pieces: shorten the duration, loosen rtol or creep_rtol, or raise max_pieces",
+        "the history reached its limit of pieces (a million takes 0.44 GB): shorten the duration, loosen rtol or creep_rtol, keep"
+        " events only (a catalogue), or raise max_pieces",
         False,
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from stickslip.evolution.compiled import inlined
+from stickslip.evolution.compiled import inlined, kernel
 from stickslip.evolution.lanes import bits_as_number, power_of_two
 from stickslip.evolution.layout import TERMS, Floats
 
@@ -38,12 +38,26 @@ def usable_length(jet: Floats, tolerance: float) -> float:
     step is not that over the guess, which may be larger by orders of magnitude: then it is looked at again.
     """
     if jet[TERMS - 1] == 0.0 and jet[TERMS - 2] == 0.0:
-        return math.inf
+        return length_with_gaps(jet, tolerance)
     length = length_at(jet, tolerance, 0.5)
     if length < FAR_FROM_GUESS:
         for _ in range(3):
             length = length_at(jet, tolerance, length)
     return length
+
+
+@kernel
+def length_with_gaps(jet: Floats, tolerance: float) -> float:
+    """Return the usable length where the last two terms are zero: the series is a polynomial, or has gaps.
+
+    Under a law of u^n every n-th term alone is there where u = 0. With gaps of up to half its length a term of the upper half
+    is left, which then bounds what follows; a polynomial that ends below is right at any length.
+    """
+    for n in range(TERMS - 3, TERMS // 2 - 1, -1):
+        if jet[n] != 0.0:
+            size = max(abs(jet[0]), max(abs(jet[1]), max(abs(jet[2]), abs(jet[3]))))
+            return quick_exp2((quick_log2(tolerance * size) - quick_log2(jet[n])) / n)
+    return math.inf
 
 
 @inlined

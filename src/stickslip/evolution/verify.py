@@ -15,9 +15,11 @@ from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import moment, multiply, powers_of, total
 from stickslip.evolution.workspace import DEGREE, Run
 
-ALLOWED = 1e3
-"""Defect of the contact equation, in units of the local tolerance, beyond which a step is made shorter (1). The last coefficients
-bound the error of the series, not that of its slope at the end of the step, which may be 20 times as large."""
+ALLOWED = 10.0
+"""Defect of the contact equation, in units of the local tolerance, beyond which a step is made shorter (1): on smooth laws it is
+below 1."""
+ALLOWED_SLOPE = 300.0
+"""The same with inertia (1), where it is an error of the series' slope, which is larger at the end of a step: up to 33 there."""
 ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
 HALVINGS = 40
@@ -92,8 +94,10 @@ def load_at_end(run: Run) -> float:
 @inlined
 def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> bool:
     """Return True if a step (of so many guesses) obeys the contact equation at its end, to the tolerance or to rounding."""
-    missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if run.counts[at.HAS_INERTIA] == 1 else 0.0)
-    return missing <= ALLOWED * run.par[at.TOLERANCE] * largest_rate(rate, rate_end) + rounding + run.state[at.ROUNDED]
+    moves = run.counts[at.HAS_INERTIA] == 1
+    missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if moves else 0.0)
+    allowed = ALLOWED_SLOPE if moves else ALLOWED
+    return missing <= allowed * run.par[at.TOLERANCE] * largest_rate(rate, rate_end) + rounding + run.state[at.ROUNDED]
 
 
 @inlined
@@ -131,6 +135,15 @@ def note_rounding(run: Run, length: float) -> None:
     grown += run.k[at.K_BEND] * (TRIFLE * length) ** 2 * moment(run.part, 2)
     missing, _ = defect(run, TRIFLE * length, grown, total(run.part), slope_at_end(run.part))
     run.state[at.ROUNDED] = EXTRA * missing
+
+
+@kernel
+def note_rough_step(run: Run, rate: Floats, rate_end: float) -> None:
+    """Count the step if rounding in the law has made it miss the contact equation by more than the tolerance allows."""
+    share = run.state[at.ROUNDED] / largest_rate(rate, rate_end)
+    if share > (ALLOWED_SLOPE if run.counts[at.HAS_INERTIA] == 1 else ALLOWED) * run.par[at.TOLERANCE]:
+        run.counts[at.ROUGH] += 1
+        run.state[at.ROUGHEST] = max(run.state[at.ROUGHEST], share)
 
 
 @inlined

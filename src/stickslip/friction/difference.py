@@ -77,7 +77,10 @@ def _mul(a: _Node, b: _Node) -> _Node:
 
 def _div(a: _Node, b: _Node) -> _Node:
     start, end = np.divide(a.reference, b.reference), np.divide(a.value, b.value)
-    return _Node(start, (a.step - start * b.step) / b.value, end, (a.slope - end * b.slope) / b.value)
+    infinite = np.isinf(b.value)  # an exponential beyond all numbers: nothing is left of the quotient, nor of its slope
+    with np.errstate(invalid="ignore"):
+        step = np.where(infinite, end - start, (a.step - start * b.step) / b.value)
+        return _Node(start, step, end, np.where(infinite, 0.0, (a.slope - end * b.slope) / b.value))
 
 
 def _pow(a: _Node, b: _Node) -> _Node:
@@ -102,10 +105,12 @@ def _cos(a: _Node) -> _Node:
 
 
 def _exp(a: _Node) -> _Node:
-    start, end = np.exp(a.reference), np.exp(a.value)
+    with np.errstate(over="ignore"):
+        start, end = np.exp(a.reference), np.exp(a.value)
     near = np.abs(a.step) < 1.0  # farther off nothing is lost by subtracting, and expm1 may overflow where start underflows
-    step = np.where(near, start * np.expm1(np.where(near, a.step, 0.0)), end - start)
-    return _Node(start, step, end, end * a.slope)
+    with np.errstate(invalid="ignore"):
+        step = np.where(near, start * np.expm1(np.where(near, a.step, 0.0)), end - start)
+        return _Node(start, step, end, end * a.slope)
 
 
 def _log(a: _Node) -> _Node:
@@ -119,9 +124,14 @@ def _sqrt(a: _Node) -> _Node:
 
 
 def _tanh(a: _Node) -> _Node:
-    start, end, turn = np.tanh(a.reference), np.tanh(a.value), np.tanh(a.step)
-    step = turn / np.cosh(a.reference) ** 2 / (1.0 + start * turn)
-    return _Node(start, step, end, a.slope / np.cosh(a.value) ** 2)
+    """tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference; farther off nothing is lost by subtracting."""
+    start, end = np.tanh(a.reference), np.tanh(a.value)
+    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)  # both may be 1 but for their last digits
+    near = (np.abs(a.step) < 1.0) | one_side
+    with np.errstate(over="ignore"):  # 1 / cosh is 0 there, and so is the slope
+        across = np.cosh(a.value)
+        step = np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
+        return _Node(start, step, end, a.slope / across / across)
 
 
 def _arcsinh(a: _Node) -> _Node:

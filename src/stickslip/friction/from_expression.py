@@ -97,8 +97,8 @@ class ExpressionLaw(RemembersSlip):
 
     @property
     def pieces(self) -> tuple[Formula, ...]:
-        tree = self.tree
-        return (lambda law, u, v: evaluate(tree, vars(law), u, v),)
+        tree, names = self.tree, self.parameters()
+        return (lambda law, u, v: evaluate(tree, {name: getattr(law, name) for name in names}, u, v),)
 
     def parameters(self) -> tuple[str, ...]:
         return tuple(value.name for value in self.values)

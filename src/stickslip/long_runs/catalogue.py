@@ -13,7 +13,7 @@ from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream, Look, Place
 from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Keeper, Orders, as_solution
+from stickslip.evolution.keeper import CHECKPOINT_EVERY, Keeper, Orders, as_solution
 from stickslip.evolution.lumping import check_shortest_event
 from stickslip.evolution.report import Progress
 from stickslip.evolution.simulate import check_run, check_started
@@ -40,14 +40,14 @@ def catalogue(
     path: str | Path | None = None,
     *,
     rtol: float = 1e-10,
-    creep_rtol: float = 0.0,
-    shortest_event: float = 0.0,
+    creep_rtol: float | None = None,
+    shortest_event: float | None = None,
     events: int | None = None,
     event_rate: float | None = None,
     energies: bool = False,
     progress: Progress | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int = MAX_PIECES,
+    max_pieces: int | None = None,
 ) -> pd.DataFrame:
     """The slip events of a run up to `duration` (s), or until so many `events` are over, in bounded memory.
 
@@ -67,16 +67,21 @@ def catalogue(
     if path is not None:
         check_catalogue(Path(path))
     check_energies(creep_rtol, energies, "catalogue")
-    run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
+    run = RunInProgress.begin(problem, rtol, leaps_with(energies, creep_rtol), shortest_event)
     orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
     if path is not None:
         return begin(run, orders, Path(path), rate, energies).read()
     return follow(run, orders, stream_of(run, rate, energies), RowsInMemory()).read()
 
 
-def check_energies(creep_rtol: float, energies: bool, where: str, options: str = "energies and creep_rtol") -> None:
+def leaps_with(energies: bool, creep_rtol: float | None) -> float | None:
+    """Return the tolerance of leaps over creep: automatic ones are left out where energies are wanted."""
+    return 0.0 if energies and creep_rtol is None else creep_rtol
+
+
+def check_energies(creep_rtol: float | None, energies: bool, where: str, options: str = "energies and creep_rtol") -> None:
     """Refuse energies of a run that leaps over creep. Raises InputError."""
-    if energies and creep_rtol > 0.0:
+    if energies and creep_rtol is not None and creep_rtol > 0.0:
         raise InputError(f"{where}: {options} exclude each other: what leaps over creep send into the slab is not known")
 
 
@@ -101,7 +106,7 @@ def resume_catalogue(
     events: int | None = None,
     progress: Progress | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int = MAX_PIECES,
+    max_pieces: int | None = None,
 ) -> pd.DataFrame:
     """Go on with a `catalogue` from its checkpoint, up to `duration` (s from the start; default: as before).
 
@@ -137,7 +142,7 @@ class Paused:
         events: int | None = None,
         progress: Progress | None = None,
         checkpoint_every: float = CHECKPOINT_EVERY,
-        max_pieces: int = MAX_PIECES,
+        max_pieces: int | None = None,
     ) -> Catalogue:
         """Follow the run to its end."""
         stopped, about = self.stopped, self.about
@@ -158,7 +163,7 @@ class Paused:
 @dataclass(frozen=True)
 class Catalogue:
     """What came of a run: its rows, how many events are over, what ended it; and `notes`, lines on what is predictable, on the
-    energy that is trapped in waves, and on leaps over creep, where there is something to say.
+    energy that is trapped in waves, and on leaps over creep and lumped events, where there is something to say.
     """
 
     rows: Rows | RowsInMemory
@@ -226,7 +231,7 @@ class CatalogueKeeper(Keeper):
             self.stream.forget(dropped)
             self._remember(run)
             self.looked = self.stands(run)
-        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.max_pieces)
+        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
 
     def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint, whose rows are on the disk before."""
@@ -252,6 +257,8 @@ class CatalogueKeeper(Keeper):
             "predictability": prediction.text if prediction else "",
             "trapped": trapped_note(solution),
             "creep": creep_note(run.creep),
+            "lumping": run.lumping_note,
+            "rounding": run.rounding_note,
         }
         return {name: note for name, note in notes.items() if note}
 

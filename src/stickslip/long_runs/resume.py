@@ -9,7 +9,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import engine
 from stickslip.evolution.event_stream import EventStream
 from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.keeper import CHECKPOINT_EVERY, MAX_PIECES, Orders
+from stickslip.evolution.keeper import CHECKPOINT_EVERY, Orders
 from stickslip.evolution.report import Progress
 from stickslip.evolution.simulate import check_run, go_on
 from stickslip.evolution.solution import Solution
@@ -26,7 +26,7 @@ def resume(
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int = MAX_PIECES,
+    max_pieces: int | None = None,
 ) -> Solution:
     """Go on with the run in a file that `simulate`, `save` or Ctrl-C left, up to `duration` (s from the start; default: as before).
 

@@ -10,6 +10,8 @@ from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.evolution.creep.conditions import PATIENCE, creep_tolerance
+from stickslip.evolution.lumping import MOST_PIECES, automatic_length, lumps_by_itself
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.loading import LoadingHistory
@@ -87,7 +89,22 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         ]
         for table, (kind, values) in holders.items()
     }
+    facts["run"] += _automatic(scenario)
     return {"body": facts.pop("body"), "friction": _of_law(problem.friction)} | facts
+
+
+def _automatic(scenario: Scenario) -> list[Fact]:
+    """Return what a run of this scenario does on its own where it creeps for long, or where its events get ever shorter."""
+    problem, facts = scenario.problem, list[Fact]()
+    tolerance = creep_tolerance(problem, None, scenario.rtol)
+    if scenario.creep_rtol is None and tolerance > 0.0:
+        does = f"leaps over creep after {PATIENCE} round trips with slip, error of slip at most this times the slip so far"
+        facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every round trip"))
+    if scenario.shortest_event is None and lumps_by_itself(problem):
+        assert isinstance(problem.body, ElasticSlab)
+        does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"
+        facts.append(Fact("shortest_event", automatic_length(problem.body), "s", f"automatic: {does}; 0 lumps none"))
+    return facts
 
 
 def _facts(name: str, value: Any, declared: Quantity) -> list[Fact]:
@@ -182,10 +199,17 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     named = dict.fromkeys([(contact.critical_parameter, contact.critical_value), ("normal_stress", stress)])
     found = [(parameter(problem, name), value) for name, value in named if name is not None and value is not None]
     side = {True: "above", False: "below", None: "at"}
+    places = [f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}" for one, value in found]
+    proofs = [_proof(contact) if one.name == "body.normal_stress" else "" for one, _ in found]
     return [
-        Fact(one.name, value, one.unit, f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}")
-        for one, value in found
+        Fact(one.name, value, one.unit, place + proof) for (one, value), place, proof in zip(found, places, proofs, strict=True)
     ]
+
+
+def _proof(contact: Uniqueness) -> str:
+    """How closely the critical normal stress is proven."""
+    between = contact.critical_stress_between
+    return "" if between is None else f"; proven to within {between[1] - between[0]:.1g} Pa"
 
 
 def _along_slip(problem: Problem, contact: Uniqueness) -> str:

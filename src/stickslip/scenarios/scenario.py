@@ -30,9 +30,9 @@ LARGEST = 1_000_000
 
 @dataclass(frozen=True)
 class Scenario:
-    """A problem, how long to run it (s) and how accurately, or until how many slip events are over; with leaps over creep of a
-    tolerance above 0.
+    """A problem, how long to run it (s) and how accurately, or until how many slip events are over.
 
+    creep_rtol and shortest_event (s) are those of `stickslip.simulate`: None is automatic.
     Where it came from does not count when two are compared.
     """
 
@@ -42,8 +42,8 @@ class Scenario:
     title: str = ""
     description: str = ""
     events: int | None = None
-    creep_rtol: float = 0.0
-    shortest_event: float = 0.0
+    creep_rtol: float | None = None
+    shortest_event: float | None = None
     name: str = field(default="scenario", compare=False)
     source: str = field(default="", compare=False, repr=False)
 
@@ -78,8 +78,8 @@ class Scenario:
         loading = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["loading"] = {n: to_table(value) if isinstance(value, LoadingHistory) else value for n, value in loading.items()}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
-        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol or None}
-        run["shortest_event"] = self.shortest_event or None
+        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
+        run["shortest_event"] = self.shortest_event
         tables["run"] = _without_none(run | {"selection": problem.rule})
         return tomli_w.dumps(tables, multiline_strings=True)
 

@@ -33,8 +33,8 @@ REGISTERED = KINDS | {"loading": HISTORIES}
 TABLES = ("body", "friction", "loading", "initial", "run")
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
-CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0 runs every round trip", at_least=0)
-SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0 resolves them all", at_least=0)
+CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
+SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
 LARGEST_RTOL = 1e-2
 STATE = Quantity("1", "state variable of the friction law, if it has one")
 
@@ -62,8 +62,8 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     if table in KINDS:
         return _declared(kind)
     if table == "run":
-        shortest = (SHORTEST_EVENT, 0.0)
-        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), "creep_rtol": (CREEP_RTOL, 0.0), "shortest_event": shortest}
+        automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
+        return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
     remembered = Quantity(state.unit, state.meaning) if state else STATE

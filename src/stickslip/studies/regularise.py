@@ -217,7 +217,7 @@ def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tup
     """A run, and the seconds that it took, compilation aside."""
     prepare(problem, rtol)
     start = time.perf_counter()
-    solution = simulate(problem, duration, rtol, max_pieces=max_pieces)
+    solution = simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
     return solution, time.perf_counter() - start

@@ -61,7 +61,8 @@ def run_group(
 ) -> int:
     """Run members, each in a lane of the workspace. `engine`: its address; `base`: its table in each lane, for the first member.
 
-    Returns WIDTH when all are done, or `stop` is set; else the lane that has no room. Called again, it goes on from there.
+    Returns WIDTH when all are done, or `stop` is set; else the lane that has no room, or whose member has crept for so long
+    (code PAUSED) that it is to be run alone. Called again, it goes on from there.
     """
     first = first_lane(work, base, stride)
     jets, block = integers(setups.jets.ctypes.data), work.block[0]
@@ -119,7 +120,7 @@ def start_member(run: Run, setups: Setups) -> None:
 
 @inlined
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
-    """Let the engine run the lane's member until it is to take a step with others, ends, has no room, or the batch is stopped."""
+    """Let the engine run the lane's member until it is to take a step with others, ends or pauses, has no room, or all stops."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
     if lane.waits[0] == ALONE:
         counts = borrow(lane.table).counts
@@ -130,7 +131,7 @@ def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> N
         code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
     lane.waits[0] = FRESH if code == at.SLIPS else AWAY
-    if code != at.SLIPS and code != at.FULL and code != OUT_OF_BUDGET:
+    if code != at.SLIPS and code != at.FULL and code != at.PAUSED and code != OUT_OF_BUDGET:
         lane.stage[0] = AT_END
 
 

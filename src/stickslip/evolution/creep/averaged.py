@@ -35,6 +35,7 @@ import numpy as np
 from stickslip.evolution.creep.pattern import Pattern
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.moving_branches import strength_change
+from stickslip.evolution.sight import Sight
 from stickslip.problem import Problem
 
 COMPLEX_STEP = 1e-30
@@ -57,6 +58,17 @@ class Strength:
         """Piece of the law that holds here."""
         law = self.problem.friction
         return int(law.piece_at(self.problem.law_slip + self.law_slip)) if law.knot_variable == "slip" else 0
+
+    @cached_property
+    def sight(self) -> Sight:
+        """What the law may do out of sight of a slip, in the piece that holds here."""
+        law = self.problem.friction
+        return Sight.of(law.trees()[self.piece], law.parameters(), law.piece_values(self.piece), self.problem.law_slip)
+
+    def in_sight(self, x: float, later: tuple[float, ...]) -> bool:
+        """Return True if between x and later slips no part of the law can come into view that leaves no trace at x."""
+        start = self.law_slip + self.sign * x
+        return all(self.sight.used_up(start, self.law_slip + self.sign * end) <= 1.0 for end in later)
 
     @cached_property
     def room(self) -> float:

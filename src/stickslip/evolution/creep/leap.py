@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.bodies import ElasticSlab
 from stickslip.evolution import layout as at
 from stickslip.evolution.creep.averaged import AveragedCreep, Strength
+from stickslip.evolution.creep.conditions import PATIENCE
 from stickslip.evolution.creep.landing import Piece, landing
 from stickslip.evolution.creep.pattern import Pattern, monotone_parts
 from stickslip.evolution.creep.plan import Plan, Planner
@@ -24,7 +25,12 @@ if TYPE_CHECKING:
     from stickslip.evolution.in_progress import RunInProgress
 
 SHORTEST_LEAP = 16
-LONGEST_WAIT = 16
+LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
+"""Round trips between two looks that found no leap: a look takes some milliseconds, as much as thousands of pieces.
+
+A run that leaps automatically may be one that slides for ever and never creeps: until there is a first leap, looks must not take
+most of its time. After it they are frequent again: where 128 round trips of the creep after a pulse are run, it ends in a storm.
+"""
 FAST = 1000.0
 """Slip rates beyond so many pull rates are no creep that the tolerance would let pass: not worth a closer look."""
 CHECKED = 1
@@ -42,6 +48,8 @@ class CreepLeaps:
 
     problem: Problem
     tolerance: float
+    patient: bool = False
+    """Leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
     taken: list[tuple[float, ...]] = field(default_factory=list)
     """What `History.creep` holds, of each leap."""
 
@@ -52,7 +60,10 @@ class CreepLeaps:
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
 
     def begin(self, count: Integers) -> None:
-        """Have the engine pause after the first round trip."""
+        """Have the engine pause after the first round trip, or when creep has lasted."""
+        if self.patient:
+            count[at.CREEP_IN], count[at.PAUSE_FOR] = PATIENCE, 1
+            return
         count[[at.PAUSE_AT, at.PAUSE_FOR]] = 1
 
     def table(self, count: Integers) -> Floats:
@@ -85,7 +96,8 @@ class CreepLeaps:
             run.restore(before)
             plan = self._planner(run, plan.trips // 2).plan()
         count[at.PAUSE_AT] = count[at.ROW] + count[at.PAUSE_FOR]
-        count[at.PAUSE_FOR] = min(2 * count[at.PAUSE_FOR], LONGEST_WAIT)
+        unproven = self.patient and count[at.CREEP_LEAPS] == 0
+        count[at.PAUSE_FOR] = min(2 * count[at.PAUSE_FOR], LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 

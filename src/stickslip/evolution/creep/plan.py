@@ -101,6 +101,8 @@ class Planner:
     def _stride(self, begin: Creep, stride: float) -> Creep | None:
         """The state one stride on, if it can be trusted and the way there interpolated."""
         middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
+        if not self.averaged.strength.in_sight(begin.slip, (middle.slip, end.slip)):
+            return None
         swing = swing_of(begin, middle, end)
         if not (self._fits(middle, swing) and self._fits(end, swing)):
             return None

@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
+from stickslip.contact.roots import sign_change
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.evolution.solution import Solution
 from stickslip.friction import HyperbolicRate
@@ -144,6 +145,12 @@ def stick_ends(case: Problem) -> float:
     return next(jump.load for jump in uniqueness(case).jumps if jump.direction == "up" and jump.rate_before == 0.0)
 
 
+def rate_at_load(solution: Solution, load: float, start: float, end: float) -> float:
+    """Slip rate (m/s) where the load of a run (Pa) passes a value between two times (s) at which it is on either side of it."""
+    passing = sign_change(lambda t: float(solution.load(start + t * (end - start))) - load, 0.0, 1.0)
+    return float(solution.slip_rate(start + passing * (end - start)))
+
+
 def hysteresis(runs: Runs) -> Verdict:
     """Claim 17: one run whose load rises and falls: where it jumps, and its slip rate at one load on both ways."""
     solution = runs.case("fig4-loop")
@@ -152,8 +159,7 @@ def hysteresis(runs: Runs) -> Verdict:
     turn = int(np.argmax(load))
     lower, upper = fold_loads(uniqueness(solution.problem))
     middle = 0.5 * (lower + upper)
-    up = float(rate[:turn][np.argmin(np.abs(load[:turn] - middle))])
-    down = float(rate[turn:][np.argmin(np.abs(load[turn:] - middle))])
+    up, down = (rate_at_load(solution, middle, float(time[n]), float(time[turn])) for n in (0, -1))
     shocks = solution.shocks
     area = float(abs(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(rate))))
     why = (

@@ -1,0 +1,131 @@
+"""What every run must satisfy, whatever the problem."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import stickslip as ss
+from benchmarks.soak_problems import Draw
+from stickslip.errors import InputError
+
+TIMES = 201
+MOST_PIECES = 20_000
+EXPECTED = ("finished", "locked for ever", "event storm", "too many pieces")
+"""What may end a run."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a problem: its status, and what was wrong (empty: nothing)."""
+
+    status: str
+    wrong: tuple[str, ...] = ()
+
+
+class TooSlowError(Exception):
+    """The engine took more than its time."""
+
+
+def run(drawn: Draw, limit: float) -> Outcome:
+    """Run a problem within `limit` seconds of processor time of the engine and check what comes out."""
+    started: list[float] = []
+
+    def watch(report: Any) -> None:
+        started.append(time.process_time())
+        if started[-1] - started[0] > limit:
+            raise TooSlowError(f"more than {limit:g} s at piece {report.pieces}, {report.time:.6g} of {report.duration:.6g} s")
+
+    try:
+        solution = ss.simulate(drawn.problem, drawn.duration, rtol=drawn.rtol, max_pieces=MOST_PIECES, progress=watch)
+    except InputError as error:
+        return Outcome("refused: " + str(error)[:60])
+    except TooSlowError as error:
+        return Outcome("too slow", (str(error),))
+    except Exception as error:
+        return Outcome("error", (f"{type(error).__name__}: {str(error)[:100]}",))
+    try:
+        with np.errstate(all="ignore"):
+            wrong = tuple(problems_of(solution, drawn.rtol))
+    except Exception as error:
+        wrong = (f"reading: {type(error).__name__}: {str(error)[:100]}",)
+    return Outcome(solution.status.name, wrong)
+
+
+def problems_of(run: ss.Solution, rtol: float) -> list[str]:
+    """Everything that is wrong with a run, a short text each."""
+    wrong = [] if run.status.name in EXPECTED else [f"status {run.status.name}"]
+    history = run.history
+    if not history.duration > 0.0:
+        return wrong
+    if (np.diff(history.start) < -1e-12 * history.duration).any():
+        wrong.append("times go back")
+    times = np.linspace(0.0, history.duration, TIMES)[1:]
+    found = {name: getattr(run, name)(times) for name in ("slip", "slip_rate", "traction", "load")}
+    broken = [name for name, values in found.items() if not np.isfinite(values).all()]
+    if broken:
+        return [*wrong, f"not finite: {', '.join(broken)}"]
+    wrong += _contact(run, times, found, rtol) + _tables(run)
+    return wrong + _energy(run, times, rtol)
+
+
+def _contact(run: ss.Solution, times: NDArray[np.float64], found: dict[str, NDArray[np.float64]], rtol: float) -> list[str]:
+    problem, law, history, wrong = run.problem, run.problem.friction, run.history, []
+    here, normal = history.find(times, "right"), run.problem.normal
+    at = here.recorded()  # at rest that was leaped over the contact is as it was before
+    rate, traction, mode = found["slip_rate"], found["traction"], np.where(here.at_rest, 0, history.store.mode[at.piece])
+    walked = np.where(law.counts == "path", mode, 1) * history.grown(at)
+    slip = problem.law_slip + history.store.law_slip[at.piece] + walked
+    slips, size = mode != 0, max(normal, float(np.abs(found["load"]).max()))
+    by_law = mode * normal * law.coefficient(slip, np.abs(rate), history.state(at))
+    off = np.abs(traction - by_law)[slips].max(initial=0.0) / size
+    if off > max(1e-8, 100.0 * rtol):
+        wrong.append(f"traction off the law by {off:.1e}")
+    held = normal * (law.coefficient(slip, 0.0, history.state(at)) + law.static_excess)
+    over = (np.abs(traction) - held)[~slips].max(initial=0.0) / size
+    if over > max(1e-11, 0.0):
+        wrong.append(f"rest above the static strength by {over:.1e}")
+    if (traction * rate < -1e-12 * size * float(np.abs(rate).max())).any():
+        wrong.append("friction does work")
+    body = problem.body
+    if isinstance(body, ss.ElasticSlab) and body.contact_mass == 0.0:
+        gap = np.abs(body.impedance * rate + traction - found["load"]).max() / size
+        if gap > 1e-13:
+            wrong.append(f"Z v + tau is not the load by {gap:.1e}")
+    return wrong
+
+
+def _tables(run: ss.Solution) -> list[str]:
+    wrong, events, shocks = [], run.events, run.shocks
+    if not np.isfinite(events[["start", "slip", "peak_rate", "peak_time"]].to_numpy(float)).all():
+        wrong.append("events not finite")
+    if not np.isfinite(shocks.select_dtypes("number").to_numpy(float)).all():
+        wrong.append("shocks not finite")
+    if (
+        len(events) > 1
+        and (events.start.to_numpy()[1:] < events.end.to_numpy()[:-1] - 4.0 * np.spacing(run.history.duration)).any()
+    ):
+        wrong.append("events overlap")
+    return wrong
+
+
+def _energy(run: ss.Solution, times: NDArray[np.float64], rtol: float) -> list[str]:
+    problem, body = run.problem, run.problem.body
+    energy = run.energy(times[::20])
+    parts = {name: energy[name].to_numpy() for name in ("work", "stored", "heat", "balance")}
+    if not all(np.isfinite(values).all() for values in parts.values()):
+        return ["energy not finite"]
+    size = max(float(np.abs(values).max()) for name, values in parts.items() if name != "balance")
+    load = max(problem.normal, abs(problem.load))
+    rounding = 1e-14 * load**2 / (2.0 * body.stiffness)
+    off = float(np.abs(parts["balance"]).max())
+    wrong = []
+    if off > max(1e-8, 1000.0 * rtol) * size + rounding:
+        wrong.append(f"energy off by {off / size:.1e}")
+    if (np.diff(parts["heat"]) < -1e-12 * size - rounding).any():
+        wrong.append("heat falls")
+    return wrong

@@ -1,0 +1,192 @@
+"""Random problems over every registry: laws, bodies, loadings, selection rules, memory and state, extreme numbers included."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import MISSING, dataclass
+from typing import Any
+
+import numpy as np
+
+import stickslip as ss
+from stickslip.errors import InputError
+from stickslip.friction import LAWS, FrictionLaw, FromExpression
+from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.quantities import Quantity
+from stickslip.selection import SELECTION_RULES
+
+EXTREME = 0.15
+"""Share of problems whose numbers are drawn from many decades."""
+RTOLS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-10)
+TRIES = 50
+EXPRESSIONS: dict[str, tuple[tuple[str, str], ...]] = {
+    "m + a/(1 + v/w)": (("m", "low"), ("a", "low"), ("w", "m/s")),
+    "m + a*exp(-((u - c)/w)**2)": (("m", "high"), ("a", "low"), ("c", "m"), ("w", "m")),
+    "m + a*tanh((u - c)/w)": (("m", "high"), ("a", "low"), ("c", "m"), ("w", "m")),
+    "m + a*exp(-v/w) + b*log(1 + v/x)": (("m", "low"), ("a", "low"), ("b", "small"), ("w", "m/s"), ("x", "m/s")),
+    "m + a*sin(u/w)*exp(-v/x)": (("m", "high"), ("a", "low"), ("w", "m"), ("x", "m/s")),
+    "m + a/(1 + exp((v - c)/w))": (("m", "low"), ("a", "low"), ("c", "m/s"), ("w", "m/s")),
+    "m*(1 + b*arcsinh(v/w))": (("m", "low"), ("b", "small"), ("w", "m/s")),
+}
+PAIRS = (
+    ("linear-slip-weakening", "hyperbolic-rate"),
+    ("sinusoidal-slip", "piecewise-linear-rate"),
+    ("table", "exponential-stribeck"),
+    ("exponential-slip-weakening", "velocity-strengthening"),
+)
+SMOOTH = ("hyperbolic-rate", "exponential-stribeck", "power-stribeck", "velocity-strengthening")
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A problem with what it is run with."""
+
+    kind: str
+    problem: ss.Problem
+    duration: float
+    rtol: float
+
+    def __repr__(self) -> str:
+        return f"ss.simulate({self.problem!r}, {self.duration!r}, rtol={self.rtol!r})"
+
+
+class Drawing:
+    """Draws one problem; sizes follow the body, so that what is drawn matters."""
+
+    def __init__(self, seed: int, index: int) -> None:
+        self.rng = np.random.default_rng([seed, index])
+        self.extreme = bool(self.rng.random() < EXTREME)
+        self.slip = self.rate = self.time = 1.0
+
+    def log(self, low: float, high: float) -> float:
+        """A number between 10**low and 10**high; three times as many decades where numbers are extreme."""
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        return float(10 ** (middle + (3.0 if self.extreme else 1.0) * self.rng.uniform(-half, half)))
+
+    def one_of(self, *choices: Any) -> Any:
+        """One of several, each as likely."""
+        return choices[int(self.rng.integers(len(choices)))]
+
+    def body(self) -> Any:
+        """A body; sets the sizes of slip, slip rate and time."""
+        rng = self.rng
+        if rng.random() < 0.4:
+            mass, stiffness, normal = self.log(-1, 12), self.log(1, 13), self.log(1, 14)
+            damping = float(self.one_of(0.0, 0.0, 0.1, 3.0)) * math.sqrt(mass * stiffness)
+            block = ss.SpringBlock(mass, stiffness, normal, damping)
+            self.slip, self.time, self.rate = normal / stiffness, float(block.period), normal / math.sqrt(mass * stiffness)
+            return block
+        density, speed, thickness, normal = self.log(3, 4), self.log(3, 3.7), self.log(0, 4.5), self.log(6, 8.5)
+        impedance = density * speed
+        driver = float(self.one_of(math.inf, math.inf, math.inf, 0.0, impedance, impedance * self.log(-1, 1)))
+        mass = float(self.one_of(0.0, 0.0, 0.0, density * thickness * self.log(-5, -0.5)))
+        slab = ss.ElasticSlab(density, speed, thickness, normal, driver, mass)
+        self.slip, self.time, self.rate = normal / slab.stiffness, slab.two_way_time, normal / impedance
+        return slab
+
+    def number(self, declared: Quantity) -> float:
+        """A value of a declared quantity."""
+        rng = self.rng
+        if declared.whole:
+            return float(rng.integers(1, 4))
+        sizes = {"m": self.slip, "m/s": self.rate, "s/m": 1.0 / self.rate, "1/m": 1.0 / self.slip, "s": self.time}
+        if declared.unit in sizes:
+            return float(sizes[declared.unit] * self.log(-2.5, 0.5))
+        return float(rng.uniform(0.0, 1.2)) if rng.random() < 0.8 else self.log(-4, 0)
+
+    def field(self, declared: Any) -> Any:
+        """A value of a declared field of a law."""
+        if isinstance(declared, Quantity):
+            return self.number(declared)
+        if isinstance(declared, Series):
+            count = int(self.rng.integers(2, 7))
+            values = [self.number(declared.item) for _ in range(count)]
+            return tuple(sorted(set(values))) if declared.ascending else tuple(values)
+        if isinstance(declared, Choice):
+            return self.one_of(*declared.allowed)
+        assert isinstance(declared, Part | NamedNumbers | Text)
+        return None
+
+    def law(self, kind: str) -> FrictionLaw:
+        """A law of a kind; combinations that the law refuses are drawn again."""
+        for _ in range(TRIES):
+            try:
+                return self._law(kind)
+            except InputError:
+                continue
+        raise InputError(f"no law of kind {kind} in {TRIES} tries")
+
+    def _law(self, kind: str) -> FrictionLaw:
+        if kind == "expression":
+            return self._expression()
+        given: dict[str, Any] = {
+            name: self.field(declared)
+            for name, (declared, default) in fields_of(LAWS[kind]).items()
+            if default is MISSING or self.rng.random() < 0.6
+        }
+        if kind == "table":
+            given.pop(str(self.one_of("slip", "rate")), None)
+            given.setdefault("slip" if "rate" not in given else "rate", None)
+            if given.get("slip") is None and given.get("rate") is None:
+                given["slip"] = self.field(fields_of(LAWS[kind])["slip"][0])
+        if kind == "lagged":
+            given["rate"] = self.law(str(self.one_of(*SMOOTH)))
+        elif kind in ("sum", "product"):
+            slip, rate = PAIRS[int(self.rng.integers(len(PAIRS)))]
+            given = {"slip": self.law(slip), "rate": self.law(rate)}
+        lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
+        given = {name: value[: min(lengths)] if isinstance(value, tuple) else value for name, value in given.items()}
+        return LAWS[kind](**given)
+
+    def _expression(self) -> FrictionLaw:
+        text = str(self.one_of(*EXPRESSIONS))
+        sizes = {
+            "low": lambda: self.rng.uniform(0.0, 0.5),
+            "high": lambda: self.rng.uniform(0.5, 1.0),
+            "small": lambda: self.log(-4, -1),
+        }
+        sizes |= {"m": lambda: self.slip * self.log(-3, 0), "m/s": lambda: self.rate * self.log(-3, 0)}
+        values = {name: float(sizes[size]()) for name, size in EXPRESSIONS[text]}
+        return FromExpression(text, values, counts=self.one_of("path", "net"), memory=self.one_of("all", "all", "since-arrest"))
+
+    def history(self, size: float) -> Any:
+        """A loading history with values of a size."""
+        rng, value = self.rng, lambda: float(size * self.rng.normal())
+        times = tuple(float(t) for t in np.cumsum(rng.uniform(0.05, 1.0, 3)) * self.time)
+        kind = self.one_of("steps", "piecewise-linear", "hold-and-slide", "sinusoidal")
+        if kind == "steps":
+            return ss.loading.Steps((0.0, *times), (value(), value(), value(), value()))
+        if kind == "piecewise-linear":
+            return ss.loading.PiecewiseLinear((0.0, *times), (value(), value(), value(), value()))
+        if kind == "hold-and-slide":
+            return ss.loading.HoldAndSlide(slide=value(), slide_time=times[0], hold_times=times[1:])
+        return ss.loading.Sinusoidal(value(), value(), self.time * self.log(-1, 1), float(rng.uniform(0.0, 6.0)))
+
+    def problem(self, kind: str) -> Draw:
+        """A problem under a law of a kind, and how long it runs."""
+        rng, body = self.rng, self.body()
+        law = self.law(kind)
+        normal = body.normal_force if isinstance(body, ss.SpringBlock) else body.normal_stress
+        given: dict[str, Any] = {"selection": str(self.one_of(*SELECTION_RULES))}
+        speed = float(self.one_of(0.0, 1.0, 1.0, -1.0)) * self.rate * self.log(-8, -0.5)
+        given["pull_rate"] = self.history(abs(speed)) if rng.random() < 0.2 else speed
+        lossy = isinstance(body, ss.ElasticSlab) and math.isfinite(body.driver_impedance)
+        if lossy and rng.random() < 0.5:
+            given["far_stress"] = normal * float(rng.uniform(0.0, 1.0))
+            given["far_stress_rate"] = normal / self.time * self.log(-6, -1) * float(self.one_of(0.0, 1.0, -1.0))
+        if rng.random() < 0.3:
+            given["initial_slip"] = self.slip * float(rng.normal())
+        if law.sticks:
+            given["initial_excess"] = float(self.one_of(0.0, 1.0, 1.0, -1.0)) * normal * self.log(-6, -0.5)
+        else:
+            given["initial_load"] = normal * float(rng.uniform(-1.0, 1.0))
+            given["initial_state"] = self.time * self.log(-3, 3)
+        rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 7) if rng.random() < 0.1 else 1.0)
+        return Draw(kind, ss.Problem(body, law, **given), float(rounds * self.time), float(self.one_of(*RTOLS)))
+
+
+def draw(seed: int, index: int, only: str | None = None) -> Draw:
+    """The problem with a number. Raises InputError where the package refuses what was drawn."""
+    drawing = Drawing(seed, index)
+    kinds = tuple(LAWS)
+    return drawing.problem(only or kinds[index % len(kinds)])

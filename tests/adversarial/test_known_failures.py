@@ -1,0 +1,116 @@
+"""Failures that were met once, by name: features of a law that steps went over without a word.
+
+The numbers were computed with scipy before these tests were written, and are computed again here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from tests.adversarial.cases import Case
+from tests.adversarial.checks import CLAIM, errors, off_the_law
+from tests.adversarial.features import Feature, Recipe
+from tests.adversarial.truth import truth_of
+
+F = ss.friction
+SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
+STRIBECK = F.ExponentialStribeck(static=0.8, dynamic=0.3, rate=0.01, exponent=1)
+
+
+def bump(amplitude: float, width: float) -> tuple[Any, Recipe]:
+    """A bump of friction at a slip of 1 m, for the package and for the truth."""
+    recipe = Recipe(0.6, (Feature("bump", "u", amplitude, 1.0, width),))
+    return F.FromExpression(recipe.text, recipe.parameters), recipe
+
+
+def bump_case(body: Any, amplitude: float, width: float, excess: float, duration: float) -> Case:
+    """Slip from 0 over the bump."""
+    law, recipe = bump(amplitude, width)
+    problem = ss.Problem(body, law, initial_excess=excess)
+    return Case("bump", problem, recipe.value, recipe, duration, slip=1.0, rate=1.0)
+
+
+def test_exponential_tail_met_while_a_mass_on_a_belt_slows_down() -> None:
+    """The first event ends at 0.33240 s (the first engine: 0.33378 s)."""
+    recipe = Recipe(0.3, (Feature("tail", "v", 0.5, 0.0, 0.01),))
+    problem = ss.Problem(ss.SpringBlock(1.0, 100.0, 10.0), STRIBECK, pull_rate=0.01, initial_excess=0.0)
+    case = Case("belt", problem, recipe.value, recipe, 0.5, slip=0.1, rate=1.0)
+    truth = truth_of(case)
+    assert truth.end == pytest.approx(0.33240, abs=5e-6)
+    found = errors(ss.simulate(problem, 0.5), truth)
+    assert found.largest < CLAIM
+
+
+def test_exponential_tail_met_while_a_slab_is_unloaded() -> None:
+    """Traction on the law to 1e-9 S (the first engine: 1.7e-4 S)."""
+    problem = ss.Problem(SLAB, STRIBECK, pull_rate=-20.0, initial_excess=2e7)
+    run = ss.simulate(problem, 0.99 * SLAB.two_way_time)
+    recipe = Recipe(0.3, (Feature("tail", "v", 0.5, 0.0, 0.01),))
+    case = Case("tail", problem, recipe.value, recipe, 0.99 * SLAB.two_way_time, slip=20.0, rate=8.0)
+    found = errors(run, truth_of(case))
+    assert found.largest < CLAIM
+    share = off_the_law(run)
+    assert share < 1e-9
+
+
+def test_bump_in_the_way_of_a_slab() -> None:
+    """Traction on the law (the first engine: 5 % of S off), slip as in truth."""
+    case = bump_case(SLAB, 0.05, 0.1, 1e7, 4.0)
+    run = ss.simulate(case.problem, 4.0)
+    share = off_the_law(run)
+    assert share < 1e-9
+    found = errors(run, truth_of(case))
+    assert found.largest < CLAIM
+
+
+def test_bump_in_the_way_of_a_block() -> None:
+    """Slip of 1.54913 m (the first engine: 1.70768 m)."""
+    case = bump_case(BLOCK, 0.3, 0.1, 3e13, 2.5)
+    truth = truth_of(case)
+    assert truth.total == pytest.approx(1.54913, abs=5e-6)
+    found = errors(ss.simulate(case.problem, 2.5), truth)
+    assert found.largest < CLAIM
+
+
+def test_narrow_bump_in_the_way_of_a_contact_with_mass() -> None:
+    """Slip of 4.0672 m at 4 s (the first engine: 4.0815 m)."""
+    case = bump_case(replace(SLAB, contact_mass=1e3), 0.05, 0.01, 1e7, 4.0)
+    truth = truth_of(case)
+    assert truth.total == pytest.approx(4.0672, abs=5e-5)
+    found = errors(ss.simulate(case.problem, 4.0), truth)
+    assert found.largest < CLAIM
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2, 0.5, 0.8])
+def test_tanh_far_from_where_slip_begins_keeps_its_digits(start: float) -> None:
+    """The difference from the start was 0/0 from some 19 widths on, and lost digits before: 1e-14 of the step is left."""
+    law = F.FromExpression("0.6 + 0.1*tanh((u - 1)/w)", {"w": 0.02})
+    case = ss.Problem(SLAB, law, initial_slip=start, initial_excess=2e7)
+    run = ss.simulate(case, 0.05)
+    assert run.status.ok
+    slip = np.linspace(start, 2.0, 301)
+    plain = 0.1 * (np.tanh((slip - 1.0) / 0.02) - np.tanh((start - 1.0) / 0.02))
+    from stickslip.friction.difference import difference
+
+    found, _ = difference(law.trees()[0], law.numbers(), start, slip - start, 0.0)
+    assert found == pytest.approx(plain, rel=0.0, abs=3e-16)
+
+
+def test_expression_with_parameters_can_be_a_part_of_another_law() -> None:
+    """A lagged law, a sum and a product of expressions see their own parameters (they raised KeyError)."""
+    text, values = "d + a/(1 + v/w)", {"d": 0.3, "a": 0.5, "w": 1.0}
+    rate, known = F.FromExpression(text, values), F.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+    slip = F.SinusoidalSlip(0.1, 0.05, 3.0)
+    for one, other in (
+        (F.LaggedFriction(rate, 0.1), F.LaggedFriction(known, 0.1)),
+        (F.SlipPlusRate(slip, rate), F.SlipPlusRate(slip, known)),
+        (F.SlipTimesRate(slip, rate), F.SlipTimesRate(slip, known)),
+    ):
+        mine, theirs = (ss.simulate(ss.Problem(BLOCK, law, initial_excess=1e12), 2.0) for law in (one, other))
+        assert float(mine.slip(2.0)) == pytest.approx(float(theirs.slip(2.0)), rel=1e-9)

@@ -1,0 +1,60 @@
+"""rtol rules the error: it falls with rtol for every kind of law and body, and stays below a stated multiple of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import stickslip as ss
+from tests.adversarial.cases import Case, draw
+from tests.adversarial.checks import errors
+from tests.adversarial.truth import truth_of
+
+RTOLS = (1e-4, 1e-6, 1e-8, 1e-10)
+BOUND, FLOOR = 100.0, 1e-10
+"""error <= BOUND rtol + FLOOR; the floor is for rounding and for the truth's own error."""
+
+KINDS = {
+    "bump in slip, block": ("bump(u)", "block"),
+    "bump in slip, slab": ("bump(u)", "slab"),
+    "step in slip, contact mass": ("step(u)", "mass"),
+    "logistic in slip, matched driver": ("logistic(u)", "matched"),
+    "tail in rate, block": ("tail(v)", "block"),
+    "tail in rate, contact mass": ("tail(v)", "mass"),
+    "bump in slip times logistic in rate": ("bump(u)+logistic(v)", "block"),
+    "table of slip, block": ("table-bump(u)", "block"),
+    "table of rate, block": ("table-bump(v)", "block"),
+    "lag, block": ("lagged-bump(v)", "block"),
+    "lag, slab": ("lagged-bump(v)", "slab"),
+}
+
+
+def first_case(template: str, body: str) -> Case:
+    """The first case of a template with a body of a kind."""
+    return next(case for case in (draw(template, seed) for seed in range(100)) if f", {body}," in case.name)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_error_falls_with_rtol(kind: str) -> None:
+    case = first_case(*KINDS[kind])
+    truth = truth_of(case)
+    share = truth_of(case.with_excess(1e-10)).total / truth.total - 1.0
+    amplification = max(abs(share) / 1e-10, 1.0)  # of an error of the load, which no integrator can go below
+    for rtol in RTOLS:
+        found = errors(ss.simulate(case.problem, case.duration, rtol=rtol), truth)
+        assert found.largest <= BOUND * rtol * amplification + FLOOR, f"{case.name}, rtol {rtol:g}: {found}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("template", sorted({template for template, _ in KINDS.values()}))
+def test_error_falls_with_rtol_for_many(template: str, seed: int) -> None:
+    case = draw(template, seed)
+    truth = truth_of(case)
+    other = truth_of(replace(case.with_excess(1e-10)))
+    if truth.total <= 0.0 or (truth.end is None) != (other.end is None) or abs(other.total / truth.total - 1.0) > 1e-8:
+        pytest.skip("a grazing case")
+    for rtol in RTOLS:
+        found = errors(ss.simulate(case.problem, case.duration, rtol=rtol), truth)
+        assert found.largest <= 100.0 * BOUND * rtol + FLOOR, f"{case.name}, rtol {rtol:g}: {found}"

@@ -1,0 +1,291 @@
+"""Folds with proof: closed forms, 50-digit arithmetic and dense scans; and what rounding leaves open is said."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.contact import branches as searching
+from stickslip.contact import certified
+from stickslip.contact.branches import branches_of
+from stickslip.contact.certified import certificate
+from stickslip.contact.critical import critical_normal_stress, critical_value, margin
+from stickslip.contact.lowest import lowest_slope, proven_regime
+from stickslip.contact.resistance import resistance
+from stickslip.contact.uniqueness import uniqueness
+from stickslip.evolution.moving_branches import branch_rows
+from stickslip.friction import LAWS, FromExpression, enclosure
+from stickslip.scenarios.scenario import read_scenario
+from stickslip.scenarios.templates import template
+from tests.friction.drawn import laws
+
+from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, slab_problem
+
+mpmath = pytest.importorskip("mpmath")
+
+WIDTHS = [1e-2, 1e-3, 3e-4, 1e-4, 1e-5]
+HEIGHT = 0.05
+RATE_LAWS = sorted(kind for kind, law in LAWS.items() if law.state is None)
+
+
+def bump(width: float) -> ss.Problem:
+    """Friction with a bump at 1 m/s."""
+    return slab_problem(FromExpression(f"0.5 + {HEIGHT}*exp(-((v-1)/w)**2)", {"w": width}))
+
+
+def folds_of_bump(width: float) -> list[float]:
+    """Where Z = 2 S height x exp(-x^2) / width with x = (v - 1) / width, by Lambert's W."""
+    with mpmath.workdps(50):
+        share = mpmath.mpf(Z) * mpmath.mpf(width) / (2 * mpmath.mpf(S) * mpmath.mpf(HEIGHT))
+        x = [mpmath.sqrt(-mpmath.lambertw(-2 * share**2, k) / 2).real for k in (0, -1)]
+        return [1 + mpmath.mpf(width) * one for one in x]
+
+
+def slope_of(problem: ss.Problem, rates: np.ndarray) -> np.ndarray:
+    """g' by a complex step through the law's own formula."""
+    law, step = problem.friction, 1e-100
+    values = law.piece_coefficient(0, np.complex128(problem.law_slip), rates + 1j * step)
+    return Z + S * np.imag(values) / step
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_bump_of_any_width_has_its_two_folds(width):
+    found = uniqueness(bump(width))
+    assert found.certificate == "proven"
+    assert found.undecided == ()
+    assert found.regime == "irregular"
+    assert "Proven by interval arithmetic" in found.summary
+    assert len(found.folds) == 2
+    for fold, rate in zip(found.folds, folds_of_bump(width), strict=True):
+        assert fold.rate == pytest.approx(float(rate), rel=1e-12, abs=0)
+        low, high = fold.enclosure
+        assert low <= rate <= high
+        assert high - low <= 1e-12 * fold.rate
+        assert low <= fold.rate <= high
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_engine_is_given_the_folds_of_a_bump(width):
+    rows, stick_to = branch_rows(bump(width), 0.0)
+    wanted = [float(one) for one in folds_of_bump(width)]
+    assert rows[0].tolist() == pytest.approx([0.0, wanted[1]], rel=1e-12, abs=0)
+    assert rows[1, 0] == pytest.approx(wanted[0], rel=1e-12, abs=0)
+    assert stick_to == 0.0
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_bump_has_its_critical_normal_stress(width):
+    """Friction falls most steeply at x = 1/sqrt(2), by height sqrt(2/e) / width."""
+    problem = bump(width)
+    exact = Z * width / (HEIGHT * math.sqrt(2.0 / math.e))
+    assert critical_normal_stress(resistance(problem)) == pytest.approx(exact, rel=1e-12, abs=0)
+    low, high = uniqueness(problem).critical_stress_between
+    assert low <= exact * (1 + 1e-15)
+    assert exact * (1 - 1e-15) <= high
+    assert high - low <= 1e-12 * exact
+    assert margin(problem) == pytest.approx(1.0 - S / exact, rel=1e-12, abs=0)
+
+
+def test_narrow_folds_that_move_with_slip():
+    """The bump moves along the rate as the contact slips: at every slip its two folds are found."""
+    law = FromExpression(f"0.5 + {HEIGHT}*exp(-((v - 1 - 0.1*sin(u))/w)**2)", {"w": 1e-4})
+    exact = [float(one) - 1.0 for one in folds_of_bump(1e-4)]
+    for slip in (0.0, 0.7, 2.0, 5.0):
+        first, second = branches_of(resistance(slab_problem(law), slip))
+        center = 1.0 + 0.1 * math.sin(slip)
+        assert [first.rate_to - center, second.rate_from - center] == pytest.approx(exact, rel=0, abs=1e-14)
+
+
+def test_compiled_scans_are_given_the_folds_that_a_grid_misses():
+    g = resistance(bump(1e-4))
+    rising = g.slope(searching.scan_rates(g)) > 0.0
+    assert np.count_nonzero(rising[1:] != rising[:-1]) == 2
+    plain = g.slope(searching.search_grid(g)) > 0.0
+    assert plain.all()
+    seen = resistance(slab_problem(ss.friction.ExponentialStribeck(0.6, 0.4, rate=0.1, exponent=2)))
+    assert np.array_equal(searching.scan_rates(seen), searching.search_grid(seen))
+
+
+@pytest.mark.parametrize("kind", RATE_LAWS)
+def test_the_example_of_every_law_is_proven(kind):
+    problem = slab_problem(example_of(kind))
+    assert uniqueness(problem).certificate == "proven"
+    assert all(fold.enclosure is not None for fold in uniqueness(problem).folds)
+
+
+def example_of(kind: str) -> ss.friction.FrictionLaw:
+    """A law with the values of its example."""
+    return read_scenario(template("slab", kind), "drawn").problem.friction
+
+
+@settings(max_examples=60, deadline=None)
+@given(law=st.sampled_from(RATE_LAWS).flatmap(laws), slip=st.floats(0.0, 3.0))
+def test_proof_and_search_agree_on_drawn_laws(law, slip):
+    """Laws without narrow features: every fold of the search is in one proven interval, and no other interval exists."""
+    g = resistance(slab_problem(law), slip)
+    if not law.depends_on_rate:
+        return
+    proof, (rising, folds) = certificate(g), searching._searched(g)
+    decided = [fold for fold in folds if not any(searching.within(fold, one) for one in proof.undecided)]
+    assert len(decided) == len(proof.turns)
+    assert all(searching.within(fold, turn) for fold, turn in zip(decided, proof.turns, strict=True))
+    if proof.rises_at_rest is not None:
+        assert rising == proof.rises_at_rest
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        hyperbolic(1.0),
+        hyperbolic(ALPHA_C + 1e-6),
+        Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3),
+        ss.friction.ExponentialStribeck(0.6, 0.4, rate=0.1, exponent=2),
+        ss.friction.PiecewiseLinearRate(rates=(0.0, 1.0, 2.0, 6.0), coefficients=(0.6, 0.65, 0.5, 0.5)),
+    ],
+)
+def test_folds_that_the_search_finds_keep_every_bit(law):
+    g = resistance(slab_problem(law))
+    ends = [end for b in branches_of(g) for end in (b.rate_from, b.rate_to) if 0.0 < end < math.inf]
+    assert ends == searching._searched(g)[1]
+
+
+FEATURES = (
+    "{a}*exp(-((v-{c})/{w})**2)",
+    "{a}*tanh((v-{c})/{w})",
+    "{a}*sin(v/{w})*exp(-((v-{c})/(6*{w}))**2)",
+    "{a}/(1+((v-{c})/{w})**2)",
+)
+
+
+def with_features(seed: int) -> tuple[ss.Problem, np.ndarray]:
+    """A law with one to four bumps, steps and ripples, and slip rates that resolve them all."""
+    rng = np.random.default_rng(seed)
+    text, rates = "0.6 + 0.1/(1 + v)", [np.linspace(0.0, 20.0, 20_001), np.geomspace(1e-8, 1e4, 4001)]
+    for _ in range(rng.integers(1, 5)):
+        width, center = 10.0 ** rng.uniform(-4.0, 0.0), round(float(rng.uniform(0.2, 5.0)), 6)
+        size = round(float(rng.choice([-1.0, 1.0]) * rng.uniform(0.005, 0.04)), 6)
+        text += " + " + str(rng.choice(FEATURES)).format(a=f"({size})", c=center, w=f"{width:.6e}")
+        rates.append(center + width * np.linspace(-40.0, 40.0, 20_001))
+    together = np.unique(np.concatenate(rates))
+    return slab_problem(FromExpression(text)), together[together >= 0.0]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_laws_with_narrow_features_have_the_folds_of_a_dense_scan(seed):
+    problem, rates = with_features(seed)
+    found = uniqueness(problem)
+    with np.errstate(over="ignore", invalid="ignore"):
+        slope = slope_of(problem, rates)
+    usable = np.isfinite(slope)
+    rates, slope = rates[usable], slope[usable]
+    turns = np.flatnonzero((slope[1:] > 0.0) != (slope[:-1] > 0.0))
+    assert found.certificate == "proven"
+    assert len(found.folds) == len(turns)
+    for fold, low, high in zip(found.folds, rates[turns], rates[turns + 1], strict=True):
+        assert low * (1 - 1e-12) <= fold.rate <= high * (1 + 1e-12)
+        assert fold.enclosure[1] - fold.enclosure[0] <= 1e-9 * fold.rate
+    lowest = lowest_slope(resistance(problem))
+    assert lowest.verdict == "proven"
+    assert lowest.at_least <= slope.min() * (1 + 1e-12) if slope.min() > 0 else lowest.at_least <= slope.min() * (1 - 1e-12)
+    assert lowest.at_most - lowest.at_least <= 1e-9 * max(Z, abs(lowest.at_least))
+
+
+def touching(shift: float) -> ss.Problem:
+    """g' = S (0.3 (v - 1)^2 + shift) up to rounding: for shift = 0 it touches 0 at 1 m/s without changing its sign."""
+    return slab_problem(FromExpression("0.6 - a*v + 0.1*(v - 1)**3", {"a": Z / S - shift}))
+
+
+def test_a_root_that_only_touches_is_not_decided():
+    found = uniqueness(touching(0.0))
+    assert found.certificate == "not decided"
+    ((low, high),) = found.undecided
+    assert low <= 1.0 <= high
+    assert high - low <= 1e-7
+    assert found.regime == "regular"
+    assert found.folds == ()
+    assert "does not decide whether g = Z v + S mu(v) turns between" in found.summary
+    assert proven_regime(resistance(touching(0.0))) is None
+
+
+@pytest.mark.parametrize("shift", [-1e-10, 1e-10])
+def test_beside_a_root_that_only_touches_all_is_decided(shift):
+    """1e-10 of friction per m/s is 1e-9 of what the two parts of g' are: bounds of g' are narrower than that."""
+    found = uniqueness(touching(shift))
+    assert found.certificate == "proven"
+    half = math.sqrt(-shift / 0.3) if shift < 0.0 else 0.0
+    assert [fold.rate for fold in found.folds] == pytest.approx([1.0 - half, 1.0 + half] if half else [], rel=0, abs=1e-11)
+    assert proven_regime(resistance(touching(shift))) == ("irregular" if half else "regular")
+
+
+def test_at_the_critical_value_the_start_is_not_decided():
+    found = uniqueness(slab_problem(hyperbolic(ALPHA_C)))
+    assert found.certificate == "not decided"
+    ((low, high),) = found.undecided
+    assert low == 0.0
+    assert high < 1e-13
+    assert found.regime == "regular"
+
+
+def test_a_plateau_is_not_decided():
+    flat = ss.friction.PiecewiseLinearRate(rates=(0.0, 1.0, 2.0, 6.0), coefficients=(0.6, 0.65, 0.65 - Z / S, 0.5))
+    found = uniqueness(slab_problem(flat))
+    assert found.regime == "continuum"
+    assert found.certificate == "not decided"
+    assert found.undecided == ((1.0, 2.0),)
+
+
+def test_kinks_are_folds_of_no_width():
+    law = ss.friction.PiecewiseLinearRate(rates=(0.0, 1.0, 2.0, 6.0), coefficients=(0.6, 0.65, 0.5, 0.5))
+    found = uniqueness(slab_problem(law))
+    assert [fold.enclosure for fold in found.folds] == [(1.0, 1.0), (2.0, 2.0)]
+    assert found.certificate == "proven"
+
+
+def test_a_formula_without_sure_bounds_is_searched(monkeypatch):
+    enclosure._nodes.cache_clear()
+    monkeypatch.delitem(enclosure._UNARY, "exp")
+    found = uniqueness(bump(1e-2))
+    assert found.certificate == "searched"
+    assert len(found.folds) == 2
+    assert [fold.enclosure for fold in found.folds] == [None, None]
+    assert "without proof" in found.summary
+    assert critical_value(bump(1e-2), "w").certificate == "searched"
+    enclosure._nodes.cache_clear()
+
+
+def test_too_many_cells_are_left_undecided(monkeypatch):
+    monkeypatch.setattr(certified, "MOST_EVALUATIONS", 2000)
+    problem = slab_problem(FromExpression("0.6 + 0.001*cos(300*v)*exp(-v)"))
+    found = certificate(resistance(problem))
+    assert found.verdict == "not decided"
+    assert found.evaluations <= 2000
+    rates = np.linspace(0.0, 3.0, 300_001)
+    slope = slope_of(problem, rates)
+    for i in np.flatnonzero((slope[1:] > 0.0) != (slope[:-1] > 0.0)):
+        assert any(low <= rates[i + 1] and rates[i] <= high for low, high in (*found.turns, *found.undecided))
+
+
+@pytest.mark.parametrize(
+    ("law", "name"), [(hyperbolic(1.0), "alpha"), (ss.friction.ExponentialStribeck(0.6, 0.4, rate=0.1, exponent=2), "rate")]
+)
+def test_a_critical_value_is_enclosed(law, name):
+    problem = slab_problem(law)
+    found = critical_value(problem, name)
+    closed = law.critical_value(Z, S)[1]
+    assert found.certificate == "proven"
+    ((low, high),) = found.enclosures
+    assert low < closed < high
+    assert high - low <= 1e-10 * closed
+
+
+def test_a_narrow_bump_has_a_critical_width():
+    """The law is regular beyond the width S height sqrt(2/e) / Z, and proven to be irregular below."""
+    found = critical_value(bump(1e-4), "w")
+    assert found.value == pytest.approx(S * HEIGHT * math.sqrt(2.0 / math.e) / Z, rel=1e-12, abs=0)
+    assert found.certificate == "proven"
+    assert found.regimes == ("irregular", "regular")

@@ -1,0 +1,204 @@
+"""Interval arithmetic on formulas against 50-digit arithmetic: what is said to be enclosed is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from stickslip.friction import interval as iv
+from stickslip.friction.enclosure import NotEnclosedError, enclose
+from stickslip.friction.expression import (
+    FUNCTIONS,
+    OPERATIONS,
+    RATE,
+    SLIP,
+    STATE,
+    Expression,
+    Parameter,
+    as_expression,
+    exp,
+    nodes_of,
+)
+
+mpmath = pytest.importorskip("mpmath")
+mpmath.mp.dps = 50
+
+POSITIVE = ("log", "sqrt", "pow")
+"""Operations of numbers above 0."""
+UNARY: dict[str, Callable[[Any], Any]] = {name: getattr(mpmath, name.replace("arcsinh", "asinh")) for name in FUNCTIONS}
+BINARY: dict[str, Callable[[Any, Any], Any]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "pow": lambda a, b: a**b,
+}
+SLIP_HERE, ALPHA = 0.3, 1.7
+PARAMETERS = {"alpha": ALPHA}
+
+
+def exact(tree: Expression, rate: Any) -> Any:
+    """The formula in 50 digits. Raises ValueError outside its domain."""
+    found: dict[Expression, Any] = {RATE: mpmath.mpf(rate), SLIP: mpmath.mpf(SLIP_HERE), Parameter("alpha"): mpmath.mpf(ALPHA)}
+    for node in nodes_of(tree):
+        if node.operation == "constant":
+            found[node] = mpmath.mpf(node.value)
+        elif node.arguments:
+            given = [found[argument] for argument in node.arguments]
+            if node.operation in POSITIVE and not given[0] > 0:
+                raise ValueError(node.operation)
+            if node.operation == "div" and given[1] == 0:
+                raise ValueError(node.operation)
+            if node.operation == "exp" and abs(given[0]) > 600:
+                raise ValueError(node.operation)
+            found[node] = (UNARY | BINARY)[node.operation](*given)
+    return found[tree]
+
+
+def drawn(rng: np.random.Generator, depth: int) -> Expression:
+    """A formula with all operations of formulas."""
+    if depth == 0 or rng.random() < 0.1:
+        leaves = [RATE, RATE, RATE, SLIP, Parameter("alpha"), as_expression(round(float(rng.normal(0.0, 2.0)), 3))]
+        return leaves[rng.integers(len(leaves))]
+    name = [*BINARY, *FUNCTIONS, "square", "logistic", "positive"][rng.integers(15)]
+    first = drawn(rng, depth - 1)
+    if name == "square":
+        return first * first
+    if name == "logistic":
+        return first / (1.0 + exp(drawn(rng, depth - 1)))
+    if name == "positive":
+        return OPERATIONS[["log", "sqrt"][rng.integers(2)]](0.5 + first * first)
+    if name == "pow":
+        return Expression("pow", (0.1 + first * first, as_expression(float(rng.choice([0.5, -1.5, 2.25, 3.0])))))
+    return OPERATIONS[name](first) if name in FUNCTIONS else OPERATIONS[name](first, drawn(rng, depth - 1))
+
+
+def escapes(seed: int, trees: int, width: float, depth: int = 4) -> tuple[int, int]:
+    """How many of so many values and derivatives at points in cells of a relative width are outside their bounds.
+
+    No tolerance: only the error of the 50-digit derivative, 1e-30 of its size, is allowed for.
+    """
+    rng, outside, checked = np.random.default_rng(seed), 0, 0
+    for _ in range(trees):
+        tree = drawn(rng, depth)
+        low = float(10.0 ** rng.uniform(-4.0, 2.0))
+        high = low * (1.0 + width * float(rng.random()))
+        bounds = enclose(tree, PARAMETERS, SLIP_HERE, np.array([low]), np.array([high]))
+        rate = min(max(low + (high - low) * float(rng.random()), low), high)
+        for order in range(3):
+            try:
+                value = mpmath.diff(lambda v, tree=tree: exact(tree, v), rate, order)
+            except (ValueError, ZeroDivisionError, OverflowError):
+                continue
+            slack = mpmath.mpf(10) ** -30 * (1 + abs(value))
+            least, most = (float(one) for one in bounds[order][:, 0])
+            outside += not ((least == -math.inf or least - slack <= value) and (most == math.inf or value <= most + slack))
+            checked += 1
+    return outside, checked
+
+
+@pytest.mark.parametrize("width", [0.0, 1e-9, 0.03, 1.0])
+def test_bounds_hold_the_exact_values_and_derivatives(width):
+    outside, checked = escapes(seed=int(1e3 * width) + 7, trees=200, width=width)
+    assert checked > 450
+    assert outside == 0
+
+
+def test_without_outward_rounding_values_escape(monkeypatch):
+    """The test above has teeth: bounds that are rounded to nearest lose many values of single rates."""
+    monkeypatch.setattr(iv, "outward", lambda a: a)
+    monkeypatch.setattr(iv, "_widened", lambda a, error=0.0: a)
+    monkeypatch.setattr(iv, "WAVE_ERROR", 0.0)
+    outside, checked = escapes(seed=7, trees=200, width=0.0)
+    assert outside > 0.1 * checked
+
+
+def test_with_single_steps_of_rounding_left_out_values_escape(monkeypatch):
+    """Sums and products without outward rounding are noticed even though library functions are widened."""
+    monkeypatch.setattr(iv, "outward", lambda a: a)
+    assert escapes(seed=7, trees=200, width=0.0)[0] > 0
+
+
+def test_bounds_at_single_rates_are_tight():
+    """A formula of ten operations is enclosed to 1e-14 of its size, absolute where it is of the size of 1."""
+    tree = 0.3 + 0.5 / (1.0 + ALPHA * RATE) + 0.1 * exp(-RATE)
+    rates = np.geomspace(1e-9, 1e2, 50)
+    for low, high in enclose(tree, {}, 0.0, rates, rates)[:2]:
+        assert np.all(high > low)
+        assert np.all(high - low <= 1e-14)
+
+
+CELL_FUNCTIONS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    name: (getattr(iv, name), getattr(np, name)) for name in ("sin", "cos", "exp", "tanh", "arcsinh", "square")
+} | {
+    "sech_squared": (iv.sech_squared, lambda x: np.cosh(x) ** -2),
+    "arcsinh_slope": (iv.arcsinh_slope, lambda x: 1.0 / np.hypot(1.0, x)),
+    "logistic": (iv.logistic, lambda x: 1.0 / (1.0 + np.exp(x))),
+}
+
+
+@pytest.mark.parametrize("name", CELL_FUNCTIONS)
+def test_functions_of_cells_are_the_hull_of_their_values(name):
+    """Sampled at 2001 places: no value lies outside by more than 1e-14, and no bound by more than the samples may miss."""
+    function, numeric = CELL_FUNCTIONS[name]
+    rng = np.random.default_rng(11)
+    low = np.concatenate((rng.uniform(-20.0, 20.0, 300), 0.25 * np.pi * np.arange(-20, 20)))
+    high = low + rng.exponential(2.0, low.shape)
+    least, most = iv.ends(function(iv.interval(low, high)))
+    values = numeric(np.linspace(low, high, 2001))
+    steepest = np.max(np.abs(np.diff(values, axis=0)), axis=0)
+    size = 1e-14 * (1.0 + np.max(np.abs(values), axis=0))
+    for outside in (least - values.min(axis=0), values.max(axis=0) - most):
+        assert np.all(outside <= size)
+        assert np.all(outside >= -steepest - size)
+
+
+@pytest.mark.parametrize("formula", [lambda v: 1.0 / (1.0 + v), lambda v: exp(-v), OPERATIONS["tanh"], OPERATIONS["arcsinh"]])
+def test_cells_without_end(formula):
+    tree = formula(RATE)
+    value, first, _ = enclose(tree, {}, 0.0, np.array([0.0]), np.array([np.inf]))
+    for rate in (0.0, 1e-3, 1.0, 30.0):
+        assert value[0, 0] <= float(exact(tree, rate)) <= value[1, 0]
+    assert np.all(np.isfinite(first))
+
+
+def test_nothing_is_said_where_a_formula_may_be_undefined():
+    for tree in (OPERATIONS["log"](RATE - 1.0), OPERATIONS["sqrt"](RATE - 1.0), 1.0 / (RATE - 1.0), (RATE - 1.0) ** 0.5):
+        first = enclose(tree, {}, 0.0, np.array([0.5]), np.array([2.0]))[1]
+        assert first.tolist() == [[-np.inf], [np.inf]]
+
+
+def test_products_with_an_infinite_end_are_numbers():
+    """0 times an infinite end is 0, for that end is never reached; bounds are never NaN and never cross."""
+    rng = np.random.default_rng(3)
+    numbers = np.array([-np.inf, -1e300, -1.0, -5e-324, 0.0, 5e-324, 1.0, 1e300, np.inf])
+    low, high = np.sort(rng.choice(numbers, size=(2, 400)), axis=0)
+    keep = (low < np.inf) & (high > -np.inf)
+    a, b = iv.interval(low[keep], high[keep]), iv.interval(low[keep][::-1], high[keep][::-1])
+    with np.errstate(all="ignore"):
+        for found in (iv.add(a, b), iv.subtract(a, b), iv.multiply(a, b), iv.square(a), iv.reciprocal(a), iv.exp(a), iv.log(a)):
+            least, most = iv.ends(found)
+            assert not np.isnan(found).any()
+            assert np.all(least <= most)
+            assert np.all(least < np.inf)
+            assert np.all(most > -np.inf)
+
+
+def test_many_cells_are_bounded_as_one_by_one():
+    tree = drawn(np.random.default_rng(5), 5) + Parameter("alpha") * RATE
+    low = np.geomspace(1e-3, 1e2, 40)
+    alphas = np.linspace(1.0, 2.0, 40)
+    together = enclose(tree, {"alpha": alphas}, SLIP_HERE, low, 1.1 * low)
+    for k in (0, 17, 39):
+        alone = enclose(tree, {"alpha": alphas[k]}, SLIP_HERE, low[k : k + 1], 1.1 * low[k : k + 1])
+        assert all(np.array_equal(one[:, k], other[:, 0]) for one, other in zip(together, alone, strict=True))
+
+
+@pytest.mark.parametrize("tree", [RATE * STATE, Expression("erf", (RATE,)), Expression("pow", (1.0 + RATE, RATE))])
+def test_what_has_no_sure_bounds_is_refused(tree):
+    with pytest.raises(NotEnclosedError):
+        enclose(tree, {}, 0.0, np.array([0.0]), np.array([1.0]))
