@@ -30,6 +30,8 @@ SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
         ("0.5 + 0.1*(1 + v)**0.3", ["pow"]),
         ("0.5 + 0.1*log(1 + v) + 0.1*sqrt(1 + u*u)", ["log", "sqrt"]),
         ("0.5 + 0.1*exp(-1/0.3)", []),
+        ("0.5 + 0.01*arcsinh(v/1e-6)", []),
+        ("0.5 + 0.1/(1 + v + exp(-v/0.1))", ["exp"]),
     ],
 )
 def test_what_can_vanish_below_rounding_is_guarded(formula: str, guarded: list[str]) -> None:

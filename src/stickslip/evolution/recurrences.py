@@ -82,7 +82,8 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
-        self.guards = guards_of(self.dynamic)
+        own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
+        self.guards = guards_of([node for node in self.dynamic if node in own])  # what arcsinh needs besides hides nothing
         self._only_below = in_denominators_only(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
