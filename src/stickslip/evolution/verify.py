@@ -2,7 +2,7 @@
 
 A step's length follows from the last coefficients of its series. Two things keep that honest. The guards of the law's formula
 (see `guards`) end the step before a part of the law that left no trace at its start begins to count. And the finished step is put
-into the governing equation at places inside it and at its end: what is missing must be no more than the tolerance allows, or
+into the governing equation at its end, where a series is worst: what is missing must be no more than the tolerance allows, or
 rounding; else the step is made shorter.
 """
 
