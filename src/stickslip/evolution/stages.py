@@ -33,6 +33,10 @@ MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_B
 """What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
 RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
 """What `look_between` leaves in a row of run.matrix."""
+STRIDE = 1e-4
+"""Share of the way between two places (1) over which the slope of a guard's argument is taken."""
+CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
+"""Where between two places guards are looked at."""
 NUDGE = 1e-15
 """Relative change of a number that is rounding: 4 ulp or more."""
 ITERATIONS = 40
@@ -255,39 +259,51 @@ def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floa
 
 
 @kernel
+def follow_step(run: Run, h: float, way: Floats) -> None:
+    """Put law slip (m, since the start), slip rate and state at the start, the points and the places between them into rows."""
+    chi = run.k[at.K_CHI] * h
+    for point in range(POINTS):
+        walked = 0.0
+        for j in range(POINTS):
+            walked += INTEGRAL[point, j] * run.stage_rate[j]
+        way[2 * point] = chi * walked, run.stage_rate[point], run.stage_state[point]
+    for i in range(STAGES):
+        row = ahead(run.matrix, TERMS * i)
+        way[2 * i + 1] = chi * row[WALKED], row[RATE], row[STATE]
+
+
+@inlined
+def rise(first: float, climb: float, last: float, descent: float) -> float:
+    """Return how far a concave function rises above its start, from its values and its slopes at both ends of [0, 1]."""
+    if climb > 0.0 and descent < 0.0:
+        return climb * min(max((last - first - descent) / (climb - descent), 0.0), 1.0)
+    return max(last - first, 0.0)
+
+
+@kernel
 def stays_in_sight(run: Run, h: float) -> float:
     """Return the share of its room that the hardest pressed guard of the law uses up in a step of h seconds: it must not exceed 1.
 
     A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes back where the argument
-    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts, from
-    the start over the points and the places between them: a part that is passed over makes it move there and back.
+    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts. A
+    narrow part may lie between two places: there its argument goes up and down again, which its slopes at both of them show.
     """
-    n, chi = run.guard_count[run.counts[at.PIECE]], run.k[at.K_CHI] * h
+    n = run.guard_count[run.counts[at.PIECE]]
     if n == 0:
         return 0.0
-    room = np.zeros(5 * n)  # for every guard argument and pull at the last place, the same here, and the share that is used up
-    last, here, pull = 0, 2 * n, room[0:n].copy()
-    table = floats(room.ctypes.data)
-    for i in range(2 * STAGES + 1):
-        point = (i + 1) // 2
-        if i % 2 == 1:
-            row = ahead(run.matrix, TERMS * (point - 1))
-            look_at_guards(run, chi * row[WALKED], row[RATE], row[STATE], ahead(table, here))
-        else:
-            walked = 0.0
-            for j in range(POINTS):
-                walked += INTEGRAL[point, j] * run.stage_rate[j]
-            look_at_guards(run, chi * walked, run.stage_rate[point], run.stage_state[point], ahead(table, here))
+    way, pull, used, seen = np.empty((2 * POINTS - 1, 3)), np.zeros(n), np.zeros(n), np.empty((len(CHORD), 2 * n))
+    follow_step(run, h, way)
+    for i in range(2 * STAGES):
+        for k in range(len(CHORD)):
+            walked, rate, state = way[i] + CHORD[k] * (way[i + 1] - way[i])
+            look_at_guards(run, walked, rate, state, floats(seen.ctypes.data + 16 * n * k))
         for j in range(n):
             if i == 0:
-                pull[j] = room[here + 2 * j + 1]
-            else:
-                room[4 * n + j] += max(pull[j] * (room[here + 2 * j] - room[last + 2 * j]), 0.0)
-        last, here = here, last
-    largest = 0.0
-    for j in range(n):
-        largest = max(largest, room[4 * n + j])
-    return largest
+                pull[j] = seen[0, 2 * j + 1]
+            first, last = pull[j] * seen[0, 2 * j], pull[j] * seen[3, 2 * j]
+            climb, descent = pull[j] * seen[1, 2 * j] - first, last - pull[j] * seen[2, 2 * j]
+            used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
+    return max(used)
 
 
 @kernel
