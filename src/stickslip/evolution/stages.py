@@ -171,7 +171,9 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
     for i in range(1, POINTS):
         run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
         if share > 0.0:
-            run.stage_rate[i], run.stage_state[i] = evaluate(run.jet, share * POINT[i]), evaluate(run.state_jet, share * POINT[i])
+            run.stage_state[i] = evaluate(run.state_jet, share * POINT[i])
+            if run.counts[at.MODE] != 0:  # at rest run.jet holds the strength
+                run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
     size = 2 * STAGES if run.counts[at.HAS_STATE] == 1 else STAGES
     before = math.inf
     for _ in range(ITERATIONS):
