@@ -24,8 +24,10 @@ from stickslip.friction import LAWS
 
 LIMIT = 5.0
 """Seconds that the engine may take for a problem."""
-COMPILING = 600.0
-"""Seconds after which a silent worker has hung: it may compile a formula."""
+COMPILING = 300.0
+"""Seconds after which a silent worker has hung: it may compile a formula, the first one the engine, too."""
+THOROUGH = 20
+"""One problem in so many is read as a user reads it, and may have many pieces."""
 
 
 def outcome_of(seed: int, index: int, only: str | None, limit: float) -> tuple[str, Outcome, str]:
@@ -34,9 +36,10 @@ def outcome_of(seed: int, index: int, only: str | None, limit: float) -> tuple[s
         drawn = draw(seed, index, only)
     except InputError as error:
         return only or "-", Outcome("not drawn: " + str(error)[:50]), ""
-    outcome = run(drawn, limit)
+    thorough = index // len(LAWS) % THOROUGH == 0
+    outcome = run(drawn, limit, thorough)
     if outcome.status == "too slow":
-        outcome = run(drawn, limit)  # what was compiled the first time is there now
+        outcome = run(drawn, limit, thorough)  # what was compiled the first time is there now
     return drawn.kind, outcome, repr(drawn) if outcome.wrong else ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import MISSING, dataclass
 from typing import Any
 
@@ -19,15 +20,49 @@ EXTREME = 0.15
 """Share of problems whose numbers are drawn from many decades."""
 RTOLS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-10)
 TRIES = 50
-EXPRESSIONS: dict[str, tuple[tuple[str, str], ...]] = {
-    "m + a/(1 + v/w)": (("m", "low"), ("a", "low"), ("w", "m/s")),
-    "m + a*exp(-((u - c)/w)**2)": (("m", "high"), ("a", "low"), ("c", "m"), ("w", "m")),
-    "m + a*tanh((u - c)/w)": (("m", "high"), ("a", "low"), ("c", "m"), ("w", "m")),
-    "m + a*exp(-v/w) + b*log(1 + v/x)": (("m", "low"), ("a", "low"), ("b", "small"), ("w", "m/s"), ("x", "m/s")),
-    "m + a*sin(u/w)*exp(-v/x)": (("m", "high"), ("a", "low"), ("w", "m"), ("x", "m/s")),
-    "m + a/(1 + exp((v - c)/w))": (("m", "low"), ("a", "low"), ("c", "m/s"), ("w", "m/s")),
-    "m*(1 + b*arcsinh(v/w))": (("m", "low"), ("b", "small"), ("w", "m/s")),
-}
+LONG = 0.04
+"""Share of problems that run for many round trips."""
+FRESH = 0.01
+"""Share of expressions that are put together anew, and so compiled anew: 0.3 to 1 s each."""
+BUMP, WELL = "a*exp(-((u - c)/w)**2)", "b*exp(-((v - y)/x)**2)"
+TEMPLATES = (
+    "m + a/(1 + v/x)",
+    "m + a/(1 + (v/x)**2)",
+    "m + a*exp(-v/x) + b*log(1 + v/y)",
+    "m + a/(1 + exp((v - y)/x))",
+    "m*(1 + b*arcsinh(v/x))",
+    "m + a*tanh(v/x) - b*v/(v + y)",
+    "m + a*sqrt(1 + v/x)/(1 + v/y)",
+    f"m + a/(1 + v/x) + {WELL}",
+    f"m + {BUMP}",
+    "m + a*tanh((u - c)/w)",
+    "m + a*sin(u/w)",
+    "m + a*sin(u/w)*exp(-(u/z)**2)",
+    "m + a/(1 + exp((u - c)/w))",
+    "m + a/(1 + (u/w)**2)**2",
+    "m + a*cos(u/w) + b*sin(u/z)",
+    "m + a*sin(u/w)*exp(-v/x)",
+    "m + a*exp(-u**2/w**2)/(1 + v/x)",
+    "m + a*tanh((u - c)/w) + b*arcsinh(v/x)",
+    f"m + {BUMP} + {WELL}",
+    "m + a/(1 + v/x + (u/w)**2)",
+)
+"""Formulas of expressions: their numbers are parameters, so that each is compiled once."""
+TERMS = (
+    "a/(1 + v/x)",
+    "a*exp(-v/x)",
+    "b*log(1 + v/y)",
+    "b*arcsinh(v/y)",
+    "b*tanh((v - y)/x)",
+    WELL,
+    BUMP,
+    "a*sin(u/w)",
+    "b*cos(u/z)",
+    "a*tanh((u - c)/w)",
+    "b/(1 + (u/z)**2)",
+    "b*u/sqrt(u**2 + w**2)",
+)
+"""What fresh formulas are put together from."""
 PAIRS = (
     ("linear-slip-weakening", "hyperbolic-rate"),
     ("sinusoidal-slip", "piecewise-linear-rate"),
@@ -117,12 +152,13 @@ class Drawing:
         raise InputError(f"no law of kind {kind} in {TRIES} tries")
 
     def _law(self, kind: str) -> FrictionLaw:
+        rng = self.rng
         if kind == "expression":
             return self._expression()
         given: dict[str, Any] = {
             name: self.field(declared)
             for name, (declared, default) in fields_of(LAWS[kind]).items()
-            if default is MISSING or self.rng.random() < 0.6
+            if default is MISSING or rng.random() < 0.6
         }
         if kind == "table":
             given.pop(str(self.one_of("slip", "rate")), None)
@@ -130,7 +166,9 @@ class Drawing:
             if given.get("slip") is None and given.get("rate") is None:
                 given["slip"] = self.field(fields_of(LAWS[kind])["slip"][0])
         if kind == "lagged":
-            given["rate"] = self.law(str(self.one_of(*SMOOTH)))
+            rate = given["rate"] = self.law(str(self.one_of(*SMOOTH)))
+            most = math.asinh(1e3 * self.rate / given.get("direct_rate", 1e-6))  # friction must stay positive as v vanishes
+            given["direct"] = float(self.one_of(0.0, 0.5)) * float(rng.random()) * max(rate.range()[0], 0.0) / most
         elif kind in ("sum", "product"):
             slip, rate = PAIRS[int(self.rng.integers(len(PAIRS)))]
             given = {"slip": self.law(slip), "rate": self.law(rate)}
@@ -139,15 +177,22 @@ class Drawing:
         return LAWS[kind](**given)
 
     def _expression(self) -> FrictionLaw:
-        text = str(self.one_of(*EXPRESSIONS))
-        sizes = {
-            "low": lambda: self.rng.uniform(0.0, 0.5),
-            "high": lambda: self.rng.uniform(0.5, 1.0),
-            "small": lambda: self.log(-4, -1),
-        }
-        sizes |= {"m": lambda: self.slip * self.log(-3, 0), "m/s": lambda: self.rate * self.log(-3, 0)}
-        values = {name: float(sizes[size]()) for name, size in EXPRESSIONS[text]}
+        rng = self.rng
+        if rng.random() < FRESH:
+            chosen = rng.choice(len(TERMS), size=int(rng.integers(2, 4)), replace=False)
+            text = "m + " + str(self.one_of(" + ", " * ")).join(f"({TERMS[i]})" for i in chosen)
+        else:
+            text = str(self.one_of(*TEMPLATES))
+        values = {name: self._value(name) for name in sorted(set(re.findall(r"\b[abcmwxyz]\b", text)))}
         return FromExpression(text, values, counts=self.one_of("path", "net"), memory=self.one_of("all", "all", "since-arrest"))
+
+    def _value(self, name: str) -> float:
+        """A value of one of the names that formulas use: m, a, b numbers, c, w, z slips, x, y slip rates."""
+        if name == "m":
+            return float(self.rng.uniform(0.2, 1.0))
+        if name in "ab":
+            return float(self.rng.uniform(0.0, 0.5)) if self.rng.random() < 0.5 else self.log(-4, -1)
+        return (self.slip if name in "cwz" else self.rate) * self.log(-3, 0)
 
     def history(self, size: float) -> Any:
         """A loading history with values of a size."""
@@ -181,7 +226,7 @@ class Drawing:
         else:
             given["initial_load"] = normal * float(rng.uniform(-1.0, 1.0))
             given["initial_state"] = self.time * self.log(-3, 3)
-        rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 7) if rng.random() < 0.1 else 1.0)
+        rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 5) if rng.random() < LONG else 1.0)
         return Draw(kind, ss.Problem(body, law, **given), float(rounds * self.time), float(self.one_of(*RTOLS)))
 
 

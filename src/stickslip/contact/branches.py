@@ -55,9 +55,13 @@ def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch
     """
     if not g.law.depends_on_rate:
         return (Branch(0.0, math.inf, g.start, math.inf),)
-    rising, folds = _searched(g)
-    if not g.law.bends_one_way:
-        rising, folds = _agreed(g, proof or certificate(g), rising, folds)
+    if g.law.bends_one_way:
+        rising, folds = _searched(g)
+    else:
+        proof = proof or certificate(g)
+        if proof.always_rises:
+            return (_branch(g, 0.0, math.inf),)
+        rising, folds = _agreed(g, proof, *_searched(g))
     ends = [*([0.0] if rising else []), *folds, math.inf]
     return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
 

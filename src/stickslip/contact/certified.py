@@ -45,6 +45,11 @@ class Certificate:
     evaluations: int = 0
     """Cells and single rates at which g' was bounded."""
 
+    @property
+    def always_rises(self) -> bool:
+        """Whether it is proven that g rises from rest on: there is one branch, and nothing to search."""
+        return self.verdict == "proven" and not self.turns and self.rises_at_rest is True
+
 
 def certificate(g: Resistance) -> Certificate:
     """Prove where g' changes its sign."""

@@ -31,6 +31,9 @@ def _bernstein(terms: int) -> Floats:
 BERNSTEIN = _bernstein(TERMS)
 LOW_BERNSTEIN = _bernstein(LOW)
 SMALLEST_INTERVAL = 1e-15
+NEGLIGIBLE = 1e-300
+"""A polynomial that stays below this on an interval has no roots there that anybody could tell: near the smallest normal number
+its coefficients lose their digits, or vanish one after the other, and no bisection would ever come to an end."""
 
 
 @inlined
@@ -273,7 +276,7 @@ def _isolate(q: Floats) -> float:
         if -part[1] > slope_tail and total(part) <= 0.0:
             return start + 0.5 * width * (1.0 + _falling_root(part))
         clear = part[0] > tail or -part[1] > slope_tail or (part[1] > slope_tail and evaluate(part, -1.0) >= 0.0)
-        if clear or width < SMALLEST_INTERVAL:
+        if clear or width < SMALLEST_INTERVAL or abs(part[0]) + tail < NEGLIGIBLE:
             start, width = _next_interval(start, width)
         else:
             width *= 0.5
@@ -291,8 +294,8 @@ def maximum(c: Floats, sign: float = 1.0) -> float:
         q[k] = sign * c[k]
     while start < 1.0:
         restrict(q, start + 0.5 * width, 0.5 * width, part)
-        best = max(best, part[0])
-        below = part[0] + magnitude(part) <= best + 4e-16 * abs(best)
+        best, tail = max(best, part[0]), magnitude(part)
+        below = part[0] + tail <= best + 4e-16 * abs(best) or abs(part[0]) + tail < NEGLIGIBLE
         if below or abs(part[1]) > slope_magnitude(part) or width < SMALLEST_INTERVAL:
             best = max(best, total(part), evaluate(part, -1.0))
             start, width = _next_interval(start, width)
@@ -315,7 +318,11 @@ def crossings(c: Floats, out: Floats) -> int:
     part, start, width = np.empty(TERMS), 0.0, 1.0
     while start < 1.0 and found < len(out):
         restrict(c, start + 0.5 * width, 0.5 * width, part)
-        definite = abs(part[0]) > magnitude(part)
+        tail = magnitude(part)
+        if abs(part[0]) + tail < NEGLIGIBLE:
+            start, width = _next_interval(start, width)
+            continue
+        definite = abs(part[0]) > tail
         if not definite and abs(part[1]) <= slope_magnitude(part) and width >= SMALLEST_INTERVAL:
             width *= 0.5
             continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import Any, ClassVar, Literal
 
@@ -208,6 +208,10 @@ class FrictionLaw(ABC):
 
     def trees(self) -> tuple[Expression, ...]:
         """The formulas of `pieces` as expression trees in SLIP, RATE (STATE) and parameters."""
+        return self._own_trees
+
+    @cached_property
+    def _own_trees(self) -> tuple[Expression, ...]:
         return _trees(self.pieces, self.parameters(), tuple(self.literals().items()), self.state is not None)
 
     @property
