@@ -139,7 +139,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_
 
 
 def test_ctrl_c_is_one_line(command, monkeypatch: pytest.MonkeyPatch):
-    def interrupted(*_):
+    def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Scenario, "run", interrupted)
@@ -164,8 +164,8 @@ def test_a_full_disk_is_one_line_and_leaves_no_half_file(command, tmp_path: Path
 def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: pytest.MonkeyPatch, status):
     original = Scenario.run
 
-    def failing(self, progress=None):
-        solution = original(self, progress)
+    def failing(self, progress=None, **keep):
+        solution = original(self, progress, **keep)
         object.__setattr__(solution, "status", status)
         return solution
 
