@@ -73,3 +73,15 @@ def test_falling_load_passes_over_a_branch_that_the_rule_never_takes() -> None:
     falls = run.shocks[(run.shocks.cause == "fold") & (run.shocks.rate_before > 1.0)]
     assert len(falls) == 2  # in the second and third round trip
     assert (falls.rate_after <= law.rates[0] * (1.0 + 1e-9)).all()
+
+
+def test_heat_is_finite_where_the_lag_falls_below_zero_by_its_tolerance() -> None:
+    """ln(1 + w / 1e-6) is no number there, and with a = 0 its factor does not help."""
+    body = ss.SpringBlock(6.0338482826876305, 1903.36748807836, 263507.5640525847, damping=321.4991070646787)
+    rate = F.VelocityStrengthening(static=0.22749410856647856, a=0.0, rate=1e-6)
+    law = F.LaggedFriction(rate=rate, time=0.058058076804999616, direct=0.009130399137237242, direct_rate=55.669589994872844)
+    problem = ss.Problem(body, law, pull_rate=-39.490734181033055, initial_excess=-23.363714691738107)
+    run = ss.simulate(problem, 58.7755515040617, rtol=1e-4)
+    energy = run.energy([2.0, 20.0, 58.0])
+    assert (energy.heat > 0.0).all()
+    assert float(abs(energy.balance).max()) < 1e-3 * float(abs(energy.work).max())
