@@ -41,13 +41,17 @@ class SelectionTable:
     keep_from: tuple[float, ...]
     keep_to: tuple[float, ...]
 
+    def is_taken(self, branch: int) -> bool:
+        """Whether the rule takes the branch at any load."""
+        return self.keep_from[branch] <= self.keep_to[branch]
+
     def climb(self, branch: int, excess: float) -> int:
         """The branch taken when the load has risen past what `branch` (-1: stick) keeps."""
-        return next(j for j in range(branch + 1, len(self.keep_to)) if excess <= self.keep_to[j])
+        return next(j for j in range(branch + 1, len(self.keep_to)) if self.is_taken(j) and excess <= self.keep_to[j])
 
     def descend(self, branch: int, excess: float) -> int:
         """The branch taken when the load has fallen below what `branch` keeps; -1 is stick."""
-        return next((j for j in range(branch - 1, -1, -1) if self.keep_from[j] <= excess), -1)
+        return next((j for j in range(branch - 1, -1, -1) if self.keep_from[j] <= min(excess, self.keep_to[j])), -1)
 
 
 class SelectionRule(Protocol):

@@ -110,14 +110,14 @@ def _leads_on(table: SelectionTable, branch: int, up: bool) -> bool:
     if up:
         level = table.stick_to if branch < 0 else table.keep_to[branch]
         for low, high in zip(table.keep_from[branch + 1 :], table.keep_to[branch + 1 :], strict=True):
-            if high > level:
+            if level < high and low <= high:  # a branch that is never taken is passed over
                 if low > level:
                     return False
                 level = high
         return level == math.inf
     level = -math.inf if branch < 0 else table.keep_from[branch]
     for low, high in reversed(list(zip(table.keep_from[: max(branch, 0)], table.keep_to[: max(branch, 0)], strict=True))):
-        if low < level:
+        if low < level and low <= high:
             if high < level:
                 return False
             level = low

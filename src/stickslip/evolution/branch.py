@@ -178,16 +178,19 @@ def choose_branch(run: Run, load: float) -> None:
 
 @inlined
 def leave_branch(run: Run, load: float) -> None:
-    """The branch ends at this load: go to the nearest allowed one in the direction of the load, or to rest."""
+    """The branch ends at this load: go to the nearest allowed one in the direction of the load, or to rest.
+
+    A branch that the rule never takes has keep_from > keep_to.
+    """
     branch = run.counts[at.BRANCH]
     run.state[EXIT] = math.nan
     if load >= run.keep_to[branch]:
         for other in range(branch + 1, run.branches):
-            if load <= run.keep_to[other]:
+            if run.keep_from[other] <= run.keep_to[other] and load <= run.keep_to[other]:
                 run.counts[at.BRANCH] = other
                 return
     for other in range(branch - 1, -1, -1):
-        if run.keep_from[other] <= load:
+        if run.keep_from[other] <= min(load, run.keep_to[other]):
             run.counts[at.BRANCH] = other
             return
     run.counts[at.MODE] = 0

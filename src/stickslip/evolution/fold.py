@@ -194,6 +194,7 @@ def reach_end(run: Run) -> None:
     if run.counts[at.FOLDS_MOVE] == 1:
         run.counts[at.LEAVING] = 1
     else:
+        run.counts[at.STALLED] += 1  # to and fro between branches without any time would go on without end
         end_branch(run)
 
 

@@ -11,6 +11,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, load_ahead, onset_of_slip
 from stickslip.evolution.collocation import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.evolution.compiled import ahead, inlined, kernel
+from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
 from stickslip.evolution.record import record
 from stickslip.evolution.stages import (
@@ -193,22 +194,32 @@ def turn_with_load(run: Run, left: float) -> float:
     """
     part = run.part
     restrict(run.load, run.state[at.XI], left, part)
-    size = run.par[at.REFERENCE]
+    size, direction = run.par[at.REFERENCE], 1
     for k in range(at.TERMS):
         size += abs(part[k])
     part[0] += run.par[at.REFERENCE]
-    if abs(part[0]) <= LOAD_ROUNDING * size:
-        part[0] = 0.0
-    first, direction = first_descent(part, run.spare), 1
+    if part[0] < 0.0:
+        turn_over(part)
+        direction = -1
+    first = first_descent(part, run.spare) if part[0] > LOAD_ROUNDING * size else 0.0
     if first <= TIE:
-        for k in range(at.TERMS):
-            part[k] = -part[k]
-        part[0] = max(part[0], 0.0)
-        first, direction = first_descent(part, run.spare), -1
-    if direction > 0 and part[0] == 0.0 and math.isinf(first) and size == run.par[at.REFERENCE]:
+        run.load[0] -= direction * part[0]  # a load that passes through zero here does so for the stages, too
+        part[0] = 0.0
+        first = first_descent(part, run.spare)
+        if first <= TIE:
+            turn_over(part)
+            first, direction = first_descent(part, run.spare), -direction
+    if part[0] == 0.0 and math.isinf(first) and size == run.par[at.REFERENCE]:
         return left  # no load at all
     run.counts[at.MODE] = direction
     return min(first, 1.0) * left if run.counts[at.HAS_INERTIA] == 0 and first > TIE else left
+
+
+@inlined
+def turn_over(c: Floats) -> None:
+    """Change the sign of a polynomial."""
+    for k in range(at.TERMS):
+        c[k] = -c[k]
 
 
 @kernel

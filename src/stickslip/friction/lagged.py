@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from stickslip.errors import InputError
 from stickslip.friction.composite import PREFIXES, Prefixed
 from stickslip.friction.contract import Formula, FrictionLaw, StateVariable
@@ -66,6 +69,10 @@ class LaggedFriction(FrictionLaw):
 
     def literals(self) -> dict[str, float]:
         return {_PREFIX + name: value for name, value in self.rate.literals().items()}
+
+    def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
+        """mu as in every law. A lag that a run's polynomials leave below zero, by their tolerance, is none."""
+        return super().coefficient(u, v, np.maximum(np.asarray(w, float), 0.0))
 
     def range(self) -> tuple[float, float]:
         low, high = self.rate.range()
