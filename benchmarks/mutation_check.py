@@ -111,19 +111,32 @@ def _bytes(value: Any) -> bytes:
     return np.ascontiguousarray(value).tobytes()
 
 
+def runs() -> dict[str, ss.Solution | str]:
+    """The solution of each problem, or the error."""
+    found: dict[str, ss.Solution | str] = {}
+    for name, problem, duration in problems():
+        try:
+            found[name] = ss.simulate(problem, duration, max_pieces=50_000)
+        except Exception as error:
+            found[name] = f"{type(error).__name__}: {str(error)[:60]}"
+    return found
+
+
+def measured(solutions: dict[str, ss.Solution | str]) -> dict[str, str]:
+    """Hashes by problem and by what is read."""
+    found: dict[str, str] = {"year": digest(lambda: np.array(ss.YEAR))}
+    for name, run in solutions.items():
+        if isinstance(run, str):
+            found[name] = run
+        else:
+            found |= {f"{name}: {what}": digest(made) for what, made in readings(run).items()}
+    return found
+
+
 def main() -> int:
     """Print the hashes."""
     warnings.simplefilter("ignore")
-    found: dict[str, str] = {"year": digest(lambda: np.array(ss.YEAR))}
-    for name, problem, duration in problems():
-        try:
-            run = ss.simulate(problem, duration, max_pieces=50_000)
-        except Exception as error:
-            found[name] = f"{type(error).__name__}: {str(error)[:60]}"
-            continue
-        for what, made in readings(run).items():
-            found[f"{name}: {what}"] = digest(made)
-    sys.stdout.write(json.dumps(found) + "\n")
+    sys.stdout.write(json.dumps(measured(runs())) + "\n")
     return 0
 
 

@@ -1,176 +1,169 @@
-"""Do the tests notice? Wrong versions of the source, made in a copy of the tree, and what the tests say to each.
+"""Do the tests notice? Wrong versions of the source, one at a time, and what the tests say to each.
 
-    python -m benchmarks.mutations --named                         # mistakes by name
-    python -m benchmarks.mutations --count 40 --seed 1 --only contact --results mutations.jsonl
+    python -m benchmarks.mutation_map tests/contact tests/observables tests/evolution ... --map reach.jsonl     # once
+    python -m benchmarks.mutations --map reach.jsonl --named                                                     # mistakes by name
+    python -m benchmarks.mutations --map reach.jsonl --count 40 --seed 1 --only contact --results mutations.jsonl
 
-A mutant that changes no hash of `benchmarks.mutation_check` counts as equivalent. Of the others the tests of the changed file's
-package run first, then those that look at results as a whole; the first failure ends it. Results are appended to a file and not
-made again; Ctrl-C ends with the table. A mutant of the engine costs its compilation, a minute or two.
+The tests that enter the changed function run first, quick ones first, up to the first failure. Where all pass, hashes of a fixed
+suite (`benchmarks.mutation_check`) decide between "survived" and "equivalent". Results are appended to a file and not made again;
+Ctrl-C ends with the table. A mutant of Python code takes seconds, one of the engine the compilation of what depends on it.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
-import os
-import shutil
-import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from pathlib import Path
-from queue import SimpleQueue
 from typing import Any
 
 from benchmarks.mutants import PACKAGES, SOURCE, Mutant, drawn, named
+from benchmarks.mutation_map import Reach
+from benchmarks.mutation_reach import depends_on_no_cache, must_compile
+from benchmarks.mutation_trial import TREE, exchange, function_around, hashes, import_changed, in_child, make_hot, run_tests, runs
 
-TREE = Path(__file__).resolve().parent.parent
-PARTS = ("src", "tests", "benchmarks", "docs", "pyproject.toml", "README.md", "Makefile")
-CHECK_LIMIT, TEST_LIMIT = 420.0, 900.0
-"""Seconds for the hashes, and for the tests of one mutant."""
-FIRST_TESTS = {
-    "contact": ("tests/contact",),
-    "observables": ("tests/observables",),
-    "evolution": (
-        "tests/evolution/test_verified_numbers.py",
-        "tests/adversarial/test_known_failures.py",
-        "tests/evolution/test_event_sequences.py",
-        "tests/evolution/test_solution.py",
-    ),
-}
-THEN = (
-    "tests/evolution",
-    "tests/adversarial",
-    "tests/contact",
-    "tests/observables",
+LIMITS = {"exchanged": 25.0, "imported": 25.0, "compiled": 90.0}
+FIRST_SECONDS = {"exchanged": 6.0, "imported": 6.0, "compiled": 50.0}
+"""Seconds of processor time for the tests of one mutant, and for those before the hashes; the last test that began may end."""
+ENGINE_TESTS = (
+    "tests/evolution/test_verified_numbers.py",
+    "tests/evolution/test_event_sequences.py",
+    "tests/adversarial/test_known_failures.py",
+    "tests/evolution/test_located_events.py",
+    "tests/evolution/test_solution.py",
+    "tests/evolution/test_guards.py",
     "tests/reference",
-    "tests/truth",
-    "tests/paper",
 )
-REST = ("tests/long_runs", "tests/scenarios", "tests/exports", "tests/studies", "tests/test_units.py", "tests/docs")
+"""Where mistakes in compiled code show soonest."""
 
 
-class Copy:
-    """A copy of the tree with a compile cache of its own, in which one mutant at a time is tried."""
+class Campaign:
+    """What is known of the tests, and the hashes without any mutant."""
 
-    def __init__(self, folder: Path) -> None:
-        self.root, self.cache = folder / "tree", folder / "cache"
-        shutil.rmtree(self.root, ignore_errors=True)
-        self.root.mkdir(parents=True)
-        for part in PARTS:
-            source = TREE / part
-            if source.is_dir():
-                shutil.copytree(source, self.root / part, ignore=shutil.ignore_patterns("__pycache__"))
-            elif source.exists():
-                shutil.copy2(source, self.root / part)
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.reach, self.left_out = Reach(options.map), set(options.deselect)
+        self.path = Path(options.results)
+        self.results = _known(options.results)
+        self.places = sorted({test.split("::")[0] for test in self.reach.seconds})
+        self.runs: Any = None
+        self.before = self.hashes_before(options.map.with_suffix(".hashes.json"))
 
-    def run(self, arguments: list[str], limit: float) -> subprocess.CompletedProcess[str]:
-        """Run Python in the copy; TimeoutExpired after `limit` seconds."""
-        environment = os.environ | {
-            "PYTHONPATH": os.pathsep.join((str(self.root / "src"), str(self.root))),
-            "STICKSLIP_CACHE_DIR": str(self.cache),
-            "PYTHONDONTWRITEBYTECODE": "1",
+    def hashes_before(self, path: Path) -> dict[str, str]:
+        """Hashes of the source as it is, kept beside the map."""
+        digest = hashlib.sha256()
+        for file in sorted((TREE / SOURCE).rglob("*.py")):
+            digest.update(file.read_bytes())
+        if path.exists():
+            kept = json.loads(path.read_text())
+            if kept["source"] == digest.hexdigest():
+                return dict(kept["hashes"])
+        found = in_child(lambda _: {"hashes": hashes()})
+        if "hashes" not in found:
+            raise SystemExit(f"mutations: without any mutant the suite fails: {found}")
+        path.write_text(json.dumps({"source": digest.hexdigest(), "hashes": found["hashes"]}))
+        return dict(found["hashes"])
+
+    def kind(self, mutant: Mutant) -> str:
+        """What a mutant needs: "exchanged" code, a changed text "imported", or the engine "compiled"."""
+        if depends_on_no_cache(mutant.path) or must_compile(TREE, mutant):
+            return "compiled"
+        return "exchanged" if function_around((TREE / SOURCE / mutant.path).read_bytes(), mutant) else "imported"
+
+    def rank(self, mutant: Mutant, kind: str) -> dict[str, float]:
+        """The tests for a mutant in their order, with their usual seconds."""
+        function = function_around((TREE / SOURCE / mutant.path).read_bytes(), mutant)
+        if kind == "compiled":
+            tests = self.reach.of("evolution/drive.py", None)
+        else:
+            tests = self.reach.of(mutant.path, function if kind == "exchanged" else None)
+        near = tests if kind == "imported" else set()
+        tests = tests if kind != "imported" else set(self.reach.seconds)  # not every use of a number enters a function of its file
+        killers = Counter(result["by"] for result in self.results if result["path"] == mutant.path)
+
+        def order(test: str) -> tuple[int, bool, int, float]:
+            first = [n for n, place in enumerate(ENGINE_TESTS) if test.startswith(place)] if kind == "compiled" else []
+            return -killers[test], test not in near, first[0] if first else len(ENGINE_TESTS), self.reach.seconds[test]
+
+        return {test: self.reach.seconds[test] for test in sorted(tests - self.left_out, key=order)}
+
+    def tried(self, mutant: Mutant, kind: str) -> dict[str, Any]:
+        """What becomes of one mutant."""
+        rank, began = self.rank(mutant, kind), time.monotonic()
+
+        def work(note: Callable[[str], None]) -> dict[str, Any]:
+            if kind != "exchanged":
+                import_changed(mutant)
+            elif not exchange(mutant):
+                return {"broken": "the code cannot be exchanged"}
+            return self.judged(rank, kind, note, mutant.package)
+
+        found = in_child(work)
+        changed = sum(found.get("hashes", {}).get(name) != value for name, value in self.before.items())
+        verdict, by = self.verdict(found, changed, len(rank))
+        took = round(time.monotonic() - began, 1)
+        return {
+            "mutant": mutant.name,
+            "path": mutant.path,
+            "kind": kind,
+            "verdict": verdict,
+            "by": by,
+            "passed": found.get("passed", -1),
+            "changed": -1 if verdict in ("caught", "broken") else changed,
+            "seconds": took,
         }
-        command = [sys.executable, *arguments]
-        return subprocess.run(command, cwd=self.root, env=environment, capture_output=True, text=True, timeout=limit, check=False)
 
-    def hashes(self) -> dict[str, str] | str:
-        """Hashes of the fixed suite, or how it failed."""
-        try:
-            done = self.run(["-m", "benchmarks.mutation_check"], CHECK_LIMIT)
-        except subprocess.TimeoutExpired:
-            return "hangs"
-        if done.returncode != 0:
-            return (done.stderr.strip().splitlines() or ["died"])[-1][:100]
-        found: dict[str, str] = json.loads(done.stdout)
+    def judged(self, rank: dict[str, float], kind: str, note: Callable[[str], None], package: str) -> dict[str, Any]:
+        """Run the first tests, then the hashes, and the other tests only if a hash has changed."""
+        found = run_tests(rank, FIRST_SECONDS[kind], note)
+        if found["failed"]:
+            return found
+        note("the hashes")
+        found["hashes"] = hashes(self.runs if package == "observables" and kind == "exchanged" else None)
+        if found["unfinished"] and any(found["hashes"].get(name) != value for name, value in self.before.items()):
+            rest = dict(list(rank.items())[found["passed"] :])
+            later = run_tests(rest, LIMITS[kind], note)
+            found |= {**later, "passed": found["passed"] + later["passed"]}
         return found
 
-    def tested(self, package: str) -> tuple[str, str]:
-        """ "caught" and by which test, or "survived"."""
-        end = time.monotonic() + TEST_LIMIT
-        first = FIRST_TESTS.get(package, ())
-        for group in (first, THEN, REST):
-            left = end - time.monotonic()
-            present = [place for place in group if (self.root / place).exists()]
-            if left <= 0.0:
-                return "survived", f"so far: the time was up before {group[0]}"
-            if not present:
-                continue
-            try:
-                done = self.run(["-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-n", "0", *present, *self.known], left)
-            except subprocess.TimeoutExpired:
-                return "survived", f"so far: the time was up in {group[0]}"
-            if done.returncode < 0:
-                raise KeyboardInterrupt  # somebody has ended the tests: that is no verdict
-            if done.returncode == 1:
-                return "caught", next((line for line in done.stdout.splitlines() if line.startswith("FAILED")), "?")[7:160]
-            if done.returncode not in (0, 5):
-                return "caught", (done.stdout.strip().splitlines() or ["pytest died"])[-1][:150]
-        return "survived", "all tests of the campaign"
+    @staticmethod
+    def verdict(found: dict[str, Any], changed: int, tests: int) -> tuple[str, str]:
+        """The verdict, and the test or the reason."""
+        if "died" in found:
+            return "caught", f"{found['during'] or 'import'} (killed by signal {found['died']})"
+        if "broken" in found:
+            return "broken", found["broken"]
+        if found["failed"]:
+            return "caught", found["failed"]
+        tests = f"{found['passed']} of {tests} tests passed" + (", then the time was up" if found["unfinished"] else "")
+        return ("survived" if changed else "equivalent"), tests
 
-    known: tuple[str, ...] = ()
-    """Options that leave out tests which fail without any mutant."""
+    def run(self, wanted: list[Mutant]) -> None:
+        """Try the mutants that have no result yet: those that need an import of their own first, then the others."""
+        known = {result["mutant"] for result in self.results}
+        kinds = {mutant: self.kind(mutant) for mutant in wanted if mutant.name not in known}
+        for mutant in [one for kind in ("imported", "compiled") for one in kinds if kinds[one] == kind]:
+            self.tell(mutant, kinds[mutant])
+        hot = [one for one in kinds if kinds[one] == "exchanged"]
 
+        def work() -> None:
+            self.runs = runs()
+            for mutant in hot:
+                self.tell(mutant, "exchanged")
 
-def tried(copy: Copy, mutant: Mutant, before: dict[str, str]) -> dict[str, Any]:
-    """What becomes of one mutant; the copy is as before afterwards."""
-    path, began = copy.root / SOURCE / mutant.path, time.monotonic()
-    original = path.read_bytes()
-    try:
-        path.write_bytes(mutant.applied(original))
-        after = copy.hashes()
-        if isinstance(after, str):
-            verdict, by = ("caught", after) if after == "hangs" else ("broken", after)
-            changed = -1
-        else:
-            changed = sum(after.get(name) != value for name, value in before.items())
-            verdict, by = copy.tested(mutant.package) if changed else ("equivalent", "")
-    finally:
-        path.write_bytes(original)
-    took = round(time.monotonic() - began, 1)
-    return {"mutant": mutant.name, "path": mutant.path, "verdict": verdict, "by": by, "changed": changed, "seconds": took}
+        if hot:
+            make_hot(self.places, work)
 
-
-def campaign(options: argparse.Namespace) -> list[dict[str, Any]]:
-    """Try the mutants that have no result yet."""
-    results, path = _known(options.results), Path(options.results)
-    wanted = named(TREE) if options.named else []
-    wanted += drawn(TREE, options.count, options.seed, tuple(options.only or PACKAGES))
-    if options.names:
-        wanted = [one for one in wanted if one.name in options.names]
-    todo = [one for one in wanted if one.name not in {result["mutant"] for result in results}]
-    with tempfile.TemporaryDirectory(prefix="mutations-") as temporary:
-        folder = options.folder or temporary
-        copies: SimpleQueue[Copy] = SimpleQueue()
-        made = [Copy(Path(folder) / str(n)) for n in range(options.jobs)]
-        for copy in made:
-            copy.known = tuple(f"--deselect={test}" for test in options.deselect)
-            copies.put(copy)
-        before = made[0].hashes()
-        if isinstance(before, str):
-            raise SystemExit(f"mutations: without any mutant the suite fails: {before}")
-
-        def one(mutant: Mutant) -> None:
-            copy = copies.get()
-            try:
-                result = tried(copy, mutant, before)
-            finally:
-                copies.put(copy)
-            results.append(result)
-            with path.open("a") as file:
-                file.write(json.dumps(result) + "\n")
-            say(f"{len(results)}: {result['verdict']:10} {result['seconds']:6.0f} s  {result['mutant']}  {result['by'][:90]}")
-
-        pool = ThreadPoolExecutor(options.jobs)
-        try:
-            list(pool.map(one, todo))
-        except KeyboardInterrupt:
-            say("interrupted")
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-    return results
+    def tell(self, mutant: Mutant, kind: str) -> None:
+        """Try a mutant; print and keep the result."""
+        result = self.tried(mutant, kind)
+        self.results.append(result)
+        with self.path.open("a") as file:
+            file.write(json.dumps(result) + "\n")
+        say(f"{len(self.results)}: {result['verdict']:10} {result['seconds']:6.1f} s  {result['mutant']}  {result['by'][:90]}")
 
 
 def _known(path: str) -> list[dict[str, Any]]:
@@ -205,13 +198,25 @@ def main() -> int:
     parser.add_argument("--names", nargs="*", help="of the mutants only these")
     parser.add_argument("--count", type=int, default=0, help="random mutants")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", nargs="*", choices=PACKAGES, help="packages of the random mutants")
+    parser.add_argument("--kinds", nargs="*", choices=tuple(LIMITS), help="of the mutants only those that need this")
+    parser.add_argument("--most", type=int, help="of the mutants only so many")
     parser.add_argument("--results", default="mutations.jsonl")
     parser.add_argument("--deselect", nargs="*", default=[], help="tests that fail without any mutant")
-    parser.add_argument("--folder", type=Path, help="where the copies lie, and what is compiled is kept for the next campaign")
+    parser.add_argument("--map", type=Path, required=True, help="what benchmarks.mutation_map recorded")
     options = parser.parse_args()
-    table(campaign(options))
+    wanted = named(TREE) if options.named else []
+    wanted += drawn(TREE, options.count, options.seed, tuple(options.only or PACKAGES))
+    if options.names:
+        wanted = [one for one in wanted if one.name in options.names]
+    campaign = Campaign(options)
+    if options.kinds:
+        wanted = [one for one in wanted if campaign.kind(one) in options.kinds]
+    try:
+        campaign.run(wanted[: options.most])
+    except KeyboardInterrupt:
+        say("interrupted")
+    table(campaign.results)
     return 0
 
 

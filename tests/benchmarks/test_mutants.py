@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from benchmarks.mutants import NAMED, SOURCE, drawn, named
+from benchmarks.mutation_reach import must_compile
+from benchmarks.mutation_trial import function_around
 from benchmarks.soak_checks import run
 from benchmarks.soak_problems import draw
 
@@ -38,3 +40,22 @@ def test_soak_draws_every_kind_and_the_same_problem_again() -> None:
 @pytest.mark.parametrize("index", range(4))
 def test_soak_finds_nothing_wrong_with_the_first_problems(index: int) -> None:
     assert run(draw(5, index), limit=60.0).wrong == ()
+
+
+def test_what_must_be_compiled_again_for_a_mutant() -> None:
+    by_name = {mutant.name: mutant for mutant in named(ROOT)}
+    sign = must_compile(ROOT, by_name["echo-sign"])
+    assert ("stickslip.evolution.engine", "echo_piece") in sign
+    assert ("stickslip.evolution.engine", "advance") in sign
+    assert ("stickslip.evolution.polynomial", "evaluate") not in sign
+    for name in ("tolerance-times-1000", "left-and-right-exchanged", "heat-at-zero-rate", "year-of-365-days"):
+        assert must_compile(ROOT, by_name[name]) == set()
+
+
+def test_the_function_around_a_mutant() -> None:
+    around = {
+        mutant.name: function_around((ROOT / SOURCE / mutant.path).read_bytes(), mutant)
+        for mutant in named(ROOT)
+        if mutant.path in ("evolution/history.py", "__init__.py")
+    }
+    assert around == {"left-and-right-exchanged": "History.find", "year-of-365-days": None}
