@@ -113,6 +113,6 @@ def progress_to(what: str) -> Iterator[Callable[..., Any]]:
 
 
 def _is_compiled() -> bool:
-    from stickslip.evolution.compiled import CACHE  # with the compiler behind it, which is needed now anyway
+    from stickslip.evolution.cache import CACHE  # with the compiler behind it, which is needed now anyway
 
     return any(CACHE.glob("*/engine.advance*.nbi"))

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import SOURCES
+from stickslip.evolution.cache import SOURCES
 from stickslip.evolution.layout import Floats, Integers
 
 DECIDE = ("batch", "bodies", "contact", "evolution", "friction", "loading")

@@ -1,73 +1,24 @@
-"""Compilation and its cache: the engine is compiled once, each friction formula once, both kept on disk.
+"""Compilation: the engine is compiled once, each friction formula once, both kept on disk (see `cache`).
 
-The cache folder's name carries a hash of every source that is compiled: an edited kernel can never meet its old machine code
-(numba itself looks at the file of a function, not at the functions it calls). Formulas are called through their addresses, so
-that a new law compiles its own few functions and nothing of the engine.
+Formulas are called through their addresses, so that a new law compiles its own few functions and nothing of the engine.
 """
 
 from __future__ import annotations
 
 import hashlib
-import importlib.util
-import os
-import sys
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache, cached_property
-from pathlib import Path
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
-import numba
-import platformdirs
 from numba import njit, types
 from numba.extending import intrinsic
 
+from stickslip.evolution.cache import SealedCache, load_module
 from stickslip.evolution.generate import ORDER, FormulaWriter
 from stickslip.friction.expression import Expression
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-def _sources_hash() -> str:
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    folders = [path for folder in ("evolution", "batch/kernels") for path in (package / folder).glob("*.py")]
-    for path in sorted([*folders, package / "friction" / "expression.py"]):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-SOURCES = _sources_hash()
-"""Stands for the code that is compiled, and for what compiles it."""
-
-
-def cache_folder() -> Path:
-    """Where compiled code is kept: STICKSLIP_CACHE_DIR, else the user's cache folder, else a temporary one."""
-    chosen = os.environ.get("STICKSLIP_CACHE_DIR")
-    root = Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
-    try:
-        folder = root / f"compiled-{SOURCES}"
-        (folder / "formulas").mkdir(parents=True, exist_ok=True)
-    except OSError:
-        folder = Path(tempfile.gettempdir()) / f"stickslip-compiled-{SOURCES}"
-        (folder / "formulas").mkdir(parents=True, exist_ok=True)
-    return folder
-
-
-CACHE = cache_folder()
-
-
-@contextmanager
-def _cached_on_disk() -> Iterator[None]:
-    """numba asks for its cache folder when a function is decorated: lend it ours for that moment only."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(CACHE)
-    try:
-        yield
-    finally:
-        numba.config.CACHE_DIR = before
 
 
 def kernel(function: F) -> F:
@@ -81,8 +32,8 @@ def inlined(function: F) -> F:
 
 
 def _compiled(function: F, **options: bool) -> F:
-    with _cached_on_disk():
-        compiled: F = njit(cache=True, error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
+    compiled: Any = njit(error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
+    compiled._cache = SealedCache(function)
     return compiled
 
 
@@ -99,19 +50,7 @@ class CompiledFormula:
     def _function(self, part: str) -> Any:
         text = self._writer.module(part)
         name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
-        path = CACHE / "formulas" / f"{name}.py"
-        if not path.exists():
-            with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as draft:
-                draft.write(text)
-            Path(draft.name).replace(path)
-        spec = importlib.util.spec_from_file_location(name, path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module  # numba looks a cached function's module up by its name; this keeps the code alive, too
-        with _cached_on_disk():
-            spec.loader.exec_module(module)
-        return getattr(module, part)
+        return getattr(load_module(name, text), part)
 
     @property
     def guard_count(self) -> int:

@@ -48,12 +48,13 @@ MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit
 
 from math import asinh, cos, cosh, exp, expm1, log, log1p, sin, sinh, sqrt, tanh
 
-from numba import cfunc, njit, types
+from numba import njit, types
 
+from stickslip.evolution.cache import sealed_cfunc
 from stickslip.evolution.sines import sine, versine
 
 _array = types.CPointer(types.float64)
-_options = dict(cache=True, nopython=True, error_model="numpy", fastmath={{"contract"}})
+_options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
 
 
 # f(now) - f(reference), where now = reference + step: near the reference without cancellation, far from it by the values.
@@ -252,7 +253,7 @@ class FormulaWriter(Recurrences):
         """Source of a module with one of the functions."""
         arguments = SIGNATURES[part]
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
-        head = f"@cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
+        head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
         header = MODULE_HEADER.format(formula=describe(self.formula), hidden=HIDDEN, in_sight=IN_SIGHT)
         header += LANES_HEADER if part in SIDE_BY_SIDE else ""
