@@ -15,7 +15,8 @@ import stickslip
 PACKAGE = Path(stickslip.__file__).parent
 
 LAYERS = (
-    ("errors", "files"),
+    ("errors",),
+    ("files",),
     ("quantities", "selection", "units"),
     ("friction",),
     ("bodies", "loading"),

@@ -16,6 +16,8 @@ from stickslip.errors import InputError
 
 LARGEST_WHOLE = 16
 """Largest whole quantity: exponents."""
+LARGEST, SMALLEST = 1e50, 1e-50
+"""Sizes (SI) between which quantities lie: products of several of them neither overflow nor vanish."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Quantity:
         where = f"{owner}: {name}"
         if isinstance(value, bool) or not isinstance(value, numbers.Real):
             raise InputError(f"{where} must be a number in {self.label}, got {value!r}")
-        number = float(value)
+        number = as_float(value)
         if math.isnan(number) or (math.isinf(number) and not self.infinite):
             raise InputError(f"{where} must be finite, got {number}")
         if self.whole and not (number.is_integer() and abs(number) <= LARGEST_WHOLE):
@@ -44,12 +46,24 @@ class Quantity:
             raise InputError(f"{where} must be greater than {self.above:g} {self.label}, got {number:g}")
         if self.at_least is not None and not number >= self.at_least:
             raise InputError(f"{where} must be at least {self.at_least:g} {self.label}, got {number:g}")
+        if not self.infinite and abs(number) > LARGEST:
+            raise InputError(f"{where} must lie within {LARGEST:g} {self.label}, got {number:g}")
+        if self.above is not None and number < self.above + SMALLEST:
+            raise InputError(f"{where} must be at least {self.above + SMALLEST:g} {self.label}, got {number:g}")
         return number
 
     @property
     def label(self) -> str:
         """The unit as it is shown to people: a pure number shows nothing."""
         return "(a pure number)" if self.unit == "1" else self.unit
+
+
+def as_float(value: Any) -> float:
+    """Return a number as a float: a whole number that is too large for one is infinite."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def quantity(

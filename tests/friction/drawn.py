@@ -27,6 +27,8 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
+KEPT, NOT_KEPT = "from stickslip.evolution.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
+"""A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),
     ("sinusoidal-slip", "piecewise-linear-rate"),
@@ -98,5 +100,5 @@ def _compiled(tree: Expression, parameters: tuple[str, ...], change: Expression 
     value = "value" if change is None else "state_value"
     scope: dict[str, Any] = {}
     for part in ("prepare", value):
-        exec(writer.module(part).replace("cache=True, ", ""), scope)
+        exec(writer.module(part).replace(KEPT, NOT_KEPT), scope)
     return scope["prepare"].ctypes, scope[value].ctypes, writer.size

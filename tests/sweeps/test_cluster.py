@@ -11,12 +11,15 @@ import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.error import HTTPError
+from urllib.request import urlopen
 
 import pytest
 
 import stickslip as ss
 from stickslip.sweeps.cluster import ChunksLostError, cluster, on_cluster, stream
 from stickslip.sweeps.plan import Plan, make_plan
+from stickslip.sweeps.security import own_security
 from stickslip.sweeps.sweep import Report, carry_out
 
 if TYPE_CHECKING:
@@ -39,6 +42,15 @@ def contents(store: Path) -> dict[str, bytes]:
 def two_workers() -> Iterator[Client]:
     with cluster(workers=2) as client:
         yield client
+
+
+@pytest.fixture(scope="module")
+def open_scheduler() -> Iterator[str]:
+    """The address of a cluster that somebody else started, without keys."""
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=1, threads_per_worker=2, host="127.0.0.1", dashboard_address="127.0.0.1:0") as found:
+        yield found.scheduler_address
 
 
 @pytest.fixture(scope="module")
@@ -165,17 +177,17 @@ def test_inside_an_event_loop() -> None:
         asyncio.run(cell())
 
 
-def test_the_scheduler_of_a_file(two_workers: Client, tmp_path: Path) -> None:
+def test_the_scheduler_of_a_file(open_scheduler: str, tmp_path: Path) -> None:
     file = tmp_path / "scheduler.json"
-    file.write_text(f'{{"address": "{two_workers.scheduler.address}"}}')
+    file.write_text(f'{{"address": "{open_scheduler}"}}')
     found = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip", scheduler=str(file))
     here = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip")
     assert found.slip.values.tobytes() == here.slip.values.tobytes()
 
 
-def test_a_map_is_refined_on_a_cluster(two_workers: Client, tmp_path: Path) -> None:
+def test_a_map_is_refined_on_a_cluster(open_scheduler: str, tmp_path: Path) -> None:
     vary = {"friction.alpha": "0.05..0.4:3", "body.normal_stress": "50 MPa..200 MPa:3"}
-    for name, where in (("here", {"threads": 1}), ("there", {"scheduler": two_workers.scheduler.address})):
+    for name, where in (("here", {"threads": 1}), ("there", {"scheduler": open_scheduler})):
         found = ss.refine("fig6-slab", vary, "events", depth=2, quantities="slip", chunk=4, out=tmp_path / f"{name}.zarr", **where)
         assert found.sizes["member"] > 20
     assert contents(tmp_path / "there.zarr") == contents(tmp_path / "here.zarr")
@@ -191,3 +203,76 @@ def test_without_dask(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_cannot_be(options: dict[str, int]) -> None:
     with pytest.raises(ss.InputError, match="workers"):
         ss.sweep("fig6-slab", VARY, **options)  # type: ignore[arg-type]
+
+
+def test_a_local_cluster_refuses_who_has_no_key(two_workers: Client) -> None:
+    from distributed import Client
+
+    address = two_workers.scheduler.address
+    assert address.startswith("tls://127.0.0.1:")
+    with pytest.raises(ss.InputError, match="no dask scheduler answers"):
+        ss.sweep("fig6-slab", VARY, scheduler=address)
+    with pytest.raises(OSError, match=r"\breset\b|connect"):
+        Client(address.replace("tls://", "tcp://"), timeout=2.0)
+    with pytest.raises(OSError, match=r"certificate|\breset\b|connect"):
+        Client(address, security=own_security(), timeout=2.0)
+
+
+def slowly(number: int) -> int:
+    """Take a while, so that not all is done when the scheduler goes."""
+    time.sleep(0.3)
+    return number
+
+
+def test_a_scheduler_that_goes_is_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "scheduler.json"
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    start = [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    scheduler = subprocess.Popen(start, **quiet)
+    worker = subprocess.Popen([*dask, "worker", "--scheduler-file", str(file), "--no-nanny", "--nthreads", "1"], **quiet)
+    try:
+        give_up = time.monotonic() + 60.0
+        while not file.exists() and time.monotonic() < give_up:
+            time.sleep(0.1)
+        with cluster(str(file)) as client:
+            client.wait_for_workers(1, timeout=60)
+            results = stream(client, slowly, ((number, number) for number in range(100)))
+            next(results)
+            scheduler.kill()
+            with pytest.raises(ChunksLostError, match="the dask scheduler is gone"):
+                list(results)
+    finally:
+        for process in (scheduler, worker):
+            process.kill()
+            process.wait()
+
+
+def _listening(process: int) -> set[str]:
+    """Addresses (as in /proc/net/tcp) on which a process listens."""
+    sockets = {str(link.readlink()) for link in Path(f"/proc/{process}/fd").iterdir() if link.is_symlink()}
+    rows = [line.split() for table in ("tcp", "tcp6") for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]]
+    return {row[1].partition(":")[0] for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in sockets}
+
+
+@pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="needs Linux")
+def test_a_local_cluster_listens_on_the_loopback_address_only(two_workers: Client) -> None:
+    from distributed import Nanny
+
+    processes = [os.getpid(), *two_workers.run(os.getpid).values()]
+    assert all(isinstance(nanny, Nanny) for nanny in two_workers.cluster.workers.values())
+    assert set().union(*(_listening(process) for process in processes)) == {"0100007F"}
+
+
+def test_a_local_cluster_shows_no_pages(two_workers: Client) -> None:
+    with pytest.raises(HTTPError, match="404"):
+        urlopen(f"http://127.0.0.1:{two_workers.cluster.scheduler.http_server.port}/info/main/workers.html", timeout=10)
+
+
+def test_without_any_key_one_line_says_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setitem(sys.modules, "cryptography", None)
+    monkeypatch.setenv("PATH", "")
+    assert own_security() is None
+    assert capsys.readouterr().err == (
+        "stickslip: sweep: without a key, other users of this machine can run code in the cluster: pip install cryptography\n"
+    )

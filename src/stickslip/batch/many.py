@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
+from stickslip.evolution.drive import MOST_ROUND_TRIPS, check_round_trips
+from stickslip.evolution.inflow import row_time
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.lumping import LARGEST_SHARE, check_shortest_event
 from stickslip.problem import Problem
-from stickslip.quantities import Quantity, quantities_of
+from stickslip.quantities import LARGEST, SMALLEST, Quantity, quantities_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import DURATION, LARGEST_RTOL, RTOL, check_rtol
 
@@ -79,6 +81,7 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
         check_rtol(run["rtol"], "run")
     problem = replace(scenario.problem, body=body, friction=law, **numbers.problem)
     check_shortest_event(problem, scenario.shortest_event, "run")
+    check_round_trips(run.get("duration", scenario.duration), row_time(problem), "run")
     return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
 
 
@@ -130,9 +133,9 @@ def pieces_at_start(problem: Problem) -> Places:
 
 def allowed(declared: Quantity, value: Floats) -> Booleans:
     """Which values a quantity takes, as `Quantity.check`."""
-    fine = ~np.isnan(value) if declared.infinite else np.isfinite(value)
+    fine = ~np.isnan(value) if declared.infinite else np.abs(value) <= LARGEST
     if declared.above is not None:
-        fine &= value > declared.above
+        fine &= (value > declared.above) & (value >= declared.above + SMALLEST)
     if declared.at_least is not None:
         fine &= value >= declared.at_least
     return fine
@@ -149,6 +152,9 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
     fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
+    with np.errstate(all="ignore"):  # of numbers that are refused already
+        row = row_time(with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem))
+        fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= MOST_ROUND_TRIPS * np.asarray(row)
     if isinstance(body, ElasticSlab):
         if body.p_wave_speed is not None:
             fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))

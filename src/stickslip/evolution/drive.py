@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Protocol, Self
 
+from stickslip.errors import InputError
 from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.in_progress import RunInProgress
@@ -23,6 +24,8 @@ MOMENT = 0.1
 """Wall clock (s) that a call of the engine is meant to take."""
 FIRST_BUDGET, SMALLEST_BUDGET, LARGEST_BUDGET = 5_000, 100, 20_000
 """Steps in a call: at most so many that they do not take seconds when they suddenly cost more."""
+MOST_ROUND_TRIPS = 2**53
+"""Round trips of a slab, or periods of a block, that a float counts one by one."""
 SHARE = 0.1
 """Largest share of the time that goes into anything done now and then."""
 
@@ -132,8 +135,17 @@ def interrupts() -> Iterator[Callable[[], bool]]:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def check_round_trips(duration: float, row: float, where: str) -> None:
+    """Refuse a run of so many round trips that times in the last one cannot be told apart. Raises InputError."""
+    if not duration <= MOST_ROUND_TRIPS * row:
+        raise InputError(
+            f"{where}: duration must be at most {MOST_ROUND_TRIPS * row:.3g} s, 2^53 round trips of {row:.3g} s, got {duration:g} s"
+        )
+
+
 def split_time(time: float, row: float) -> tuple[int, float]:
-    """A time as (whole rows, offset in the row), the offset in (0, row]."""
+    """Return a time as (whole rows, offset in the row), the offset in (0, row]. Raises InputError for too many rows."""
+    check_round_trips(time, row, "run")
     rows = math.floor(time / row)
     offset = time - rows * row
     if offset <= 0.0 and rows > 0:

@@ -24,7 +24,16 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
+MOST_VALUES = 20_000_000
+"""Times of the largest dataset, times its places: each takes up to 0.5 kB while it is worked out."""
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
+
+
+def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
+    """Refuse a dataset that is larger than the memory of most machines. Raises InputError."""
+    wanted = np.size(t) * (1 if x is None else np.size(x))
+    if wanted > MOST_VALUES:
+        raise InputError(f"dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
 
 
 class Readings:
@@ -42,7 +51,10 @@ class Readings:
         return self.history.span
 
     def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
-        time = np.asarray(t, float)
+        try:
+            time = np.asarray(t, float)
+        except OverflowError:  # a whole number beyond all floats
+            raise InputError("times must be finite numbers in s") from None
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
 
     def slip(self, t: ArrayLike) -> Floats:

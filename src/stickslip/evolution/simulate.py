@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from stickslip.errors import InputError
@@ -15,6 +14,7 @@ from stickslip.evolution.report import Progress
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import INTERRUPTED, STATUSES
 from stickslip.problem import Problem
+from stickslip.quantities import LARGEST, as_float
 
 
 def simulate(
@@ -62,8 +62,8 @@ def simulate(
 
 def check_run(who: str, duration: float, rtol: float, events: int | None, checkpoint_every: float) -> None:
     """Refuse what cannot be run. Raises InputError."""
-    if not (math.isfinite(duration) and duration > 0):
-        raise InputError(f"{who}: duration must be a positive time in s, got {duration!r}")
+    if not 0 < as_float(duration) <= LARGEST:
+        raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {as_float(duration)!r}")
     if not 1e-15 <= rtol <= 1e-2:
         raise InputError(f"{who}: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
     if events is not None and not (isinstance(events, int) and events > 0):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from stickslip.errors import InputError
 from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.history import History
-from stickslip.evolution.readings import Readings
+from stickslip.evolution.readings import Readings, check_size
 from stickslip.evolution.status import Status
 from stickslip.evolution.tables import creep_note, creep_table, default_event_rate, events_table
 from stickslip.evolution.window import Window, window_around
@@ -128,9 +128,11 @@ class Solution(Readings):
         """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance.
 
         With x (m from the contact, one-dimensional) also displacement, velocity and stress inside the slab, over time and x.
+        Raises InputError for more than 2e7 values of a quantity.
         """
         from stickslip.storage import solution_dataset
 
+        check_size(t, x)
         return solution_dataset(self, t, x)
 
     def save(self, path: str | Path) -> Path:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.errors import InputError
 from stickslip.evolution.history import Epoch, History
-from stickslip.evolution.readings import Curve, Floats, Readings
+from stickslip.evolution.readings import Curve, Floats, Readings, check_size
 from stickslip.evolution.tables import shocks_table
 from stickslip.problem import Problem
 
@@ -85,6 +85,7 @@ class Window(Readings):
         """
         from stickslip.storage import window_dataset
 
+        check_size(t, x)
         return window_dataset(self, t, x)
 
     def plot(self) -> Figure:

@@ -218,7 +218,8 @@ def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any)
     found: dict[Expression, Any] = {SLIP: u, RATE: v}
     for node in nodes_of(tree):
         if node.operation == "parameter":
-            found[node] = numbers[node.name]
+            number = numbers[node.name]
+            found[node] = np.float64(number) if isinstance(number, int | float) else number  # as numpy divides by zero
         elif node.operation == "constant":
             found[node] = np.float64(node.value)
         elif node.arguments:

@@ -76,7 +76,8 @@ class ExpressionLaw(RemembersSlip):
     def _check_exponents(self) -> None:
         for node in nodes_of(self.tree):
             if node.operation == "pow":
-                exponent = float(evaluate(node.arguments[1], self.numbers(), 0.0, 0.0))
+                with np.errstate(all="ignore"):
+                    exponent = float(evaluate(node.arguments[1], self.numbers(), 0.0, 0.0))
                 if not abs(exponent) <= LARGEST_EXPONENT:
                     raise InputError(f"an exponent is {exponent:g}, it must be within {LARGEST_EXPONENT:g}")
 

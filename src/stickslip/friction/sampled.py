@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
     u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
     with np.errstate(all="ignore"):
         found = evaluate_nodes(tree, numbers, u, v)
+        _check_constants(found)
         values = np.broadcast_to(found[tree], u.shape)
         _refuse(~np.isfinite(values), u, v, "is not a finite number")
         negative = np.where(values < -TOLERANCE, values, 0.0)
@@ -46,12 +48,24 @@ def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float6
         raise InputError(f"friction must be a number >= 0, but at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it {what}")
 
 
+def _check_constants(found: Mapping[Expression, Any]) -> None:
+    """Refuse a part without u and v that has no value, such as 0/0 or a root of -1, also where nothing shows of it."""
+    for node, value in found.items():
+        if np.ndim(value) == 0 and not np.isfinite(value):
+            raise InputError(f"the part '{_shown(node)}' is not a finite number: it is {value:g}")
+
+
 def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:
     bad = ~(values > 0.0)
     if bad.any():
         i = int(np.argmax(bad))
         where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
         what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
-        part = to_text(node.arguments[0])
-        shown = part if len(part) <= 60 else f"{part[:57]}..."
-        raise InputError(f"{what}, '{shown}', must stay above 0 to have derivatives, but {where}; add a small number to it")
+        raise InputError(
+            f"{what}, '{_shown(node.arguments[0])}', must stay above 0 to have derivatives, but {where}; add a small number to it"
+        )
+
+
+def _shown(node: Expression) -> str:
+    part = to_text(node)
+    return part if len(part) <= 60 else f"{part[:57]}..."

@@ -1,4 +1,8 @@
-"""A data file of a friction law or a loading history: CSV with a header, read line by line, so that a mistake has a place."""
+"""A data file of a friction law or a loading history: CSV with a header, read line by line, so that a mistake has a place.
+
+A scenario of somebody else must not read files of its reader: its data files are in its own folder, and no message shows what
+one holds.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from stickslip.errors import InputError, nearest
+from stickslip.files import read_bounded
 from stickslip.friction.fields import LARGEST_SERIES
 from stickslip.problem import MAY_VARY
 from stickslip.scenarios.values import show
@@ -45,17 +50,21 @@ def _text(name: str, folder: Path | None, where: str) -> str:
         raise InputError(f"{where} {show(name)}: only a scenario in a file can name another file; write the points as lists")
     if Path(name).is_absolute() or not name.isprintable():
         raise InputError(f"{where} {show(name)}: the path must be relative to the scenario")
-    path = folder / name
     try:
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder.resolve()):
+            raise InputError(f"{where} {show(name)}: the file must be in the folder of the scenario")
         if not path.is_file():
             raise InputError(f"{where} {show(name)}: no such file beside the scenario")
-        if path.stat().st_size > LARGEST:
-            raise InputError(f"{where} {show(name)}: larger than {LARGEST} bytes")
-        return path.read_text(encoding="utf-8-sig")
+        content = read_bounded(path, LARGEST).decode("utf-8-sig")
+    except InputError as error:
+        told = str(error)
+        raise InputError(told if told.startswith(where) else f"{where} {show(name)}: {told}") from None
     except OSError as error:
         raise InputError(f"{where} {show(name)}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{where} {show(name)}: not a text file in UTF-8") from None
+    return content
 
 
 def _rows(text: str, place: str) -> Iterator[tuple[int, list[str]]]:
@@ -73,7 +82,7 @@ def _wanted(header: list[str], columns: Mapping[str, str], value: str, place: st
     heading = {column: header.index(column) for column in columns if column in header}
     others = [column for column in columns if column != value]
     if value not in heading:
-        raise InputError(f"{place}: no column '{value}' in the header {show(','.join(header))}; {_close(value, header)}")
+        raise InputError(f"{place}: no column '{value}' in the header; {_close(value, header)}")
     if len(heading) != 2:
         found = "both" if len(heading) > 2 else "none"
         raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {found}; {_close(others[0], header)}")
@@ -92,7 +101,7 @@ def _number(row: list[str], i: int, column: str, place: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise InputError(f"{place}: {column} must be a number, got {show(text)}") from None
+        raise InputError(f"{place}: {column} must be a number, got {'text' if text else 'nothing'}") from None
     if not math.isfinite(value):
         raise InputError(f"{place}: {column} must be finite, got {show(text)}")
     if value < 0.0 and column not in SIGNED:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -13,6 +14,7 @@ import tomli_w
 from stickslip.errors import InputError, nearest
 from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.lumping import check_shortest_event
+from stickslip.files import read_bounded
 from stickslip.loading import LoadingHistory
 from stickslip.problem import Problem
 from stickslip.scenarios import library
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
 
 LARGEST = 1_000_000
 """Bytes of the largest scenario file that is read: they are untrusted."""
+DEEPEST = 20
+"""Parts of the longest dotted key: tomllib takes a time that grows with their square."""
+_LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
 
 @dataclass(frozen=True)
@@ -105,6 +110,8 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
 
     Raises InputError like `load_scenario`.
     """
+    if _LONG_KEY.search(text):
+        raise InputError(f"{file}: a key has more than {DEEPEST} parts: not a scenario")
     try:
         raw = tomllib.loads(text)
     except RecursionError:
@@ -152,11 +159,9 @@ def _in_tables(message: str) -> str:
 
 def _read_file(path: Path, file: str) -> str:
     try:
-        with path.open("rb") as stream:
-            data = stream.read(LARGEST + 1)
-        if len(data) > LARGEST:
-            raise InputError(f"{file}: larger than {LARGEST} bytes: not a scenario")
-        return data.decode("utf-8-sig")
+        return read_bounded(path, LARGEST).decode("utf-8-sig")
+    except InputError as error:
+        raise InputError(f"{file}: {error}: not a scenario") from None
     except FileNotFoundError:
         raise InputError(f"{file}: no such file, and no bundled scenario of that name; {_hint(path)}") from None
     except OSError as error:

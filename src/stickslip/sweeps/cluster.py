@@ -10,7 +10,7 @@ import asyncio
 import json
 import logging
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from itertools import islice
@@ -19,7 +19,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 from stickslip.errors import InputError
 from stickslip.evolution.checkpoint import engine
+from stickslip.files import read_bounded
 from stickslip.sweeps.chunk import run_chunk
+from stickslip.sweeps.security import own_security
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -29,13 +31,18 @@ if TYPE_CHECKING:
 Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
 
+LOOPBACK = "127.0.0.1"
+"""Where a cluster that is started here listens: no other machine reaches it."""
 PATIENCE = 10.0
 """Time (s) within which a scheduler must answer."""
+LARGEST_FILE = 1_000_000
+"""Bytes of the largest scheduler file."""
 AHEAD = 2
 """Chunks in flight for each thread of the cluster: one that it works on, and the next."""
 LEAST = 8
 """Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
 RETRIES = 2
+GONE = "sweep: the dask scheduler is gone; what is done is kept: the same command goes on"
 GONE_AGAIN = ("lost", "pending")
 """A result that was ready went with its worker before it was fetched: dask works it out anew."""
 ENVIRON = "distributed.nanny.pre-spawn-environ"
@@ -43,6 +50,8 @@ SETTINGS = {
     "distributed.worker.profile.enabled": False,  # a few per cent of everything, and nobody looks at it here
     f"{ENVIRON}.MALLOC_TRIM_THRESHOLD_": 2**28,  # dask's workers return every freed array to the system and fetch it again:
     f"{ENVIRON}.MALLOC_MMAP_THRESHOLD_": 2**25,  # 15 per cent of a chunk of the compiled batch
+    "distributed.scheduler.http.routes": [],  # pages that show what runs, to whoever asks
+    "distributed.worker.http.routes": [],
 }
 """Of workers that are started here."""
 LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
@@ -65,14 +74,27 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
     except ImportError:
         raise InputError("sweep: a cluster needs dask.distributed: pip install 'stickslip[cluster]'") from None
     if scheduler is not None:
-        with Client(_answering(scheduler), set_as_default=False) as client:
+        with _quietly(), Client(_answering(scheduler), set_as_default=False) as client:
             yield client
     else:
-        many = {"n_workers": _checked(workers), "threads_per_worker": 1}
+        many = {"n_workers": _checked(workers), "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
+        private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
         with config.set(SETTINGS):
-            local = LocalCluster(**many, dashboard_address=":0", silence_logs=logging.ERROR, preload=[LEAVE_CTRL_C])
-        with local, Client(local, set_as_default=False) as client:
+            local = LocalCluster(**many, **private, security=own_security(), silence_logs=logging.ERROR)
+        with _quietly(), local, Client(local, set_as_default=False) as client:
             yield client
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep dask's client from telling a lost connection with all that it was doing: one line tells it."""
+    log = logging.getLogger("distributed.client")
+    before = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log.setLevel(before)
 
 
 def _checked(workers: int | None) -> int:
@@ -91,10 +113,11 @@ def _answering(scheduler: str) -> str:
         await comm.close()
 
     try:
-        address = str(json.loads(Path(scheduler).read_text())["address"]) if Path(scheduler).is_file() else scheduler
+        path = Path(scheduler)
+        address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
         with ThreadPoolExecutor(1) as aside:  # a notebook has an event loop of its own in this thread
             aside.submit(lambda: asyncio.run(knock())).result()
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError: tls:// without a key in dask's configuration
         raise InputError(
             f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"
         ) from None
@@ -112,6 +135,13 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
     `run` and the chunks must be picklable. A chunk that fails holds up no others: when these are done ChunksLostError is raised.
     Raises InputError at once where a worker has another version of the engine, ChunksLostError where the scheduler is lost.
     """
+    try:
+        yield from _streamed(client, run, chunks)
+    except (OSError, CancelledError):  # of the connection: what fails in a chunk is its result, what fails in the store is not here
+        raise ChunksLostError(GONE) from None
+
+
+def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
     from distributed import as_completed
 
     waiting = iter(chunks)
@@ -157,7 +187,7 @@ def _why(future: Future) -> str:
     from distributed import KilledWorker
 
     if future.status != "error":
-        raise ChunksLostError("sweep: the dask scheduler is gone; what is done is kept: the same command goes on")
+        raise ChunksLostError(GONE)
     error = future.exception()
     if isinstance(error, InputError):
         raise error

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.errors import InputError, nearest
+from stickslip.files import read_bounded
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.axis import Axis, Values, axis_of, read_axis, read_values
+from stickslip.sweeps.axis import LARGEST_AXIS, Axis, Values, axis_of, read_axis, read_values
 from stickslip.sweeps.keys import Key, key_named
 
 if TYPE_CHECKING:
     import pandas as pd
 
 KINDS = ("grid", "random", "lhs")
+LARGEST_TABLE = 1_000_000_000
+"""Bytes of the largest table of members."""
+LARGEST_GRID = 1_000_000_000
+"""Members of the largest grid."""
 MEMBER = "member"
 """Dimension of samples and lists."""
 
@@ -60,7 +66,7 @@ class Design:
 
     def values(self, members: slice | NDArray[np.intp]) -> dict[str, Values]:
         """What each of these members has for each key: one-dimensional arrays in SI."""
-        numbers = np.arange(self.size)[members] if isinstance(members, slice) else np.asarray(members)
+        numbers = np.arange(*members.indices(self.size)) if isinstance(members, slice) else np.asarray(members)
         if not self.is_grid:
             return {key.name: column[numbers] for key, column in zip(self.keys, self.columns, strict=True)}
         places = np.unravel_index(numbers, self.shape)
@@ -135,7 +141,10 @@ def grid(axes: Iterable[Axis], where: str) -> Design:
         if twice.size:
             raise InputError(f"{where}: {axis.key.name} has the value {ordered[twice[0]]} twice")
     keys, columns = tuple(axis.key for axis in axes), tuple(axis.values for axis in axes)
-    return Design("grid", keys, columns, logs=_logs(axes))
+    found = Design("grid", keys, columns, logs=_logs(axes))
+    if found.size > LARGEST_GRID:
+        raise InputError(f"{where}: a grid has at most {LARGEST_GRID:.0e} members, got {found.size:.3g}")
+    return found
 
 
 def _logs(axes: Iterable[Axis]) -> frozenset[str]:
@@ -152,6 +161,8 @@ def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, whe
     for axis in axes:
         if axis.ends is not None and len(axis.values):
             raise InputError(f"{where}: {axis.key.name} needs no number of points in the design {kind}: LOW..HIGH")
+    if members > LARGEST_AXIS:
+        raise InputError(f"sweep: members must be at most {LARGEST_AXIS} for the design {kind}, got {members}")
     shares = _shares(kind, members, len(axes), seed)
     columns = tuple(axis.at(shares[:, i]) for i, axis in enumerate(axes))
     return Design(kind, tuple(axis.key for axis in axes), columns, seed, _logs(axes))
@@ -170,9 +181,12 @@ def read_csv(path: Path, where: str) -> pd.DataFrame:
     import pandas as pd
 
     try:
-        return pd.read_csv(path, comment="#", dtype=str, keep_default_na=False, skipinitialspace=True)
+        content = BytesIO(read_bounded(path, LARGEST_TABLE))
+        return pd.read_csv(content, comment="#", dtype=str, keep_default_na=False, skipinitialspace=True)
     except FileNotFoundError:
         raise InputError(f"{where} {path}: no such file") from None
+    except InputError as error:
+        raise InputError(f"{where} {path}: {error}: not a table of members") from None
     except (OSError, ValueError) as error:
         raise InputError(f"{where} {path}: not a table of members: {error}") from None
 

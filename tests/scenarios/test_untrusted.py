@@ -1,0 +1,204 @@
+"""Scenarios and command lines of others: one line, bounded time and memory, and no look at other files."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.cli.main import main
+from stickslip.scenarios.scenario import load_scenario, read_scenario
+
+SLAB = """
+[body]
+kind = "elastic-slab"
+density = 2800
+wave_speed = 3500
+thickness = "10 km"
+normal_stress = "100 MPa"
+
+[friction]
+kind = "hyperbolic-rate"
+static = 0.8
+dynamic = 0.3
+alpha = 1.0
+
+[loading]
+pull_rate = 1e-9
+
+[initial]
+excess = 0.0
+
+[run]
+duration = 12
+"""
+TABLE = SLAB.replace(
+    SLAB[SLAB.index("[friction]") : SLAB.index("[loading]")],
+    '[friction]\nkind = "table"\nfile = "FILE"\n\n',
+)
+QUOTED = '"a" . '
+POINTS = "slip,friction\n0,0.7\n1,0.5\n"
+
+
+def refusal(text: str) -> str:
+    """What is said about a scenario, in one line and at once."""
+    begin = time.monotonic()
+    with pytest.raises(ss.InputError) as caught:
+        read_scenario(text, "my.toml")
+    assert time.monotonic() - begin < 5.0
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).startswith("my.toml: ")
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("expression", "parameters", "message"),
+    [
+        ("b/b", {"b": 0}, "the part 'b / b' is not a finite number: it is nan"),
+        ("0.5 + b/b", {"b": 0.0}, "the part 'b / b' is not a finite number: it is nan"),
+        ("a**b + 0.5", {"a": -1, "b": 0.5}, r"the part 'a\*\*b' is not a finite number: it is nan"),
+        ("0.5 + 0*a**b", {"a": 1e50, "b": 99}, r"the part 'a\*\*b' is not a finite number: it is inf"),
+        ("0.5 + v/1e300**2", {}, r"the part '1e\+300 \* 1e\+300' is not a finite number: it is inf"),
+        ("0.5 + exp(-a*a*v)", {"a": 1e300}, r"a' must lie within 1e\+50 \(a pure number\), got 1e\+300"),
+        ("0.5 + exp(-a*v)", {"a": 10**400}, "a' must be finite, got inf"),
+    ],
+)
+def test_an_expression_without_a_value_is_refused_with_its_part(
+    expression: str, parameters: dict[str, float], message: str
+) -> None:
+    with pytest.raises(ss.InputError, match=message):
+        ss.friction.FromExpression(expression, parameters)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"10 km"', "1e300", "my.toml: [body] thickness must lie within 1e+50 m, got 1e+300"),
+        ('"10 km"', "1e-300", "my.toml: [body] thickness must be at least 1e-50 m, got 1e-300"),
+        ("= 12", "= 1e300", "my.toml: [run] duration must lie within 1e+50 s, got 1e+300"),
+        ("alpha = 1.0", "alpha = 1e200", "my.toml: [friction] alpha must lie within 1e+50 s/m, got 1e+200"),
+        ("= 12", f"= 12\n{'a.' * 20_000}b = 1", "my.toml: a key has more than 20 parts: not a scenario"),
+        ("[run]", f"[{'a.' * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
+        ("[run]", f"[{QUOTED * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
+        ("[run]", f"x = {'[' * 20_000}\n[run]", "my.toml: not a scenario: nested too deeply"),
+    ],
+)
+def test_a_scenario_beyond_all_measure_is_refused_at_once(old: str, new: str, message: str) -> None:
+    assert refusal(SLAB.replace(old, new)) == message
+
+
+def test_a_long_text_without_dots_is_no_long_key() -> None:
+    text = f'description = """{"word " * 50_000}{"a" * 300_000} ..... """\n{SLAB}'
+    begin = time.monotonic()
+    read_scenario(text, "my.toml")
+    assert time.monotonic() - begin < 5.0
+
+
+def test_a_whole_number_beyond_all_floats() -> None:
+    problem = read_scenario(SLAB, "my.toml").problem
+    with pytest.raises(ss.InputError, match="thickness must be finite, got inf"):
+        ss.ElasticSlab(2800, 3500, 10**400, 1e8)
+    with pytest.raises(ss.InputError, match="duration must be a positive time in s"):
+        ss.simulate(problem, 10**400)
+    with pytest.raises(ss.InputError, match=r"friction\[1\] must be finite, got inf"):
+        ss.friction.FromTable(slip=[0, 1], friction=[0.7, 10**400])
+
+
+def test_a_dataset_larger_than_memory_is_refused() -> None:
+    solution = load_scenario("fig6-slab").run()
+    with pytest.raises(ss.InputError, match=r"dataset: 2e\+08 values are too many"):
+        solution.dataset(np.broadcast_to(1.0, 200_000_000))
+    with pytest.raises(ss.InputError, match="times must be finite numbers"):
+        solution.slip(10**400)
+
+
+def test_a_run_of_too_many_round_trips_is_refused() -> None:
+    scenario = read_scenario(SLAB.replace('"10 km"', "4e-24"), "my.toml")
+    with pytest.raises(ss.InputError, match=r"duration must be at most 2.06e-11 s, 2\^53 round trips of 2.29e-27 s, got 12 s"):
+        scenario.run()
+    with pytest.raises(ss.InputError, match=r"duration must be at most 5.15e\+16 s"):
+        ss.simulate(read_scenario(SLAB, "my.toml").problem, 1e30)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a scenario that takes its points from a file, and a secret beside it."""
+    found = tmp_path / "scenario"
+    found.mkdir()
+    (tmp_path / "secret.csv").write_text("password hunter2\n")
+    (found / "points.csv").write_text(POINTS)
+    return found
+
+
+def of_file(folder: Path, name: str) -> Path:
+    path = folder / "my.toml"
+    path.write_text(TABLE.replace("FILE", name))
+    return path
+
+
+def test_points_may_be_in_the_folder_of_the_scenario(folder: Path) -> None:
+    assert load_scenario(of_file(folder, "points.csv")).problem.friction.kind == "table"
+    (folder / "link.csv").symlink_to("points.csv")
+    assert load_scenario(of_file(folder, "link.csv")).problem.friction.kind == "table"
+
+
+@pytest.mark.parametrize("name", ["../secret.csv", "out.csv", "up/secret.csv", "/etc/passwd"])
+def test_points_outside_the_folder_of_the_scenario_are_not_read(folder: Path, name: str) -> None:
+    (folder / "out.csv").symlink_to("../secret.csv")
+    (folder / "up").symlink_to("..")
+    with pytest.raises(ss.InputError, match=r"the file must be in the folder|the path must be relative") as caught:
+        load_scenario(of_file(folder, name))
+    assert "hunter2" not in str(caught.value)
+
+
+@pytest.mark.parametrize("content", ["password hunter2\n", "slip,friction\n0,hunter2\n", "slip,friction,hunter2\n0,1,2\n"])
+def test_no_message_shows_what_a_file_holds(folder: Path, content: str) -> None:
+    (folder / "points.csv").write_text(content)
+    with pytest.raises(ss.InputError) as caught:
+        load_scenario(of_file(folder, "points.csv"))
+    assert "hunter2" not in str(caught.value)
+
+
+def test_a_pipe_is_not_waited_for(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    os.mkfifo(folder / "pipe")
+    with pytest.raises(ss.InputError, match="pipe: not an ordinary file: not a scenario"):
+        load_scenario(tmp_path / "pipe")
+    with pytest.raises(ss.InputError, match="no such file beside the scenario"):
+        load_scenario(of_file(folder, "pipe"))
+    for path in (str(tmp_path / "pipe"), "/dev/zero"):
+        assert said(capsys, "sweep", "fig6-slab", "--list", path).startswith(f"stickslip: --list {path}: not an ordinary file")
+
+
+def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """What the command says of what cannot be used."""
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    shown = capsys.readouterr()
+    assert ended.value.code == 2
+    assert shown.err.count("\n") == 1
+    return shown.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["run", "fig6-slab", "--until", "1e300"], "run: --until must lie within 1e+50 s, got 1e+300"),
+        (["run", "fig6-slab", "--until", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
+        (
+            ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "random", "--members", "1000000000000"],
+            "sweep: members must be at most 10000000 for the design random",
+        ),
+        (["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "lhs", "--members", "1e12"], "Invalid value for '--members'"),
+        (
+            ["sweep", "fig6-slab", "-v", "alpha=1..2:100000", "-v", "static=0.6..0.8:100000", "--dry-run"],
+            "--vary: a grid has at most 1e+09 members, got 1e+10",
+        ),
+    ],
+)
+def test_a_command_line_beyond_all_measure(capsys: pytest.CaptureFixture[str], arguments: list[str], message: str) -> None:
+    assert said(capsys, *arguments).startswith(f"stickslip: {message}")
