@@ -15,7 +15,9 @@ import stickslip
 PACKAGE = Path(stickslip.__file__).parent
 
 LAYERS = (
-    ("errors", "files"),
+    ("errors",),
+    ("files",),
+    ("netcdf",),
     ("quantities", "selection", "units"),
     ("friction",),
     ("bodies", "loading"),
@@ -27,6 +29,7 @@ LAYERS = (
     ("studies",),
     ("scenarios",),
     ("batch",),
+    ("soundness",),
     ("storage",),
     ("long_runs",),
     ("exports", "side_by_side"),
@@ -41,7 +44,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "long_runs", "sweeps", "figures", "paper"},
+    "xarray": {"netcdf", "observables", "storage", "long_runs", "sweeps", "figures", "paper"},
 }
 
 
