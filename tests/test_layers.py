@@ -17,6 +17,10 @@ PACKAGE = Path(stickslip.__file__).parent
 LAYERS = (
     ("errors",),
     ("files",),
+<<<<<<< HEAD
+=======
+    ("netcdf",),
+>>>>>>> wt-i
     ("quantities", "selection", "units"),
     ("friction",),
     ("bodies", "loading"),
@@ -28,6 +32,7 @@ LAYERS = (
     ("studies",),
     ("scenarios",),
     ("batch",),
+    ("soundness",),
     ("storage",),
     ("long_runs",),
     ("exports", "side_by_side"),
@@ -42,7 +47,7 @@ ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"observables", "storage", "long_runs", "sweeps", "figures", "paper"},
+    "xarray": {"netcdf", "observables", "storage", "long_runs", "sweeps", "figures", "paper"},
 }
 
 

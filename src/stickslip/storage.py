@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 import stickslip
+from stickslip import netcdf
 from stickslip.errors import InputError
+from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import ARRAYS, Checkpoint
 from stickslip.evolution.history import NO_LEAPS, History
 from stickslip.evolution.layout import Store
@@ -20,13 +23,14 @@ from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import Status
 from stickslip.evolution.tables import EVENT_COLUMNS
 from stickslip.evolution.window import Window
-from stickslip.files import write_atomically
 from stickslip.loading import HISTORIES, LoadingHistory
+from stickslip.netcdf import FullDiskError, write
 from stickslip.observables.choices import choices
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem import MAY_VARY
 from stickslip.scenarios import Scenario, read_scenario
 from stickslip.selection import names as rule_names
+from stickslip.soundness import check_history, number
 
 FORMAT = 1
 """Version of the layout below; a file with another one is refused."""
@@ -135,25 +139,26 @@ def save(solution: Solution, path: str | Path) -> Path:
 
     Besides the history, the file holds curves for drawing (both limits at shocks), the tables of events and shocks, and as
     attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError where the folder cannot
-    be written.
+    be written; where the disk is full, it is a FullDiskError, whose attribute `solution` can be saved elsewhere.
     """
     dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
-    return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+    try:
+        return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+    except FullDiskError as error:
+        error.solution = solution
+        raise
 
 
 def save_checkpoint(solution: Solution, path: Path) -> Path:
-    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables."""
-    return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables.
 
-
-def write(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a netCDF file, whole or not at all. Raises InputError where the folder cannot be written."""
-    encoding = {name: {"_FillValue": None} for name, variable in dataset.variables.items() if variable.dtype.kind == "f"}
+    A full disk does not end the run: the checkpoint before stays, and a warning says so.
+    """
     try:
-        write_atomically(path, lambda draft: dataset.to_netcdf(draft, engine="h5netcdf", encoding=encoding))
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}") from None
-    return path
+        return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+    except FullDiskError as error:
+        warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
+        return path
 
 
 def history_dataset(solution: Solution) -> xr.Dataset:
@@ -233,44 +238,47 @@ def load(path: str | Path) -> Solution:
 
 
 def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
-    """A file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            dataset = opened.load()
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())}") from None
+    """Read a file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
+    what = KINDS[kind].partition(":")[0]
+    dataset = netcdf.read(path, what)
     if dataset.attrs.get(kind) != FORMAT:
         other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in dataset.attrs), None)
         found = f"it is {other}" if other else f"format {FORMAT} expected, found {dataset.attrs.get(kind, 'none')}"
-        raise InputError(f"{path}: not {KINDS[kind].partition(':')[0]} of this version of stickslip ({found})")
+        raise InputError(f"{path}: not {what} of this version of stickslip ({found})")
     return dataset
 
 
 def is_catalogue(path: Path) -> bool:
-    """Whether a file is the checkpoint of a catalogue."""
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            return CATALOGUE in opened.attrs
-    except (OSError, ValueError):
-        return False
+    """Return True if a file is the checkpoint of a catalogue."""
+    return CATALOGUE in netcdf.attributes(path)
 
 
 def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
-    """The solution in a file. Raises InputError for a selection rule that is not known here."""
+    """Return the solution in a file. Raises InputError for a rule that is not known here, and where something is out of range."""
+    try:
+        found = _solution(dataset, path)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{path}: not a file that stickslip has written: {' '.join(str(error).split())} is missing or wrong"
+        ) from None
+    check_history(found.history, path)
+    return found
+
+
+def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     attributes = dataset.attrs
     if attributes["selection_rule"] not in rule_names():
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
     whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
-    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, load.shape[1]))
-    duration, rtol = float(attributes["duration"]), float(attributes["rtol"])
+    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, at.TERMS))
+    duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
     store = Store(whole, real, load, rate, state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
-    history = History(store, scenario.problem, float(dataset.row_time), float(dataset.ramp), float(dataset.reached), creep=creep)
-    status = Status(attributes["status"], attributes["status_message"], bool(attributes["status_ok"]))
+    row_time, ramp, reached = (float(dataset[name].item()) for name in ("row_time", "ramp", "reached"))
+    history = History(store, scenario.problem, row_time, ramp, reached, creep=creep)
+    status = Status(str(attributes["status"]), str(attributes["status_message"]), bool(attributes["status_ok"]))
     checkpoint = None
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}

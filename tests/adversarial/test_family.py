@@ -20,7 +20,7 @@ SAMPLE = (
     "lagged-bump(v)",
 )
 """Templates of the ordinary test run: each formula is compiled for a second or two."""
-FEW, MANY = 6, 60
+FEW, MANY = 3, 60
 
 
 def _agrees(template: str, seed: int) -> None:
@@ -45,6 +45,7 @@ def test_slip_and_end_are_those_of_scipy_for_many_laws(template: str, seed: int)
     _agrees(template, seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("template", TEMPLATES)
 def test_most_of_the_family_is_decided_in_double_precision(template: str) -> None:
     """At least half of the cases of each template are tests: the rest graze a feature or are stiff."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -20,12 +22,15 @@ from stickslip.evolution.simulate import check_run, check_started
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Status
 from stickslip.evolution.tables import creep_note, default_event_rate
+from stickslip.files import held
 from stickslip.long_runs.resume import check_events, events_wanted, taken_up
 from stickslip.long_runs.rows import Rows, RowsInMemory, check_catalogue
+from stickslip.netcdf import FullDiskError, write
 from stickslip.observables.energy import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem import Problem
-from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution, write
+from stickslip.soundness import check_place
+from stickslip.storage import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -93,10 +98,16 @@ def stream_of(run: RunInProgress, event_rate: float, energies: bool) -> EventStr
 def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None, energies: bool = False) -> Catalogue:
     """Follow a run from its start, into a file; what was there under these names is gone."""
     rows = Rows(path)
-    checkpoint_of(rows).unlink(missing_ok=True)
-    rows.clear()
     rate = default_event_rate(run.problem) if event_rate is None else event_rate
-    return follow(run, orders, stream_of(run, rate, energies), rows)
+    with alone_with(rows):
+        checkpoint_of(rows).unlink(missing_ok=True)
+        rows.clear()
+        return follow(run, orders, stream_of(run, rate, energies), rows)
+
+
+def alone_with(rows: Rows) -> AbstractContextManager[None]:
+    """Hold the files of a catalogue against other processes. Raises InputError where another catalogue is written into them."""
+    return held(checkpoint_of(rows), f"{rows.path}: another run is writing its catalogue there: choose another name")
 
 
 def resume_catalogue(
@@ -129,12 +140,20 @@ class Paused:
     def read(cls, path: Path) -> Self:
         """Raises InputError for a file that is no such checkpoint."""
         dataset = read(path, CATALOGUE)
-        return cls(path, to_solution(dataset, path), dataset.attrs)
+        stopped = to_solution(dataset, path)
+        try:
+            return cls(path, stopped, check_place(dataset.attrs, path))
+        except (KeyError, TypeError) as error:
+            raise InputError(f"{path}: not a file that stickslip has written: {error} is missing or wrong") from None
 
     @property
     def rows(self) -> Rows:
-        """Where the rows are."""
-        return Rows(self.path.parent / str(self.about["catalogue"]))
+        """Where the rows are: beside the checkpoint. Raises InputError where there is a link."""
+        found = Rows(self.path.parent / self.about["catalogue"])
+        for path in {found.path, found.growing}:
+            if path.is_symlink():
+                raise InputError(f"{path}: is a link: a catalogue is taken up in the file itself")
+        return found
 
     def go_on(
         self,
@@ -153,11 +172,13 @@ class Paused:
         if wanted is not None:
             check_events(self.path, wanted, int(about["told"]))
         check_catalogue(rows.path)
-        rows.take_up(int(about["told"]), int(about["bytes"]))
-        start = Place(int(about["last_piece"]), float(about["last_xi"]))
-        run.forgotten = int(about["forgotten"])
-        fresh = stream_of(run, float(about["event_rate"]), bool(about["energies"]))
-        return follow(run, orders, replace(fresh, first=int(about["first"]), last_start=start, told=int(about["told"])), rows)
+        start = Place(about["last_piece"], about["last_xi"])
+        run.forgotten = about["forgotten"]
+        fresh = stream_of(run, about["event_rate"], bool(about["energies"]))
+        stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
+        with alone_with(rows):
+            rows.take_up(about["told"], about["bytes"], about["digest"])
+            return follow(run, orders, stream, rows)
 
 
 @dataclass(frozen=True)
@@ -240,7 +261,10 @@ class CatalogueKeeper(Keeper):
         self.rows.sync()
         solution = as_solution(run, self.orders, code)
         about = self._about(run, self.told, self.rows)
-        write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
+        try:
+            write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
+        except FullDiskError as error:  # the checkpoint before is still there
+            warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
 
     def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
         """Tell the rest, the event that the end leaves open too; the rows get their form. Returns the notes of a `Catalogue`."""
@@ -273,6 +297,7 @@ class CatalogueKeeper(Keeper):
             CATALOGUE: FORMAT,
             "catalogue": rows.path.name,
             "bytes": told.size,
+            "digest": rows.digest(told.size),
             "told": stream.told,
             "first": stream.first,
             "last_piece": stream.last_start.piece,

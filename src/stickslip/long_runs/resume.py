@@ -15,6 +15,7 @@ from stickslip.evolution.simulate import check_run, go_on
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import ENOUGH_EVENTS, STATUSES
 from stickslip.evolution.tables import default_event_rate
+from stickslip.soundness import check_checkpoint
 from stickslip.storage import load
 
 
@@ -64,6 +65,7 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
             f"{path}: cannot be taken up: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
             " which would go on in other digits; run it again from the start"
         )
+    check_checkpoint(stopped, path)
     run = RunInProgress.at_checkpoint(stopped.history, checkpoint, stopped.rtol, stopped.creep_rtol, stopped.shortest_event)
     reached = float(stopped.history.end[run.length - 1])
     if duration is not None and duration < reached:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import importlib.util
 import os
 from collections.abc import Iterator, Mapping
@@ -11,8 +12,10 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stickslip import netcdf
 from stickslip.errors import InputError
 from stickslip.files import write_atomically
+from stickslip.netcdf import cannot_be_written, write_with
 from stickslip.storage import column_unit
 
 if TYPE_CHECKING:
@@ -24,6 +27,7 @@ AT_A_TIME = 50_000
 
 CHUNK = 1024
 """Rows in a block of a netCDF file."""
+BYTES_AT_A_TIME = 2**20
 
 
 def check_catalogue(path: Path, where: str = "catalogue") -> None:
@@ -55,12 +59,15 @@ class Rows:
         return self.growing.stat().st_size if self.growing.exists() else 0
 
     def append(self, rows: pd.DataFrame) -> None:
-        """Add rows of numbers; the first ones bring the names of the columns."""
-        texts = [["" if value != value else repr(value) for value in rows[name].tolist()] for name in rows.columns]
-        with self.growing.open("a", encoding="utf-8", newline="") as file:
-            if file.tell() == 0:
-                file.write(",".join(rows.columns) + "\n")
-            file.writelines(",".join(row) + "\n" for row in zip(*texts, strict=True))
+        """Add rows of numbers; the first ones bring the names of the columns. Raises InputError where there is no room."""
+        try:
+            with self.growing.open("a", encoding="utf-8", newline="") as file:
+                if file.tell() == 0:
+                    file.write(",".join(rows.columns) + "\n")
+                file.writelines(lines_of(rows))
+        except OSError as error:
+            kept = "; the rows up to the last checkpoint are there, and --resume goes on from it when there is room"
+            raise cannot_be_written(self.growing, error, kept) from None
 
     def sync(self) -> None:
         """Have what was written on the disk, before anything that counts on it."""
@@ -68,14 +75,37 @@ class Rows:
             with self.growing.open("rb+") as file:
                 os.fsync(file.fileno())
 
-    def take_up(self, rows: int, size: int) -> None:
-        """Go back to the first `rows` rows, which were so many bytes. Raises InputError where they are not there."""
-        if not self.growing.exists() and self.path.exists():  # the run had ended
-            self.append(read_table(self.path).iloc[:rows])
-        elif self.size >= size:
+    def digest(self, size: int) -> str:
+        """Return the SHA-256 of the first `size` bytes; of fewer if there are not so many."""
+        digest = hashlib.sha256()
+        if self.growing.exists():
+            with self.growing.open("rb") as file:
+                while size > 0 and (some := file.read(min(size, BYTES_AT_A_TIME))):
+                    digest.update(some)
+                    size -= len(some)
+        return digest.hexdigest()
+
+    def take_up(self, rows: int, size: int, digest: str) -> None:
+        """Go back to the first `rows` rows, which were so many bytes with this digest.
+
+        They are in the growing file; of a run that had ended, they are made again from its table, as a whole: a process that dies
+        here leaves either no growing file or all of it. Raises InputError where they are not there, or are others.
+        """
+        if self._has(size, digest):
             self._cut(size)
-        else:
-            raise InputError(f"{self.growing}: has lost rows that the checkpoint counts on; run it again from the start")
+            return
+        if self.growing != self.path and self.path.exists():  # the run had ended
+            ended = read_table(self.path).iloc[:rows]
+            text = ",".join(ended.columns) + "\n" + "".join(lines_of(ended))
+            write_atomically(self.growing, lambda draft: draft.write_text(text, encoding="utf-8", newline=""))
+            if self._has(size, digest):
+                self._cut(size)
+                return
+        what = "has lost rows that the checkpoint counts on" if self.size < size else "has other rows than the checkpoint counts on"
+        raise InputError(f"{self.growing}: {what}; run it again from the start")
+
+    def _has(self, size: int, digest: str) -> bool:
+        return self.size >= size and self.digest(size) == digest
 
     def _cut(self, size: int) -> None:
         if self.growing.exists():
@@ -104,9 +134,12 @@ class Rows:
         """Give the table its form, whole or not at all."""
         suffix = self.path.suffix.lower()
         if suffix == ".parquet":
-            write_atomically(self.path, lambda draft: _to_parquet(self.chunks(), draft, about))
+            try:
+                write_atomically(self.path, lambda draft: _to_parquet(self.chunks(), draft, about))
+            except OSError as error:
+                raise cannot_be_written(self.path, error, f"; its rows are in {self.growing}") from None
         elif suffix == ".nc":
-            write_atomically(self.path, lambda draft: _to_netcdf(self.chunks(), draft, about, load_unit))
+            write_with(lambda file: _to_netcdf(self.chunks(), file, about, load_unit), self.path)
 
     def tidy(self) -> None:
         """The table has its form: the growing file is no longer needed."""
@@ -143,31 +176,56 @@ class RowsInMemory:
         return pd.concat(filled, ignore_index=True) if filled else self.tables[-1]
 
 
+def lines_of(rows: pd.DataFrame) -> Iterator[str]:
+    """Yield the rows as lines of CSV that give every number back."""
+    texts = [["" if value != value else repr(value) for value in rows[name].tolist()] for name in rows.columns]
+    yield from (",".join(row) + "\n" for row in zip(*texts, strict=True))
+
+
 def read_table(path: Path) -> pd.DataFrame:
-    """A catalogue in its final form."""
+    """Read a catalogue in its final form. Raises InputError for a file that is not one, or is damaged so that it shows."""
     import pandas as pd
-    import xarray as xr
 
     suffix = path.suffix.lower()
-    if suffix == ".parquet":
-        return pd.read_parquet(path, engine="pyarrow")
     if suffix == ".nc":
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
-            return dataset.to_dataframe().reset_index(drop=True)
-    return pd.concat(list(read_csv(path)), ignore_index=True)
+        return netcdf.read(path, "a catalogue").to_dataframe().reset_index(drop=True)
+    try:
+        if suffix == ".parquet":
+            return _from_parquet(path)
+        return pd.concat(list(read_csv(path)), ignore_index=True)
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except InputError:
+        raise
+    except Exception as error:  # whatever a library says of a damaged file
+        raise InputError(f"{path}: not a catalogue that can be read: {' '.join(str(error).split())[:200]}") from None
 
 
 def read_csv(path: Path) -> Iterator[pd.DataFrame]:
-    """Tables of some rows at a time, at least one. Every number to the last digit, which pandas' own reader does not promise."""
-    import pandas as pd
+    """Tables of some rows at a time, at least one. Every number to the last digit, which pandas' own reader does not promise.
 
+    Raises InputError for a row that is none.
+    """
     with path.open(encoding="utf-8", newline="") as file:
         lines = csv.reader(file)
-        names = next(lines)
-        some = list(islice(lines, AT_A_TIME))
-        yield pd.DataFrame({name: _typed([row[n] for row in some]) for n, name in enumerate(names)})
+        names = next(lines, [])
+        if not names:
+            raise InputError(f"{path}: not a catalogue: it is empty")
+        yield _table_of(names, list(islice(lines, AT_A_TIME)), path)
         while some := list(islice(lines, AT_A_TIME)):
-            yield pd.DataFrame({name: _typed([row[n] for row in some]) for n, name in enumerate(names)})
+            yield _table_of(names, some, path)
+
+
+def _table_of(names: list[str], rows: list[list[str]], path: Path) -> pd.DataFrame:
+    import pandas as pd
+
+    wrong = next((row for row in rows if len(row) != len(names)), None)
+    if wrong is not None:
+        raise InputError(f"{path}: not a catalogue: the row '{','.join(wrong)[:80]}' has {len(wrong)} numbers, not {len(names)}")
+    try:
+        return pd.DataFrame({name: _typed([row[n] for row in rows]) for n, name in enumerate(names)})
+    except ValueError as error:
+        raise InputError(f"{path}: not a catalogue: {error}") from None
 
 
 def _typed(texts: list[str]) -> list[Any]:
@@ -188,27 +246,33 @@ def _to_parquet(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, 
             table = pa.Table.from_pandas(chunk, preserve_index=False)
             if writer is None:
                 known = {name: str(value) for name, value in about.items()}
-                writer = pq.ParquetWriter(path, table.schema.with_metadata(known | (table.schema.metadata or {})))
+                writer = pq.ParquetWriter(
+                    path, table.schema.with_metadata(known | (table.schema.metadata or {})), write_page_checksum=True
+                )
             writer.write_table(table.cast(writer.schema))
     finally:
         if writer is not None:
             writer.close()
 
 
-def _to_netcdf(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, Any], load_unit: str) -> None:
-    import h5netcdf
+def _to_netcdf(chunks: Iterator[pd.DataFrame], file: Any, about: Mapping[str, Any], load_unit: str) -> None:
+    file.attrs.update(about)
+    file.dimensions = {"event": None}
+    done = 0
+    for chunk in chunks:
+        for name in chunk.columns:
+            values = chunk[name].to_numpy()
+            if name not in file.variables:
+                made = file.create_variable(name, ("event",), values.dtype, chunks=(CHUNK,))
+                made.attrs["units"] = column_unit(name, load_unit)
+            if name == chunk.columns[0]:
+                file.resize_dimension("event", done + len(chunk))
+            file.variables[name][done : done + len(chunk)] = values
+        done += len(chunk)
 
-    with h5netcdf.File(path, "w") as file:
-        file.attrs.update(about)
-        file.dimensions = {"event": None}
-        done = 0
-        for chunk in chunks:
-            for name in chunk.columns:
-                values = chunk[name].to_numpy()
-                if name not in file.variables:
-                    made = file.create_variable(name, ("event",), values.dtype, chunks=(CHUNK,))
-                    made.attrs["units"] = column_unit(name, load_unit)
-                if name == chunk.columns[0]:
-                    file.resize_dimension("event", done + len(chunk))
-                file.variables[name][done : done + len(chunk)] = values
-            done += len(chunk)
+
+def _from_parquet(path: Path) -> pd.DataFrame:
+    import pyarrow.parquet as pq
+
+    table: pd.DataFrame = pq.read_table(path, page_checksum_verification=True).to_pandas()
+    return table

@@ -30,8 +30,10 @@ def save_table(path: Path, table: pd.DataFrame) -> Path:
 
 
 def save_data(path: Path, dataset: xr.Dataset) -> Path:
-    """netCDF-4."""
-    return write_atomically(path, lambda partial: dataset.to_netcdf(partial, engine="h5netcdf"))
+    """netCDF-4, with a checksum at its end."""
+    from stickslip.netcdf import write
+
+    return write(dataset, path)
 
 
 def image(figure: Figure, kind: str) -> bytes:

@@ -208,7 +208,8 @@ class Ensemble:
         """Write the table of events (.csv), or all that is drawn with its provenance (.nc). Raises InputError for other names."""
         from stickslip.figures.ensemble import data
         from stickslip.files import write_atomically
-        from stickslip.storage import origin, write
+        from stickslip.netcdf import write
+        from stickslip.storage import origin
 
         path = Path(path)
         if path.suffix.lower() == ".csv":

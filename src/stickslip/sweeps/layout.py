@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import zarr
+from zarr.codecs import Crc32cCodec, ZstdCodec
 
 import stickslip
 from stickslip.evolution.checkpoint import engine
@@ -19,6 +20,8 @@ FORMAT = 1
 """Version of the layout."""
 STATUS, REASON = "status", "reason"
 WORDS = "string"
+COMPRESSED = (ZstdCodec(), Crc32cCodec())
+"""With a checksum behind every chunk, which each reader of zarr looks at, whenever it reads it."""
 
 
 def lay_out(plan: Plan, place: Any) -> None:
@@ -41,7 +44,14 @@ def lay_out(plan: Plan, place: Any) -> None:
 def _put(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple[str, ...], about: dict[str, Any]) -> None:
     kind, fill = (WORDS, "") if values.dtype.kind == "T" else ("float64", np.nan)
     array = group.create_array(
-        name, shape=values.shape, chunks=values.shape, dtype=kind, fill_value=fill, dimension_names=dims, attributes=about
+        name,
+        shape=values.shape,
+        chunks=values.shape,
+        dtype=kind,
+        compressors=COMPRESSED,
+        fill_value=fill,
+        dimension_names=dims,
+        attributes=about,
     )
     array[...] = values
 
@@ -57,6 +67,7 @@ def _new(
         chunks=plan.tile + more,
         chunk_key_encoding={"name": "default", "separator": "."},  # no folders in folders
         dtype=kind,
+        compressors=COMPRESSED,
         fill_value=fill,
         dimension_names=(*plan.design.dims, *(dim for dim, _ in samples)),
         attributes=about | ({} if plan.design.is_grid else {"coordinates": " ".join(key.name for key in plan.design.keys)}),

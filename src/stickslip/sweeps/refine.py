@@ -25,7 +25,7 @@ from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.plan import Plan, make_plan
 from stickslip.sweeps.quantities import DEFAULT, Summary, Wanted, quantities_named
 from stickslip.sweeps.recipe import ATTRIBUTE, Recipe
-from stickslip.sweeps.store import publish, writing
+from stickslip.sweeps.store import open_store, publish, writing
 from stickslip.sweeps.sweep import Progress, Runner, carry_out, check_out, runner_of
 
 DEPTH = 6
@@ -147,10 +147,7 @@ class _Search:
 
     def there(self, place: Path) -> xr.Dataset:
         """What is kept at `place`. Raises InputError if it is of another search."""
-        try:
-            found: xr.Dataset = xr.open_zarr(place, chunks=None)
-        except (OSError, ValueError, KeyError):
-            raise InputError(f"{place}: is there, and is no store of a sweep: choose another name") from None
+        found = open_store(place)
         for name, ours in self.attributes.items():
             if found.attrs.get(name) != ours:
                 raise InputError(f"{place}: was made with another {name}: give what it was begun with, or another name")

@@ -1,0 +1,98 @@
+"""The files of a catalogue: nobody else's are touched, two runs do not share them, and a kill leaves them so that it goes on."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.long_runs import catalogue as module
+from stickslip.long_runs.catalogue import checkpoint_of
+from stickslip.long_runs.rows import Rows
+from stickslip.netcdf import write
+from stickslip.storage import CATALOGUE, read
+from tests.long_runs.problems import RUNS
+
+PROBLEM, DURATION = RUNS["slab that heals"]
+
+
+def began(tmp_path: Path, suffix: str = "csv") -> Path:
+    ss.catalogue(PROBLEM, 0.6 * DURATION, tmp_path / f"events.{suffix}")
+    return tmp_path / "events.checkpoint.nc"
+
+
+def changed(path: Path, **attributes: object) -> None:
+    write(read(path, CATALOGUE).assign_attrs(attributes), path)
+
+
+@pytest.mark.parametrize("name", ["../victim.csv", "/tmp/victim.csv", "folder/victim.csv", "..", ".", "", "a\\b.csv"])
+def test_a_path_in_a_checkpoint_is_not_followed(tmp_path: Path, name: str) -> None:
+    (tmp_path / "victim.csv").write_text("precious\n")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    checkpoint = began(folder)
+    changed(checkpoint, catalogue=name, bytes=0)
+    with pytest.raises(ss.InputError, match="which is no bare name"):
+        ss.resume_catalogue(checkpoint, DURATION)
+    assert (tmp_path / "victim.csv").read_text() == "precious\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs links")
+def test_a_link_is_not_followed(tmp_path: Path) -> None:
+    (tmp_path / "victim.csv").write_text("precious\n")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    checkpoint = began(folder)
+    (folder / "events.csv").unlink()
+    (folder / "events.csv").symlink_to(tmp_path / "victim.csv")
+    with pytest.raises(ss.InputError, match=r"events\.csv: is a link"):
+        ss.resume_catalogue(checkpoint, DURATION)
+    assert (tmp_path / "victim.csv").read_text() == "precious\n"
+
+
+@pytest.mark.parametrize("wrong", [{"told": -1}, {"bytes": 0.5}, {"first": "x"}, {"event_rate": float("nan")}, {"energies": 2}])
+def test_numbers_of_a_checkpoint_are_checked(tmp_path: Path, wrong: dict[str, object]) -> None:
+    checkpoint = began(tmp_path)
+    changed(checkpoint, **wrong)
+    with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a file that stickslip has written"):
+        ss.resume_catalogue(checkpoint, DURATION)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs locks")
+@pytest.mark.parametrize("other", ["events.csv", "events.nc"])
+def test_two_runs_do_not_write_into_one_catalogue(tmp_path: Path, other: str) -> None:
+    """Nor into two that have one checkpoint."""
+    checkpoint = began(tmp_path)
+    before = (tmp_path / "events.csv").read_bytes()
+    with module.alone_with(Rows(tmp_path / "events.csv")):
+        for begin in (lambda: ss.catalogue(PROBLEM, DURATION, tmp_path / other), lambda: ss.resume_catalogue(checkpoint, DURATION)):
+            with pytest.raises(ss.InputError, match="another run is writing its catalogue there: choose another name"):
+                begin()
+    assert (tmp_path / "events.csv").read_bytes() == before
+    ss.resume_catalogue(checkpoint, DURATION)
+
+
+@pytest.mark.parametrize("left", ["", "start,end\n1.0,", "begun"])
+def test_a_kill_while_a_finished_table_is_lengthened(tmp_path: Path, left: str) -> None:
+    """Whatever is in the growing file: its rows are made again from the table."""
+    checkpoint = began(tmp_path, "nc")
+    rows = Rows(tmp_path / "events.nc")
+    if left == "begun":
+        text = ss.catalogue(PROBLEM, 0.6 * DURATION, tmp_path / "other.csv").to_csv(index=False)
+        left = text[: len(text) // 2]
+    rows.growing.write_text(left)
+    whole = ss.simulate(PROBLEM, DURATION).catalogue()
+    pd.testing.assert_frame_equal(ss.resume_catalogue(checkpoint, DURATION), whole, check_exact=True)
+
+
+def test_rows_that_were_changed_are_noticed(tmp_path: Path) -> None:
+    checkpoint = began(tmp_path)
+    text = (tmp_path / "events.csv").read_text()
+    place = text.index("\n") + 3
+    (tmp_path / "events.csv").write_text(text[:place] + ("1" if text[place] != "1" else "2") + text[place + 1 :])
+    with pytest.raises(ss.InputError, match=r"events\.csv: has other rows than the checkpoint counts on"):
+        ss.resume_catalogue(checkpoint, DURATION)
+    assert checkpoint_of(Rows(tmp_path / "events.csv")) == checkpoint

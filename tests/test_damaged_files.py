@@ -1,0 +1,195 @@
+"""Files that were damaged, cut off, edited, or could not be written: one line, and nothing else is touched."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip import files, netcdf
+from stickslip.evolution import layout as at
+from stickslip.evolution.checkpoint import Checkpoint
+from stickslip.files import DRAFT, STALE, held, write_atomically
+from stickslip.storage import save_checkpoint
+
+PROBLEM = ss.load_scenario("cycles-block").problem
+POSIX = pytest.mark.skipif(os.name != "posix", reason="needs locks and limits of POSIX")
+
+
+@pytest.fixture(scope="module")
+def run() -> ss.Solution:
+    return ss.simulate(PROBLEM, 20 * ss.YEAR)
+
+
+def refused(act: Callable[[], object], *words: str) -> None:
+    with pytest.raises(ss.InputError) as told:
+        act()
+    assert "\n" not in str(told.value)
+    assert all(word in str(told.value) for word in words), str(told.value)
+
+
+def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
+    """Edit a file, and give it a checksum that fits: what only somebody who means it does."""
+    path.write_bytes(path.read_bytes()[: -netcdf.SEAL])
+    with h5py.File(path, "r+") as file:
+        edit(file)
+    netcdf.seal(path)
+
+
+def test_no_single_bit_flip_passes(run: ss.Solution, tmp_path: Path) -> None:
+    path = run.save(tmp_path / "run.nc")
+    whole, rng = path.read_bytes(), np.random.default_rng(1)
+    for place in [0, len(whole) - 1, len(whole) - 70, *rng.integers(0, len(whole), 60).tolist()]:
+        damaged = bytearray(whole)
+        damaged[place] ^= 1 << int(rng.integers(8))
+        path.write_bytes(damaged)
+        refused(lambda: ss.load(path), "run.nc: ")
+    for length in (0, 7, 8, 500, len(whole) // 2, len(whole) - 1):
+        path.write_bytes(whole[:length])
+        refused(lambda: ss.load(path), "run.nc: ")
+
+
+def test_other_readers_of_netcdf_do_not_mind_the_checksum(run: ss.Solution, tmp_path: Path) -> None:
+    with h5py.File(run.save(tmp_path / "run.nc"), "r") as file:
+        assert file["history_real"].shape == (len(run.history), 8)
+
+
+COUNTS = {
+    at.LENGTH: 10**6,
+    at.PIECE: 7,
+    at.BRANCH: -3,
+    at.MODE: 2,
+    at.ECHO_OF: 10**9,
+    at.ROW_FROM: -1,
+    at.SEGMENT: 99,
+    at.SPARSE: 1,
+}
+
+
+@pytest.mark.parametrize(("place", "value"), COUNTS.items())
+def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, place: int, value: int) -> None:
+    def edit(checkpoint: Checkpoint) -> None:
+        checkpoint.count[place] = value
+
+    check_edit(run, tmp_path, edit)
+
+
+EDITS: dict[str, Callable[[Checkpoint], object]] = {
+    "branch that is infinite": lambda checkpoint: checkpoint.branch.fill(np.inf),
+    "branch that is no number": lambda checkpoint: checkpoint.branch.fill(np.nan),
+    "place beyond the piece": lambda checkpoint: checkpoint.state.__setitem__(at.XI, 1e300),
+    "slip that is no number": lambda checkpoint: checkpoint.state.__setitem__(at.SLIP_NOW, np.nan),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_a_state_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str) -> None:
+    check_edit(run, tmp_path, EDITS[name])
+
+
+def check_edit(run: ss.Solution, tmp_path: Path, edit: Callable[[Checkpoint], object]) -> None:
+    assert run.checkpoint is not None
+    arrays = {name: np.copy(value) for name, value in vars(run.checkpoint).items() if name != "engine"}
+    checkpoint = Checkpoint(**arrays, engine=run.checkpoint.engine)
+    edit(checkpoint)
+    path = tmp_path / "run.nc"
+    save_checkpoint(replace(run, checkpoint=checkpoint), path)
+    refused(lambda: ss.resume(path, 30 * ss.YEAR), "run.nc: not a state that a run can have: ", "out of range")
+
+
+def test_tables_that_claim_more_than_the_file_holds_are_not_read(run: ss.Solution, tmp_path: Path) -> None:
+    path = run.save(tmp_path / "run.nc")
+
+    def claim(file: h5py.File) -> None:
+        del file["history_real"]
+        file.create_dataset("history_real", shape=(10**12, 8), dtype="f8", chunks=(1024, 8))
+
+    resealed(path, claim)
+    refused(lambda: ss.load(path), "run.nc: not a file of stickslip: its tables claim")
+
+
+def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path) -> None:
+    path = run.save(tmp_path / "run.nc")
+    resealed(path, lambda file: file.__setitem__("elsewhere", h5py.ExternalLink("other.nc", "/x")))
+    refused(lambda: ss.load(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
+
+
+@pytest.mark.parametrize("name", ["history_rate", "engine_count", "row_time"])
+def test_a_table_that_is_missing_is_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
+    path = run.save(tmp_path / "run.nc")
+    resealed(path, lambda file: file.__delitem__(name))
+    refused(lambda: ss.load(path), "run.nc: ")
+
+
+FULL = """
+import resource, sys
+import stickslip as ss
+problem = ss.load_scenario("cycles-block").problem
+ss.simulate(problem, 20 * ss.YEAR).save("run.nc")
+solution = ss.simulate(problem, 100 * ss.YEAR)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
+try:
+    solution.save("run.nc")
+except ss.InputError as error:
+    assert error.solution is solution
+    print(error)
+"""
+
+
+@POSIX
+@pytest.mark.parametrize("room", [0, 3000, 30_000])
+def test_a_full_disk_is_one_line_and_the_file_before_stays(tmp_path: Path, room: int) -> None:
+    """HDF5 crashes where a write fails, so it must not see that."""
+    done = subprocess.run([sys.executable, "-c", FULL, str(room)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("run.nc: cannot be written: File too large")
+    assert ss.load(tmp_path / "run.nc").duration == 20 * ss.YEAR
+    assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_a_checkpoint_on_a_full_disk_does_not_end_the_run(
+    run: ss.Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(path: Path) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    save_checkpoint(run, tmp_path / "run.nc")
+    before = (tmp_path / "run.nc").read_bytes()
+    monkeypatch.setattr(files, "sync", full)
+    with pytest.warns(RuntimeWarning, match=r"run\.nc: cannot be written: No space left on device; the run goes on"):
+        save_checkpoint(run, tmp_path / "run.nc")
+    assert (tmp_path / "run.nc").read_bytes() == before
+
+
+@POSIX
+def test_drafts_of_killed_writers_are_removed_and_no_others(tmp_path: Path) -> None:
+    import fcntl
+
+    old, young, locked, other = (tmp_path / name for name in (f"{DRAFT}1.nc", f"{DRAFT}2.nc", f"{DRAFT}3.nc", ".other.nc"))
+    for path in (old, young, locked, other):
+        path.write_text("x")
+    for path in (old, locked, other):
+        os.utime(path, (1.0, 1.0) if path is other else (young.stat().st_mtime - 2 * STALE,) * 2)
+    with locked.open("r+") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        write_atomically(tmp_path / "new.txt", lambda draft: draft.write_text("y"))
+    assert {path.name for path in tmp_path.iterdir()} == {"new.txt", young.name, locked.name, other.name}
+
+
+@POSIX
+def test_a_name_is_held_once_and_left_free(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    with held(path, "taken"):
+        refused(lambda: held(path, "taken").__enter__(), "taken")
+    assert list(tmp_path.iterdir()) == []
+    with held(path, "taken"):
+        pass
