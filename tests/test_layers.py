@@ -17,10 +17,7 @@ PACKAGE = Path(stickslip.__file__).parent
 LAYERS = (
     ("errors",),
     ("files",),
-<<<<<<< HEAD
-=======
     ("netcdf",),
->>>>>>> wt-i
     ("quantities", "selection", "units"),
     ("friction",),
     ("bodies", "loading"),

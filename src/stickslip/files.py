@@ -1,13 +1,4 @@
-<<<<<<< HEAD
-"""Files that appear whole or not at all, and files that are read only so far."""
-
-from __future__ import annotations
-
-import os
-import stat
-from collections.abc import Callable, Iterable
-=======
-"""Files that appear whole or not at all, and locks on names."""
+"""Files that appear whole or not at all, files that are read only so far, and locks on names."""
 
 from __future__ import annotations
 
@@ -15,10 +6,10 @@ import errno
 import io
 import os
 import shutil
+import stat
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
->>>>>>> wt-i
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
