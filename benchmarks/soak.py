@@ -167,7 +167,7 @@ def _collect(busy: list[Worker], indices: Any, tally: Tally, options: argparse.N
         if worker.pipe in ready:
             try:
                 outcome = worker.pipe.recv()
-            except EOFError:
+            except (EOFError, ConnectionError):
                 outcome = "-", Outcome("crashed", ("the process died",)), ""
         elif time.monotonic() - worker.since > COMPILING:
             outcome = "-", Outcome("hangs", (f"silent for {COMPILING:g} s",)), ""

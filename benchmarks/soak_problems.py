@@ -166,9 +166,9 @@ class Drawing:
             if given.get("slip") is None and given.get("rate") is None:
                 given["slip"] = self.field(fields_of(LAWS[kind])["slip"][0])
         if kind == "lagged":
-            rate = given["rate"] = self.law(str(self.one_of(*SMOOTH)))
+            lagging = given["rate"] = self.law(str(self.one_of(*SMOOTH)))
             most = math.asinh(1e3 * self.rate / given.get("direct_rate", 1e-6))  # friction must stay positive as v vanishes
-            given["direct"] = float(self.one_of(0.0, 0.5)) * float(rng.random()) * max(rate.range()[0], 0.0) / most
+            given["direct"] = float(self.one_of(0.0, 0.5)) * float(rng.random()) * max(lagging.range()[0], 0.0) / most
         elif kind in ("sum", "product"):
             slip, rate = PAIRS[int(self.rng.integers(len(PAIRS)))]
             given = {"slip": self.law(slip), "rate": self.law(rate)}
@@ -196,7 +196,11 @@ class Drawing:
 
     def history(self, size: float) -> Any:
         """A loading history with values of a size."""
-        rng, value = self.rng, lambda: float(size * self.rng.normal())
+        rng = self.rng
+
+        def value() -> float:
+            return float(size * rng.normal())
+
         times = tuple(float(t) for t in np.cumsum(rng.uniform(0.05, 1.0, 3)) * self.time)
         kind = self.one_of("steps", "piecewise-linear", "hold-and-slide", "sinusoidal")
         if kind == "steps":
