@@ -52,7 +52,7 @@ class Chosen:
         """Run the items."""
         order = {test: n for n, test in enumerate(self.rank)}
         items = sorted((item for item in session.items if item.nodeid in order), key=lambda item: order[item.nodeid])
-        for item, following in zip(items, [*items[1:], None], strict=True):
+        for item, following in zip(items, [*items[1:], None], strict=False):
             used = time.process_time()
             self.unfinished = used > self.end
             if self.failed or self.unfinished:

@@ -27,7 +27,7 @@ from benchmarks.mutation_reach import depends_on_no_cache, must_compile
 from benchmarks.mutation_trial import TREE, exchange, function_around, hashes, import_changed, in_child, make_hot, run_tests, runs
 
 LIMITS = {"exchanged": 25.0, "imported": 25.0, "compiled": 90.0}
-FIRST_SECONDS = {"exchanged": 6.0, "imported": 6.0, "compiled": 50.0}
+FIRST_SECONDS = {"exchanged": 4.0, "imported": 6.0, "compiled": 50.0}
 """Seconds of processor time for the tests of one mutant, and for those before the hashes; the last test that began may end."""
 ENGINE_TESTS = (
     "tests/evolution/test_verified_numbers.py",
@@ -46,8 +46,8 @@ class Campaign:
 
     def __init__(self, options: argparse.Namespace) -> None:
         self.reach, self.left_out = Reach(options.map), set(options.deselect)
-        self.path = Path(options.results)
-        self.results = _known(options.results)
+        self.path, self.quick = Path(options.results), options.quick
+        self.results = _known(options.results, options.quick)
         self.places = sorted({test.split("::")[0] for test in self.reach.seconds})
         self.runs: Any = None
         self.before = self.hashes_before(options.map.with_suffix(".hashes.json"))
@@ -112,14 +112,14 @@ class Campaign:
             "verdict": verdict,
             "by": by,
             "passed": found.get("passed", -1),
-            "changed": -1 if verdict in ("caught", "broken") else changed,
+            "changed": -1 if verdict not in ("survived", "equivalent") else changed,
             "seconds": took,
         }
 
     def judged(self, rank: dict[str, float], kind: str, note: Callable[[str], None], package: str) -> dict[str, Any]:
         """Run the first tests, then the hashes, and the other tests only if a hash has changed."""
         found = run_tests(rank, FIRST_SECONDS[kind], note)
-        if found["failed"]:
+        if found["failed"] or self.quick:
             return found
         note("the hashes")
         found["hashes"] = hashes(self.runs if package == "observables" and kind == "exchanged" else None)
@@ -139,6 +139,8 @@ class Campaign:
         if found["failed"]:
             return "caught", found["failed"]
         tests = f"{found['passed']} of {tests} tests passed" + (", then the time was up" if found["unfinished"] else "")
+        if "hashes" not in found:
+            return "pending", tests
         return ("survived" if changed else "equivalent"), tests
 
     def run(self, wanted: list[Mutant]) -> None:
@@ -166,11 +168,12 @@ class Campaign:
         say(f"{len(self.results)}: {result['verdict']:10} {result['seconds']:6.1f} s  {result['mutant']}  {result['by'][:90]}")
 
 
-def _known(path: str) -> list[dict[str, Any]]:
-    """Results of earlier campaigns in the file."""
+def _known(path: str, quick: bool) -> list[dict[str, Any]]:
+    """Results of earlier campaigns in the file; pending ones only if they are not to be decided now."""
     if not Path(path).exists():
         return []
-    return [json.loads(line) for line in Path(path).read_text().splitlines() if line.strip()]
+    results = {one["mutant"]: one for one in map(json.loads, Path(path).read_text().splitlines())}
+    return [one for one in results.values() if quick or one["verdict"] != "pending"]
 
 
 def say(text: str) -> None:
@@ -181,7 +184,7 @@ def say(text: str) -> None:
 
 def table(results: list[dict[str, Any]]) -> None:
     """Counts by package and verdict, then the survivors."""
-    verdicts = ("caught", "survived", "equivalent", "broken")
+    verdicts = ("caught", "survived", "equivalent", "broken", "pending")
     counts = Counter((result["path"].split("/")[0], result["verdict"]) for result in results)
     say(f"\n{'package':16}" + "".join(f"{verdict:>12}" for verdict in verdicts))
     for package in sorted({package for package, _ in counts}):
@@ -200,6 +203,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="*", choices=PACKAGES, help="packages of the random mutants")
     parser.add_argument("--kinds", nargs="*", choices=tuple(LIMITS), help="of the mutants only those that need this")
+    parser.add_argument("--quick", action="store_true", help="only the first tests; the others are decided without this option")
     parser.add_argument("--most", type=int, help="of the mutants only so many")
     parser.add_argument("--results", default="mutations.jsonl")
     parser.add_argument("--deselect", nargs="*", default=[], help="tests that fail without any mutant")

@@ -169,6 +169,10 @@ def test_margin_says_what_the_branches_say(factor, exponent):
     assert (margin(problem) < 0.0, several) == (factor < 1.0, factor < 1.0)
 
 
+def test_margin_of_friction_that_no_rate_changes():
+    assert margin(slab_problem(F.LinearSlipWeakening(0.6, 0.3, 2.0))) == 1.0
+
+
 @pytest.mark.parametrize(
     ("function", "low", "high", "root"),
     [

@@ -167,3 +167,20 @@ def test_split_is_as_sharp_late_as_early() -> None:
     early, late = (run.window(n).energy(local) for n in (0, 1))
     assert late.kinetic.values == pytest.approx(early.kinetic.values, rel=1e-8, abs=0.0)
     assert (early.kinetic > 1e7).all()
+
+
+def test_note_on_the_energy_trapped_in_the_slab() -> None:
+    """Against the field: what moves, and stress about its mean, which is what a slab at rest would have; 1e-3 for the sums."""
+    problem = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.6, 0.3, 5.0), initial_excess=1e6)
+    run = ss.simulate(problem, 21.0)
+    assert run.slip_rate(21.0) == 0.0
+    depths = (np.arange(4000) + 0.5) * THICKNESS / 4000
+    field = run.field(depths, np.array([[21.0]]))
+    density = 0.5 * SLAB.density * field.velocity**2 + 0.5 * (field.stress - field.stress.mean()) ** 2 / MODULUS
+    energy = float(density.mean()) * THICKNESS
+    printed, share = run.trapped_note.split(" J/m2 in waves at the end, ")
+    assert energy > 1e6
+    assert float(printed) == pytest.approx(energy, rel=1e-3, abs=0)
+    holds = 0.5 * (0.6 * SLAB.normal_stress) ** 2 * THICKNESS / MODULUS
+    assert share.endswith(" % of what the slab holds at its static strength")
+    assert float(share.split()[0]) == pytest.approx(100.0 * energy / holds, rel=0.05, abs=0)
