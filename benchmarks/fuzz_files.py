@@ -253,7 +253,9 @@ def main() -> int:
         whole = Path(name)
         prepare(whole)
         worker = Worker(whole, {kind: undamaged(kind, whole) for kind, count in counts.items() if count})
-        return int(sum(fails(worker, kind, count, options.seed) for kind, count in counts.items() if count) > 0)
+        failures = sum(fails(worker, kind, count, options.seed) for kind, count in counts.items() if count)
+        worker.pipe.send(None)
+        return int(failures > 0)
 
 
 def undamaged(kind: str, whole: Path) -> str:
