@@ -186,7 +186,10 @@ def test_mistakes_in_a_data_file(csv: str, message: str, tmp_path: Path, monkeyp
     ("loading", "message"),
     [
         (LINEAR + 'file = "pul.csv"\n', "file 'pul.csv': no such file beside the scenario"),
-        (LINEAR + 'file = "/etc/hosts"\n', "file '/etc/hosts': the path must be relative to the scenario"),
+        (
+            LINEAR + 'file = "/etc/hosts"\n',
+            "file '/etc/hosts': the path must be relative to the scenario; STICKSLIP_FILES_ANYWHERE=1 in the environment allows others",
+        ),
         (LINEAR + "file = 3\n", "file must be text in quotes, got 3"),
         (LINEAR + 'file = "pull.csv"\ntimes = [0, 1]\n', "file and times exclude each other"),
         (TONE + 'file = "pull.csv"\n', "file is unknown; allowed: amplitude, kind, mean, period, phase"),

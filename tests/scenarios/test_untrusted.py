@@ -155,6 +155,19 @@ def test_points_outside_the_folder_of_the_scenario_are_not_read(folder: Path, na
     assert "hunter2" not in str(caught.value)
 
 
+def test_points_may_lie_anywhere_for_a_reader_who_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The environment says it, which a scenario cannot; anything but 1 does not."""
+    outside = folder.parent / "outside.csv"
+    outside.write_text((folder / "points.csv").read_text())
+    for said in ("0", "yes"):
+        monkeypatch.setenv("STICKSLIP_FILES_ANYWHERE", said)
+        with pytest.raises(ss.InputError, match="STICKSLIP_FILES_ANYWHERE=1 in the environment allows others"):
+            load_scenario(of_file(folder, "../outside.csv"))
+    monkeypatch.setenv("STICKSLIP_FILES_ANYWHERE", "1")
+    for name in ("../outside.csv", str(outside)):
+        assert load_scenario(of_file(folder, name)).problem.friction.kind == "table"
+
+
 @pytest.mark.parametrize("content", ["password hunter2\n", "slip,friction\n0,hunter2\n", "slip,friction,hunter2\n0,1,2\n"])
 def test_no_message_shows_what_a_file_holds(folder: Path, content: str) -> None:
     (folder / "points.csv").write_text(content)

@@ -1,13 +1,14 @@
 """A data file of a friction law or a loading history: CSV with a header, read line by line, so that a mistake has a place.
 
 A scenario of somebody else must not read files of its reader: its data files are in its own folder, and no message shows what
-one holds.
+one holds. A reader who trusts a scenario can lift that with an environment variable, which no scenario can set.
 """
 
 from __future__ import annotations
 
 import csv
 import math
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -19,6 +20,8 @@ from stickslip.scenarios.values import show
 
 LARGEST = 5_000_000
 """Bytes of the largest data file that is read."""
+ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
+"""Environment variable which says, as 1, that data files may lie outside the folder of the scenario."""
 SIGNED = ("slip", *MAY_VARY)
 """Columns whose numbers may be negative."""
 
@@ -48,12 +51,13 @@ def read_points(name: str, folder: Path | None, columns: Mapping[str, str], valu
 def _text(name: str, folder: Path | None, where: str) -> str:
     if folder is None:
         raise InputError(f"{where} {show(name)}: only a scenario in a file can name another file; write the points as lists")
-    if Path(name).is_absolute() or not name.isprintable():
-        raise InputError(f"{where} {show(name)}: the path must be relative to the scenario")
+    anywhere, hint = os.environ.get(ANYWHERE) == "1", f"{ANYWHERE}=1 in the environment allows others"
+    if not name.isprintable() or (Path(name).is_absolute() and not anywhere):
+        raise InputError(f"{where} {show(name)}: the path must be relative to the scenario; {hint}")
     try:
         path = (folder / name).resolve()
-        if not path.is_relative_to(folder.resolve()):
-            raise InputError(f"{where} {show(name)}: the file must be in the folder of the scenario")
+        if not path.is_relative_to(folder.resolve()) and not anywhere:
+            raise InputError(f"{where} {show(name)}: the file must be in the folder of the scenario; {hint}")
         if not path.is_file():
             raise InputError(f"{where} {show(name)}: no such file beside the scenario")
         content = read_bounded(path, LARGEST).decode("utf-8-sig")
