@@ -188,7 +188,8 @@ def test_mistakes_in_a_data_file(csv: str, message: str, tmp_path: Path, monkeyp
         (LINEAR + 'file = "pul.csv"\n', "file 'pul.csv': no such file beside the scenario"),
         (
             LINEAR + 'file = "/etc/hosts"\n',
-            "file '/etc/hosts': the path must be relative to the scenario; STICKSLIP_FILES_ANYWHERE=1 in the environment allows others",
+            "file '/etc/hosts': the path must be relative to the scenario; "
+            "STICKSLIP_FILES_ANYWHERE=1 in the environment allows others",
         ),
         (LINEAR + "file = 3\n", "file must be text in quotes, got 3"),
         (LINEAR + 'file = "pull.csv"\ntimes = [0, 1]\n', "file and times exclude each other"),
