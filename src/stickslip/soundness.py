@@ -170,6 +170,7 @@ def _faults_of_codes(count: at.Integers, fresh: at.Integers) -> Iterator[Fault]:
     yield "engine_count READY", not 0 <= count[at.READY] <= at.BROUGHT
     yield "engine_count AT_FOLD", not 0 <= count[at.AT_FOLD] <= 3
     yield "engine_count WAITS", count[at.WAITS] != 0
+    yield "engine_count BREACH", count[at.BREACH] not in (0, at.OFF_THE_LAW, at.NEGATIVE_FRICTION)
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import stickslip as ss
@@ -85,3 +86,91 @@ def test_heat_is_finite_where_the_lag_falls_below_zero_by_its_tolerance() -> Non
     energy = run.energy([2.0, 20.0, 58.0])
     assert (energy.heat > 0.0).all()
     assert float(abs(energy.balance).max()) < 1e-3 * float(abs(energy.work).max())
+
+
+def slip_law_slab() -> ss.Problem:
+    """A slab under the slip law: in every round trip its load passes through zero, where ln(v) has no value."""
+    body = ss.ElasticSlab(23709.441406605696, 23339.680523684852, 0.0007852679836914634, 4081910883.9803605, 0.0)
+    law = F.RateAndState(
+        reference=0.5841133946528673,
+        a=1.1362620578071376,
+        b=0.19711026208566498,
+        distance=6.443972652480687e-07,
+        rate=1.3577388126198202,
+        evolution="slip",
+    )
+    return ss.Problem(body, law, pull_rate=64.73608214170346, initial_load=-2e8, initial_state=1e-6)
+
+
+def test_passages_through_zero_under_the_slip_law_take_few_steps() -> None:
+    """A step for each factor of the slip rate up to 1e-20 m/s would come back with every echo: hundreds of pieces a round trip."""
+    problem = slip_law_slab()
+    run = ss.simulate(problem, 20.0 * problem.body.two_way_time)
+    assert run.status.ok
+    assert len(run.history) < 20 * 250
+    times = np.linspace(0.0, run.history.duration, 200)
+    assert abs(problem.body.impedance * run.slip_rate(times) + run.traction(times) - run.load(times)).max() < 1e-12 * problem.normal
+    passed = np.flatnonzero(np.diff(np.sign(run.load(times))))
+    assert len(passed) >= 1
+    assert (np.sign(run.slip_rate(times)) == np.sign(run.load(times))).all()
+
+
+def test_load_near_zero_is_known_to_the_rounding_of_its_terms() -> None:
+    """A load of 2e7 Pa turns within the first round trip; what is left of it where it turns, 1e-11 Pa, is rounding and not load."""
+    body = ss.ElasticSlab(4421.29926180384, 2803.9499060079293, 1.677094721625349, 19804114.160770167, 6279861.323143668)
+    law = F.RateAndState(
+        reference=0.0003095064529503739,
+        a=0.3082892723807372,
+        b=0.08282823765499613,
+        distance=0.0004165091945927362,
+        evolution="slip",
+    )
+    problem = ss.Problem(
+        body,
+        law,
+        pull_rate=0.1525239317168653,
+        initial_slip=-0.0004271376177332445,
+        initial_load=-764783.915102646,
+        initial_state=0.002317648286021541,
+        far_stress=19400585.135492798,
+    )
+    assert ss.simulate(problem, 0.0011959672471104515).status.ok
+
+
+def test_block_that_oscillates_in_picoseconds_meets_every_step_of_its_loading() -> None:
+    """The load is K (pull - slip). Steps of the loading 1e-9 s apart were taken for one: a row of the history was a day long."""
+    block = ss.SpringBlock(4.5e-4, 1.24e15, 1.6e9)
+    law = F.RateAndState(reference=0.69, a=0.64, b=0.84, distance=6.6e-5)
+    steps = ss.loading.Steps(times=(0.0, 9e-10, 1.7e-9, 4.4e-9), values=(-6e-4, -3e-3, 8e-4, 1e-3))
+    problem = ss.Problem(block, law, pull_rate=steps, initial_load=-1.33e9, initial_state=0.0026)
+    run = ss.simulate(problem, 1e-8)
+    times = np.array([5e-10, 1.2e-9, 3e-9, 9e-9])
+    pulled = np.interp(times, (0.0, 9e-10, 1.7e-9, 4.4e-9, 1e-8), np.cumsum([0.0, -5.4e-13, -2.4e-12, 2.16e-12, 5.6e-12]))
+    assert run.load(times) == pytest.approx(-1.33e9 + block.stiffness * (pulled - run.slip(times)), rel=1e-13)
+
+
+def test_run_ends_where_friction_falls_below_zero() -> None:
+    """Nothing in the formula says that it ends at 7.5e4 m/s; a load 20 times the normal force takes the block there."""
+    law = F.FromExpression("0.6 - 1.4*v/(v + 1e5)")
+    run = ss.simulate(ss.Problem(ss.SpringBlock(1.0, 1.0, 1e5), law, initial_load=2e6), 1.0)
+    assert run.status.name == "negative friction"
+    last = float(run.slip_rate(run.history.duration))
+    assert abs(float(law.coefficient(0.0, last))) <= 1e-9
+    assert last == pytest.approx(7.5e4, rel=1e-6)
+    slab = ss.Problem(ss.ElasticSlab(1e3, 1e3, 1.0, 1e8), law, initial_load=1e12)
+    with pytest.raises(ss.InputError, match="below zero"):
+        ss.simulate(slab, 1e-3)
+
+
+@pytest.mark.parametrize("body", [ss.SpringBlock(1.0, 1e4, 10.0), ss.ElasticSlab(1e3, 1e3, 1.0, 1e6)], ids=["block", "slab"])
+def test_run_ends_where_the_state_makes_friction_negative(body: ss.SpringBlock | ss.ElasticSlab) -> None:
+    """After fast slip the lag still says "fast" where slip is slow: with a strong direct effect mu falls below zero."""
+    rate = F.HyperbolicRate(static=0.6, dynamic=0.1, alpha=1e-3)
+    law = F.LaggedFriction(rate=rate, time=1.0, direct=0.2, direct_rate=1e-3)
+    problem = ss.Problem(body, law, initial_load=1e3 if isinstance(body, ss.SpringBlock) else 1e8)
+    run = ss.simulate(problem, 0.1)
+    assert run.status.name == "negative friction"
+    state = run.state(np.linspace(0.0, run.history.duration, 500))
+    rate_now = abs(run.slip_rate(np.linspace(0.0, run.history.duration, 500)))
+    assert (law.coefficient(0.0, rate_now, state) >= 0.0).all()
+    assert float(law.coefficient(0.0, 0.0, state[-1])) < 0.0

@@ -291,9 +291,9 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 return at.SLIPS
             else:
                 slip(run, xi_to)
-            if not is_finite(run):
+            if run.counts[at.BREACH] != 0 or not is_finite(run):
                 take_back(run, length, xi)
-                return at.FAILED
+                return run.counts[at.BREACH] if run.counts[at.BREACH] != 0 else at.FAILED
         elif run.counts[at.AT_FOLD] != 0:
             leave_fold_piece(run)
         elif is_last:

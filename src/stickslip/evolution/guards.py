@@ -21,7 +21,7 @@ HIDDEN = 50.0
 IN_SIGHT = 8.0
 """Change of an exponent in one step (1) up to which the terms of order 17 and 18 bound those that follow them."""
 SHARE = 0.9
-"""Share of the way to zero (1) that a denominator, or the argument of log and sqrt, may go in one step."""
+"""Share of the way to zero (1) that a denominator, or the argument of sqrt, may go in one step."""
 TINIEST = 1e-300
 """Keeps a division by zero from being one."""
 
@@ -60,10 +60,13 @@ def guards_of(nodes: list[Expression]) -> list[Guard]:
 
 
 def _guarded(node: Expression) -> Expression | None:
-    """Return the argument that a node guards, if it guards one."""
+    """Return the argument that a node guards, if it guards one.
+
+    A logarithm needs no guard: it changes too slowly to be out of sight at one end of a step and to count at the other.
+    """
     if node.operation in TRANSCENDENTAL:
         return node.arguments[0]
-    if node.operation not in ("div", "log", "sqrt"):
+    if node.operation not in ("div", "sqrt"):
         return None
     argument = node.arguments[1] if node.operation == "div" else node.arguments[0]
     hides = any(part.operation in TRANSCENDENTAL for part in nodes_of(argument))

@@ -28,6 +28,7 @@ from stickslip.evolution.stages import (
     solve_stages,
     stays_in_sight,
 )
+from stickslip.evolution.verify import NEGLIGIBLE
 from stickslip.evolution.workspace import Run
 
 ATTEMPTS = 80
@@ -149,7 +150,7 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / h  # as at the last stage
-    noise = ROUNDING * (par[at.REFERENCE] + abs(run.seen[0])) / resistance if resistance > 0.0 else 0.0
+    noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
@@ -185,6 +186,15 @@ def settle_start(run: Run) -> bool:
 
 
 @kernel
+def size_of_load(run: Run) -> float:
+    """Return the size (Pa, or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
+    size = run.par[at.REFERENCE]
+    for k in range(at.TERMS):
+        size += abs(run.load[k])
+    return size
+
+
+@kernel
 def turn_with_load(run: Run, left: float) -> float:
     """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
 
@@ -192,16 +202,13 @@ def turn_with_load(run: Run, left: float) -> float:
     every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
     slip rate: near a load of zero that rate may lie far below the error of the polynomial.
     """
-    part = run.part
+    part, direction, rounding = run.part, 1, LOAD_ROUNDING * size_of_load(run)
     restrict(run.load, run.state[at.XI], left, part)
-    size, direction = run.par[at.REFERENCE], 1
-    for k in range(at.TERMS):
-        size += abs(part[k])
     part[0] += run.par[at.REFERENCE]
     if part[0] < 0.0:
         turn_over(part)
         direction = -1
-    first = first_descent(part, run.spare) if part[0] > LOAD_ROUNDING * size else 0.0
+    first = first_descent(part, run.spare) if part[0] > rounding else 0.0
     if first <= TIE:
         run.load[0] -= direction * part[0]  # a load that passes through zero here does so for the stages, too
         part[0] = 0.0
@@ -209,7 +216,7 @@ def turn_with_load(run: Run, left: float) -> float:
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
-    if part[0] == 0.0 and math.isinf(first) and size == run.par[at.REFERENCE]:
+    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par[at.REFERENCE]:
         return left  # no load at all
     run.counts[at.MODE] = direction
     return min(first, 1.0) * left if run.counts[at.HAS_INERTIA] == 0 and first > TIE else left
@@ -292,6 +299,8 @@ def collocate(run: Run, left: float) -> float:
 def begin_step(run: Run, guess: float) -> float:
     """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
     load_ahead(run, guess)
+    if run.counts[at.STICKS] == 0 and abs(run.seen[0] + run.par[at.REFERENCE]) <= LOAD_ROUNDING * size_of_load(run):
+        run.seen[0] = -run.par[at.REFERENCE]  # the load passes through zero here: slip begins with a rate of zero
     run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
     run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
     return start_of_step(run)
@@ -311,6 +320,17 @@ def keep_state(run: Run, length: float) -> None:
 
 
 @kernel
+def note_negative_friction(run: Run) -> None:
+    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
+    rate, state = run.state[at.RATE_NOW], run.state[at.STATE_NOW]
+    if not math.isfinite(rate):
+        rate, state = run.stage_rate[0], run.stage_state[0]
+    contact_at(run, run.state[at.LAW_SLIP], abs(rate), state)
+    if run.par[at.REFERENCE] + run.par[at.NORMAL] * run.value[MU] < -NEGLIGIBLE * run.par[at.NORMAL]:
+        run.counts[at.BREACH] = at.NEGATIVE_FRICTION
+
+
+@kernel
 def forgotten(run: Run) -> bool:
     """Whether nothing is left of the state that friction would notice; then nothing is left at all."""
     contact_at(run, run.state[at.LAW_SLIP], 0.0, run.state[at.STATE_NOW])
@@ -326,6 +346,7 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     width = collocate(run, xi_to - run.state[at.XI])
     if not math.isfinite(run.jet[0]):
         run.state[at.RATE_NOW] = math.nan
+        note_negative_friction(run)
         return
     reached = width >= xi_to - run.state[at.XI]
     load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
@@ -337,6 +358,7 @@ def stick_with_state(run: Run, xi_to: float) -> None:
         scale(load, end)
     keep_state(run, end)
     record(run, xi_to if reached and end == 1.0 else run.state[at.XI] + end * width)
+    note_negative_friction(run)
     run.counts[at.EDGE], run.counts[at.MOVED] = 0, 1
     if onset < NONE:
         run.counts[at.MODE], run.counts[at.EDGE] = direction, direction

@@ -100,13 +100,15 @@ class Inflow:
 
 
 DAY = 86_400.0
+LONGEST_ROW = 1e6
+"""Periods of a block in a row of its history (1), at most."""
 
 
 def row_time(problem: Problem) -> float:
     """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation.
 
-    For a block that never sticks a day, if that is longer (it creeps for years, over which no row can leap), or the period of a
-    tone in its loading.
+    A block that never sticks may creep for years, over which no row can leap: its row lasts a day, but no longer than the period
+    of a tone in its loading, nor than LONGEST_ROW of its own periods, which times in a row would no longer resolve.
     """
     body = problem.body
     if isinstance(body, ElasticSlab):
@@ -114,7 +116,8 @@ def row_time(problem: Problem) -> float:
     if problem.friction.sticks:
         return body.period
     tone = problem.pull_rate.tone if isinstance(problem.pull_rate, LoadingHistory) else SILENT
-    return max(body.period, min(DAY, 2.0 * math.pi / tone.frequency) if tone.amplitude != 0.0 else DAY)
+    swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
+    return max(body.period, min(DAY, LONGEST_ROW * body.period, swing))
 
 
 EDGE = 1e-13

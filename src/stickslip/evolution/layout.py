@@ -57,7 +57,8 @@ WAITS = 44  # explicit steps of slip are left to the caller
 CREEP_IN = 45  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
 LUMPS, LUMP_ABOVE, LUMPED_SINCE = 46, 47, 48  # short pieces are lumped; pieces of a round trip above which they are; row since when
 ROUGH = 49  # steps with such rounding
-COUNTS = 50
+BREACH = 50  # why no step can go on from here: OFF_THE_LAW or NEGATIVE_FRICTION; 0 where one can
+COUNTS = 51
 
 NEVER = 2**62
 """No row."""
@@ -70,7 +71,7 @@ MET, BROUGHT = 1, 2
 
 # ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
 NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED, SLIPS = range(9)
+FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED, SLIPS, OFF_THE_LAW, NEGATIVE_FRICTION = range(11)
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from stickslip.evolution.fold import (
     straight_to_fold,
 )
 from stickslip.evolution.fold_ahead import way_to_fold
-from stickslip.evolution.implicit import NOT_STIFF, collocate, judge_stiffness, keep_state, settling_rate
+from stickslip.evolution.implicit import NOT_STIFF, collocate, judge_stiffness, keep_state, note_negative_friction, settling_rate
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import (
     NONE,
@@ -42,15 +42,20 @@ from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, s
 from stickslip.evolution.record import note_jump, record
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
-from stickslip.evolution.verify import HALVINGS, begin_verification, note_rough_step, note_rounding, obeys_contact, within_guards
+from stickslip.evolution.verify import (
+    HALVINGS,
+    begin_verification,
+    is_negative,
+    note_rough_step,
+    note_rounding,
+    obeys_contact,
+    within_guards,
+)
 from stickslip.evolution.workspace import EXIT, Run
 
 LONGEST_GUESS = 2.0
 """Guess at the next step's length (1), relative to the last one."""
 SHORTEST_GUESS = 1e-16
-"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
-NO_EVENT, ARREST, KNOT = range(3)
-"""What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 """Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
 NO_EVENT, ARREST, KNOT = range(3)
 """What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
@@ -241,6 +246,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     event, turn, end = first_event(run, rate, 1.0)
     keep_state(run, end)
     keep_step(run, rate, end, xi_to if reached and end == 1.0 else run.state[at.XI] + end * guess)
+    note_negative_friction(run)
     end_step(run, xi_to, event, turn, False, reached)
 
 
@@ -253,8 +259,11 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     stretch(run, length, rate)
     event, turn, end = first_event(run, rate, length)
     grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
-    for _ in range(HALVINGS):
-        if is_straight(run) or obeys_contact(run, rate, length * end, grown, rate_end):
+    for halving in range(HALVINGS + 1):
+        if is_straight(run) or (obeys_contact(run, rate, length * end, grown, rate_end) and not is_negative(run)):
+            break
+        if halving == HALVINGS:
+            run.counts[at.BREACH] = at.NEGATIVE_FRICTION if is_negative(run) else at.OFF_THE_LAW
             break
         if run.state[at.ROUNDED] == 0.0:
             note_rounding(run, length)

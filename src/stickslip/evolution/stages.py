@@ -291,17 +291,16 @@ def stays_in_sight(run: Run, h: float) -> float:
     n = run.guard_count[run.counts[at.PIECE]]
     if n == 0:
         return 0.0
-    way, pull, used, seen = np.empty((2 * POINTS - 1, 3)), np.zeros(n), np.zeros(n), np.empty((len(CHORD), 2 * n))
+    way, used, seen = np.empty((2 * POINTS - 1, 3)), np.zeros(n), np.empty((len(CHORD), 2 * n))
     follow_step(run, h, way)
     for i in range(2 * STAGES):
         for k in range(len(CHORD)):
             walked, rate, state = way[i] + CHORD[k] * (way[i + 1] - way[i])
             look_at_guards(run, walked, rate, state, floats(seen.ctypes.data + 16 * n * k))
         for j in range(n):
-            if i == 0:
-                pull[j] = seen[0, 2 * j + 1]
-            first, last = pull[j] * seen[0, 2 * j], pull[j] * seen[3, 2 * j]
-            climb, descent = pull[j] * seen[1, 2 * j] - first, last - pull[j] * seen[2, 2 * j]
+            pull = seen[0, 2 * j + 1]  # as it is at this place: one that rises from zero has no room there, and soon enough
+            first, last = pull * seen[0, 2 * j], pull * seen[3, 2 * j]
+            climb, descent = pull * seen[1, 2 * j] - first, last - pull * seen[2, 2 * j]
             used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
     return max(used)
 

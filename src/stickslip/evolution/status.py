@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, STORM
+from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRICTION, OFF_THE_LAW, STORM
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,17 @@ STATUSES = {
         False,
     ),
     FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
+    NEGATIVE_FRICTION: Status(
+        "negative friction",
+        "the contact has reached a slip, a slip rate or a state at which the law's friction coefficient is below zero, where it"
+        " would drive slip: the law is not meant for what this load does",
+        False,
+    ),
+    OFF_THE_LAW: Status(
+        "off the law",
+        "no step from here obeys the contact equation, however short: the law may jump here, or be too steep for double precision",
+        False,
+    ),
     FULL_HISTORY: Status(
         "too many pieces",
         "the history reached its limit of pieces (a million takes 0.44 GB): shorten the duration, loosen rtol or creep_rtol, keep"

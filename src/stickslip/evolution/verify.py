@@ -23,7 +23,9 @@ ALLOWED_SLOPE = 300.0
 ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
 HALVINGS = 40
-"""How often a step is halved before it is taken as it is (1): 2^-40 of a step is next to nothing."""
+"""How often a step is halved (1) before the run ends: 2^-40 of a step is next to nothing."""
+NEGLIGIBLE = 1e-9
+"""Size of a friction coefficient (1) that may be below zero by rounding."""
 TRIFLE = 2.0**-30
 """Share of a step (1) that is so short that nothing happens in it."""
 EXTRA = 10.0
@@ -98,6 +100,13 @@ def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end:
     missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if moves else 0.0)
     allowed = ALLOWED_SLOPE if moves else ALLOWED
     return missing <= allowed * run.par[at.TOLERANCE] * largest_rate(rate, rate_end) + rounding + run.state[at.ROUNDED]
+
+
+@inlined
+def is_negative(run: Run) -> bool:
+    """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
+    friction = run.value[0] + run.offset[run.counts[at.PIECE]]
+    return run.par[at.REFERENCE] + run.par[at.NORMAL] * friction < -NEGLIGIBLE * run.par[at.NORMAL]
 
 
 @inlined

@@ -19,7 +19,7 @@ LARGEST_EXPONENT = 600.0
 """Of e^((reference + b w) / a), which must stay a number for every w that a contact can reach."""
 FARTHEST_STATE = 60.0
 """ln(rate theta / distance) of a contact healed for longer than the Earth is old."""
-SLOWEST = 1e-40
+SLOWEST = 1e-24
 """Square of the slip rate, in units of `rate`, below which the slip law's logarithm no longer falls: it has no value at rest."""
 
 

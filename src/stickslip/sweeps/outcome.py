@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, STORM
+from stickslip.evolution.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRICTION, OFF_THE_LAW, STORM
 from stickslip.evolution.status import BAD_PARAMETERS as REFUSED
 from stickslip.evolution.status import ENOUGH_EVENTS, FULL_HISTORY
 
@@ -20,10 +20,22 @@ MEANINGS = {
     11: "event_storm",
     12: "not_finite",
     13: "too_many_pieces",
+    15: "negative_friction",
+    16: "off_the_law",
     ERROR: "error",
 }
 """Names of the codes: below 0 the member has not been run, from 10 on it failed and has no results but a reason."""
 FIRST_FAILURE = 10
 
-CODES = {FINISHED: 0, ENOUGH_EVENTS: 1, LOCKED: 2, STORM: 11, FAILED: 12, FULL_HISTORY: 13, REFUSED: BAD_PARAMETERS}
+CODES = {
+    FINISHED: 0,
+    ENOUGH_EVENTS: 1,
+    LOCKED: 2,
+    STORM: 11,
+    FAILED: 12,
+    FULL_HISTORY: 13,
+    NEGATIVE_FRICTION: 15,
+    OFF_THE_LAW: 16,
+    REFUSED: BAD_PARAMETERS,
+}
 """Of the codes that end a run (`evolution.layout`, `evolution.status`)."""

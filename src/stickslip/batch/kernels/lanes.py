@@ -20,7 +20,7 @@ from stickslip.evolution.layout import TERMS, Floats, Integers
 from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
 from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.evolution.verify import begin_verification, obeys_contact
+from stickslip.evolution.verify import begin_verification, is_negative, obeys_contact
 from stickslip.evolution.workspace import DEGREE, PLACES, Run, borrow
 
 SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(7))
@@ -140,7 +140,7 @@ def take_out(run: Run, own: Floats) -> int:
     if simple:
         powers_of(length, run.powers)
         begin_verification(run)
-        simple = obeys_contact(run, rate, length, grown, rate_end)
+        simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state[at.LAST_STEP] = own[WIDTH * LAST_STEP]
         return ALONE
