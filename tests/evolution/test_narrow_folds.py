@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import stickslip as ss
@@ -26,3 +27,20 @@ def test_the_load_carries_the_contact_over_a_bump_and_the_rate_jumps(width):
     assert jump.rate_before == pytest.approx(fold, rel=1e-6, abs=0)  # the load passes the fold: the rate there goes as its root
     assert jump.rate_after == pytest.approx((load - 0.5 * S) / Z, rel=1e-11, abs=0)
     assert jump.time == pytest.approx(slab.thickness / slab.wave_speed + (load - START) / LOADING, rel=1e-11, abs=0)
+
+
+def test_rising_load_reaches_a_fold_in_one_step_of_the_root_of_time() -> None:
+    """The last step before the jump spans 0.05 s; steps in time itself would halve 40 times on the way."""
+    law = ss.friction.FromExpression("0.6 + 0.1*exp(-((v - 1)/0.3)**2)")
+    run = ss.simulate(ss.Problem(ss.ElasticSlab(2e3, 1e3, 1e3, 1e8), law, pull_rate=2.0, initial_excess=0.0), 4.0)
+    (jump,) = run.shocks[run.shocks.cause == "fold"].itertuples()
+    store = run.history.store
+    before = int(np.searchsorted(run.history.start, jump.time)) - 1
+    assert store.bend[before] < 0.0
+    assert jump.time - run.history.start[before] > 0.01
+    assert before < 60
+    slowness = 2e6 / (1e8 * 0.1) * 0.3 / 2.0  # at the fold x exp(-x^2) is this, with v = 1 + 0.3 x
+    x = slowness
+    for _ in range(50):
+        x = slowness * math.exp(x * x)
+    assert jump.rate_before == pytest.approx(1.0 + 0.3 * x, rel=1e-7, abs=0)
