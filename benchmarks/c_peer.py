@@ -16,6 +16,7 @@ from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.evolution import layout, workspace
 from stickslip.evolution.generate import SIGNATURES, FormulaWriter
+from stickslip.evolution.records import FLOATS, Record
 from stickslip.friction.expression import Expression
 
 SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
@@ -42,13 +43,30 @@ def c_function(writer: FormulaWriter, part: str) -> str:
     return f"static void {part}(const {arguments}) {{\n" + "\n".join(lines) + "\n}\n"
 
 
+def structure(record: type[Record], name: str = "") -> str:
+    """A record of the engine as a structure of C, place for place."""
+    lines = []
+    for field, place in record.places.items():
+        kind = "double" if place.kind in (float, FLOATS) else "int64_t"
+        if isinstance(place.kind, type) and issubclass(place.kind, Record):
+            lines.append(f"    {place.kind.__name__} {field};")
+            if place.size > place.kind.total:
+                lines.append(f"    double after_{field}[{place.size - place.kind.total}];")
+        elif place.kind in (float, int):
+            lines.append(f"    {kind} {field};")
+        else:
+            lines.append(f"    {kind} {field}[{place.size}];" if place.inside else f"    {kind} *{field};")
+    return "typedef struct {\n" + "\n".join(lines) + f"\n}} {name or record.__name__};"
+
+
 def header(writer: FormulaWriter) -> str:
-    """law.h: the layout's names as numbers, and the law."""
+    """law.h: the engine's records as structures, its codes as numbers, and the law."""
     names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
     defines.append(f"#define GUARDS {len(writer.guards)}")
+    records = [structure(record) for record in (layout.Params, layout.State, layout.Counts, layout.Series)]
     return (
-        "\n".join([*defines, *SINES, *NAMES])
+        "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])
         + "\n\n"
         + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
     )
@@ -69,7 +87,7 @@ def library(formula: Expression, parameters: tuple[str, ...]) -> ctypes.CDLL:
     loaded.advance.argtypes = (ctypes.c_void_p, ctypes.c_int64, ctypes.c_double, ctypes.c_int64)
     loaded.advance.restype = ctypes.c_int64
     loaded.run_members.argtypes = (
-        *[ctypes.c_void_p] * 2,
+        *[ctypes.c_void_p] * 4,
         ctypes.c_int64,
         *[ctypes.c_void_p] * 5,
         ctypes.c_int64,

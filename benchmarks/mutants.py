@@ -45,18 +45,18 @@ class Named:
 
 
 NAMED = (
-    Named("echo-sign", "evolution/engine.py", "par[at.REFLECTION] * (2.0 *", "-par[at.REFLECTION] * (2.0 *"),
+    Named("echo-sign", "evolution/engine.py", "par.reflection * (2.0 *", "-par.reflection * (2.0 *"),
     Named(
         "factor-two-in-the-echo",
         "evolution/engine.py",
-        "* (2.0 * par[at.IMPEDANCE] * rate[k]",
-        "* (1.0 * par[at.IMPEDANCE] * rate[k]",
+        "* (2.0 * par.impedance * rate[k]",
+        "* (1.0 * par.impedance * rate[k]",
     ),
     Named(
         "factor-two-in-the-tree",
         "evolution/echoes.py",
-        "- 2.0 * run.par[at.IMPEDANCE] * rate[k]",
-        "- run.par[at.IMPEDANCE] * rate[k]",
+        "- 2.0 * run.par.impedance * rate[k]",
+        "- run.par.impedance * rate[k]",
     ),
     Named("a-row-too-early", "evolution/engine.py", "run.whole[WHOLE * n + at.S_ROW] - 1", "run.whole[WHOLE * n + at.S_ROW]"),
     Named(

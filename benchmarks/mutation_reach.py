@@ -10,7 +10,15 @@ from benchmarks.mutants import SOURCE, Mutant
 
 Key = tuple[str, str]
 """Module and name."""
-REGISTERED = ("evolution/lanes.py", "evolution/compiled.py", "evolution/sines.py", "evolution/record.py")
+REGISTERED = (
+    "evolution/lanes.py",
+    "evolution/compiled.py",
+    "evolution/one_module.py",
+    "evolution/records.py",
+    "evolution/layout.py",
+    "evolution/workspace.py",
+    "evolution/sines.py",
+)
 """Files that give types and operations to the compiler, or that generated modules import: no name leads to their users."""
 FOLDERS = ("evolution", "batch", "friction", "contact", "observables", "bodies", "loading")
 

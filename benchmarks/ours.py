@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
-
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.evolution import layout as at
@@ -18,7 +16,7 @@ from stickslip.evolution.inflow import row_time
 from stickslip.evolution.setup import prepare
 from stickslip.evolution.solution import Solution
 from stickslip.evolution.status import STATUSES
-from stickslip.evolution.workspace import WORK_ROWS, lend
+from stickslip.evolution.workspace import counts_in, lend, memory_of
 
 CAPACITY = 2048
 BUDGET = 1_000_000
@@ -27,28 +25,27 @@ BUDGET = 1_000_000
 def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -> Runner:
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
-    count[at.TO_THE_END] = 1  # nothing goes on behind it
-    first_state, first_count = state.copy(), count.copy()
-    store, scratch = at.new_store(CAPACITY, case.problem.friction.state is not None), np.zeros((WORK_ROWS, at.TERMS))
-    echoes = new_echoes(CAPACITY)
-    table = lend(setup, state, count, scratch, store, echoes)
+    count.to_the_end = 1  # nothing goes on behind it
+    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), new_echoes(CAPACITY)
+    memory = memory_of(setup.par, state, count)
+    lend(memory, setup, store, echoes)
+    first, count = memory.copy(), counts_in(memory)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 
-    lent = (setup, state, count, scratch, store, echoes)  # the table holds their addresses only: they live as long as the runner
+    lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner
 
     def run() -> None:
-        _, state, count, *_ = lent
-        state[:] = first_state
-        count[:] = first_count
-        code = kernel(table, last_row, last_theta, BUDGET)
+        assert lent
+        memory[:] = first
+        code = kernel(memory, last_row, last_theta, BUDGET)
         assert STATUSES[code].ok, STATUSES[code]
 
     def solution() -> Solution:
         history = History(
-            at.trimmed(store, int(count[at.LENGTH])),
+            at.trimmed(store, int(count.length)),
             case.problem,
             row_time(case.problem),
-            float(setup.par[at.RAMP]),
+            float(setup.par.ramp),
             case.duration,
         )
         return Solution(case.problem, case.duration, tolerance, STATUSES[at.FINISHED], history)
@@ -59,4 +56,4 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     def arrest() -> float:
         return arrest_of(solution()) if case.arrests else math.nan
 
-    return Runner(case, tolerance, run, slip, lambda: int(count[at.LENGTH]), arrest)
+    return Runner(case, tolerance, run, slip, lambda: int(count.length), arrest)

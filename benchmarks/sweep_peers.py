@@ -92,13 +92,15 @@ def in_c(task: Task, members: int) -> Run:
     setups = set_up(task.scenario, {task.key: task.numbers(members)})
     work = new_workspace().ready_for(setups.constants.shape[2])
     base, stride = table_of(setups, work)
-    kept = (setups, work, base, stride)
+    kept = (setups, work)
+    lent = (base, stride, work.table, setups.par)
     given = (setups.branches, setups.state, setups.counts, setups.last_row, setups.last_theta)
 
     def run(threads: int) -> Floats:
         slip = np.empty(members)
-        pointers = [array.ctypes.data for array in (*kept[2:], *given)]
-        failed = kernel(*pointers[:2], len(stride), *pointers[2:], members, threads, slip.ctypes.data)
+        assert kept
+        pointers = [array.ctypes.data for array in (*lent, *given)]
+        failed = kernel(*pointers[:4], int(len(setups.par) > 1), *pointers[4:], members, threads, slip.ctypes.data)
         assert failed == 0, f"{failed} members in C did not finish"
         return slip
 

@@ -16,8 +16,8 @@ import pytest
 
 import stickslip as ss
 from stickslip import files, netcdf
-from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint
+from stickslip.evolution.layout import Counts, State
 from stickslip.files import DRAFT, STALE, held, write_atomically
 from stickslip.storage import save_checkpoint
 
@@ -64,21 +64,21 @@ def test_other_readers_of_netcdf_do_not_mind_the_checksum(run: ss.Solution, tmp_
 
 
 COUNTS = {
-    at.LENGTH: 10**6,
-    at.PIECE: 7,
-    at.BRANCH: -3,
-    at.MODE: 2,
-    at.ECHO_OF: 10**9,
-    at.ROW_FROM: -1,
-    at.SEGMENT: 99,
-    at.SPARSE: 1,
+    "length": 10**6,
+    "piece": 7,
+    "branch": -3,
+    "mode": 2,
+    "echo_of": 10**9,
+    "row_from": -1,
+    "segment": 99,
+    "sparse": 1,
 }
 
 
-@pytest.mark.parametrize(("place", "value"), COUNTS.items())
-def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, place: int, value: int) -> None:
+@pytest.mark.parametrize(("name", "value"), COUNTS.items())
+def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, name: str, value: int) -> None:
     def edit(checkpoint: Checkpoint) -> None:
-        checkpoint.count[place] = value
+        setattr(Counts(checkpoint.count), name, value)
 
     check_edit(run, tmp_path, edit)
 
@@ -86,8 +86,8 @@ def test_a_count_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, place
 EDITS: dict[str, Callable[[Checkpoint], object]] = {
     "branch that is infinite": lambda checkpoint: checkpoint.branch.fill(np.inf),
     "branch that is no number": lambda checkpoint: checkpoint.branch.fill(np.nan),
-    "place beyond the piece": lambda checkpoint: checkpoint.state.__setitem__(at.XI, 1e300),
-    "slip that is no number": lambda checkpoint: checkpoint.state.__setitem__(at.SLIP_NOW, np.nan),
+    "place beyond the piece": lambda checkpoint: checkpoint.state.__setitem__(State.places["xi"].first, 1e300),
+    "slip that is no number": lambda checkpoint: checkpoint.state.__setitem__(State.places["slip_now"].first, np.nan),
 }
 
 

@@ -1,7 +1,7 @@
 /* The engine's algorithm in C: one Taylor step after the other, cut at the first event.
 
-   It reads the same table of addresses as the engine (`stickslip.evolution.workspace.lend`) and writes the same history. `law.h`
-   (names of the layout, and the law's `value` and `jet` from the same recurrences) is written by `benchmarks.c_peer`.
+   It works in the same memory as the engine (`stickslip.evolution.workspace.Run`) and writes the same history. `law.h`
+   (the records and codes of the engine, and the law's `value` and `jet` from the same recurrences) is written by `benchmarks.c_peer`.
    Left out, since the benchmark's problems do not meet them: folds reached from a slipping branch, knots of a law, leaps, and what
    is done where a step turns out to be wrong: that it is not is verified at the end of every step, as in the engine. */
 
@@ -16,11 +16,15 @@
 #define LOW 9
 
 typedef struct {
-    const double *par, *c, *shift, *offset, *rate_from, *rate_to, *keep_from, *keep_to, *excess_from, *excess_to;
+    const Params *par;
+    const double *c, *shift, *offset, *rate_from, *rate_to, *keep_from, *keep_to, *excess_from, *excess_to;
     const double *first_theta, *first_load, *first_slope, *first_jump;
-    double *state, *real, *all_load, *all_rate;
-    int64_t *count, *whole, branches, loads, capacity;
-    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS], k[12], value[4];
+    State *state;
+    Counts *count;
+    double *real, *all_load, *all_rate;
+    int64_t *whole, branches, loads, capacity;
+    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS], value[4];
+    Series k;
 } Run;
 
 static double reciprocal[2 * TERMS], bernstein[TERMS][TERMS], low_bernstein[LOW][LOW];
@@ -159,27 +163,27 @@ static double first_descent(const double *c) {
 static void friction_at(Run *r, double slip, double rate) {
     value(r->c, slip + r->shift[0], rate, r->value);
     r->value[3] = r->value[0] + r->offset[0];
-    r->value[0] = r->par[NORMAL] * r->value[3];
-    r->value[1] *= r->par[NORMAL];
+    r->value[0] = r->par->normal * r->value[3];
+    r->value[1] *= r->par->normal;
 }
 
 static double rest_limit(Run *r) {
-    friction_at(r, r->state[LAW_SLIP], 0.0);
-    return r->par[NORMAL] * (r->value[3] + r->par[STATIC_EXCESS]) + r->par[STICK_TO];
+    friction_at(r, r->state->law_slip, 0.0);
+    return r->par->normal * (r->value[3] + r->par->static_excess) + r->par->stick_to;
 }
 
-static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par[REFERENCE]; }
+static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par->reference; }
 
 static double rate_on_branch(Run *r, double load, double guess) {
-    int64_t branch = r->count[BRANCH];
+    int64_t branch = r->count->branch;
     double low = r->rate_from[branch], high = r->rate_to[branch];
     if (load <= r->excess_from[branch]) return low;
     if (load >= r->excess_to[branch]) return high;
-    high = fmin(high, (load + r->par[LARGEST_DROP]) / r->par[IMPEDANCE] * (1.0 + 1e-12));
+    high = fmin(high, (load + r->par->largest_drop) / r->par->impedance * (1.0 + 1e-12));
     double s = low < guess && guess < high ? guess : 0.5 * (low + high);
     for (int i = 0; i < 200; i++) {
-        friction_at(r, r->state[LAW_SLIP], s);
-        double error = r->par[IMPEDANCE] * s + r->value[0] - load, slope = r->par[IMPEDANCE] + r->value[1];
+        friction_at(r, r->state->law_slip, s);
+        double error = r->par->impedance * s + r->value[0] - load, slope = r->par->impedance + r->value[1];
         if (error > 0.0) high = s;
         else if (error < 0.0) low = s;
         else return s;
@@ -192,98 +196,98 @@ static double rate_on_branch(Run *r, double load, double guess) {
 }
 
 static void choose_branch(Run *r, double load) {
-    r->state[EXIT] = NAN;
+    r->state->exit = NAN;
     for (int64_t branch = 0; branch < r->branches; branch++)
-        if (load <= r->keep_to[branch]) { r->count[BRANCH] = branch; return; }
+        if (load <= r->keep_to[branch]) { r->count->branch = branch; return; }
 }
 
 static void leave_branch(Run *r, double load) {
-    int64_t branch = r->count[BRANCH];
-    r->state[EXIT] = NAN;
+    int64_t branch = r->count->branch;
+    r->state->exit = NAN;
     if (load >= r->keep_to[branch])
         for (int64_t other = branch + 1; other < r->branches; other++)
-            if (load <= r->keep_to[other]) { r->count[BRANCH] = other; return; }
+            if (load <= r->keep_to[other]) { r->count->branch = other; return; }
     for (int64_t other = branch - 1; other >= 0; other--)
-        if (r->keep_from[other] <= load) { r->count[BRANCH] = other; return; }
-    r->count[MODE] = 0;
+        if (r->keep_from[other] <= load) { r->count->branch = other; return; }
+    r->count->mode = 0;
 }
 
 static void note_jump(Run *r, double rate, int64_t cause) {
-    double before = r->state[RATE_NOW], size = fabs(rate - before);
-    if (size > r->par[SMALLEST_JUMP] && size > r->par[RELATIVE_JUMP] * fmax(fabs(rate), fabs(before)))
-        r->count[CAUSE] = cause, r->count[JUMP] = 1;
+    double before = r->state->rate_now, size = fabs(rate - before);
+    if (size > r->par->smallest_jump && size > r->par->relative_jump * fmax(fabs(rate), fabs(before)))
+        r->count->cause = cause, r->count->jump = 1;
 }
 
 static double branch_exit(Run *r) {
-    int64_t branch = r->count[BRANCH], mode = r->count[MODE];
-    double part[TERMS], xi = r->state[XI], first = NONE;
+    int64_t branch = r->count->branch, mode = r->count->mode;
+    double part[TERMS], xi = r->state->xi, first = NONE;
     for (int upper = 0; upper < 2; upper++) {
         double bound = upper ? r->keep_to[branch] : r->keep_from[branch], sign = upper ? -1.0 : 1.0;
         if (isinf(bound)) continue;
         restrict_to(r->load, xi, 1.0 - xi, part);
         double start = sign * (towards(r, part[0], mode) - bound);
         for (int k = 0; k < TERMS; k++) part[k] *= sign * mode;
-        part[0] = r->count[EDGE] != 0 && start < 0.0 ? 0.0 : start;
+        part[0] = r->count->edge != 0 && start < 0.0 ? 0.0 : start;
         first = fmin(first, first_descent(part));
     }
     return first < 1.0 - TIE ? xi + first * (1.0 - xi) : NONE;
 }
 
 static void end_branch(Run *r) {
-    int64_t branch = r->count[BRANCH], direction = r->count[MODE];
-    double seen = towards(r, evaluate(r->load, r->state[XI]), direction);
+    int64_t branch = r->count->branch, direction = r->count->mode;
+    double seen = towards(r, evaluate(r->load, r->state->xi), direction);
     int upper = fabs(seen - r->keep_to[branch]) < fabs(seen - r->keep_from[branch]);
     leave_branch(r, upper ? r->keep_to[branch] : r->keep_from[branch]);
-    if (r->count[MODE] == 0) note_jump(r, 0.0, FOLD), r->state[RATE_NOW] = 0.0;
-    else r->count[EDGE] = direction;
+    if (r->count->mode == 0) note_jump(r, 0.0, FOLD), r->state->rate_now = 0.0;
+    else r->count->edge = direction;
 }
 
 static double theta_at(Run *r, double xi) {
-    return xi >= 1.0 ? r->state[THETA_TO] : r->state[THETA_FROM] + xi * (r->state[SPEED] + xi * r->state[BEND]);
+    return xi >= 1.0 ? r->state->theta_to : r->state->theta_from + xi * (r->state->speed + xi * r->state->bend);
 }
 
 static void record(Run *r, double xi_to) {
-    double xi = r->state[XI], width = xi_to - xi, theta_from = theta_at(r, xi), theta_to = theta_at(r, xi_to);
+    double xi = r->state->xi, width = xi_to - xi, theta_from = theta_at(r, xi), theta_to = theta_at(r, xi_to);
     if (theta_to > theta_from) {
-        int64_t n = r->count[LENGTH], *whole = r->whole + WHOLE * n;
+        int64_t n = r->count->length, *whole = r->whole + WHOLE * n;
         double *real = r->real + REAL * n;
-        whole[S_ROW] = r->count[ROW], whole[S_MODE] = r->count[MODE], whole[S_PIECE] = r->count[PIECE];
-        whole[S_JUMP] = r->count[JUMP], whole[S_CAUSE] = r->count[CAUSE], whole[S_ECHO_OF] = r->count[ECHO_OF];
+        whole[S_ROW] = r->count->row, whole[S_MODE] = r->count->mode, whole[S_PIECE] = r->count->piece;
+        whole[S_JUMP] = r->count->jump, whole[S_CAUSE] = r->count->cause, whole[S_ECHO_OF] = r->count->echo_of;
         real[S_AMPLIFIED] = real[S_GAIN] = NAN;
         real[S_THETA_FROM] = theta_from, real[S_THETA_TO] = theta_to;
-        real[S_SPEED] = (r->state[SPEED] + 2.0 * r->state[BEND] * xi) * width, real[S_BEND] = r->state[BEND] * width * width;
-        real[S_SLIP] = r->state[SLIP_NOW], real[S_LAW_SLIP] = r->state[LAW_SLIP];
-        r->count[LENGTH] = n + 1;
-        r->count[JUMP] = r->count[CAUSE] = r->count[STALLED] = 0;
-    } else r->count[STALLED]++;
-    r->state[XI] = xi_to;
+        real[S_SPEED] = (r->state->speed + 2.0 * r->state->bend * xi) * width, real[S_BEND] = r->state->bend * width * width;
+        real[S_SLIP] = r->state->slip_now, real[S_LAW_SLIP] = r->state->law_slip;
+        r->count->length = n + 1;
+        r->count->jump = r->count->cause = r->count->stalled = 0;
+    } else r->count->stalled++;
+    r->state->xi = xi_to;
 }
 
 static void arrive(Run *r) {
     double load = r->load[0], limit = rest_limit(r);
-    int64_t mode = r->count[MODE];
-    if (mode != 0 && r->count[IS_ALGEBRAIC]) {
+    int64_t mode = r->count->mode;
+    if (mode != 0 && r->count->is_algebraic) {
         double seen = towards(r, load, mode);
-        int64_t branch = r->count[BRANCH];
+        int64_t branch = r->count->branch;
         if (!(r->keep_from[branch] <= seen && seen <= r->keep_to[branch])) leave_branch(r, seen);
-    } else if (mode != 0 && !r->count[HAS_INERTIA]) {
-        friction_at(r, r->state[LAW_SLIP], 0.0);
-        if (towards(r, load, mode) < r->value[0]) r->count[MODE] = 0;
+    } else if (mode != 0 && !r->count->has_inertia) {
+        friction_at(r, r->state->law_slip, 0.0);
+        if (towards(r, load, mode) < r->value[0]) r->count->mode = 0;
     }
-    if (r->count[MODE] == 0 && r->count[EDGE] == 0)
+    if (r->count->mode == 0 && r->count->edge == 0)
         for (int direction = 1; direction >= -1; direction -= 2)
-            if (towards(r, load, direction) > limit) r->count[MODE] = direction, choose_branch(r, towards(r, load, direction));
-    if (r->count[MODE] == 0) note_jump(r, 0.0, r->count[ARRIVING]), r->state[RATE_NOW] = 0.0;
+            if (towards(r, load, direction) > limit) r->count->mode = direction, choose_branch(r, towards(r, load, direction));
+    if (r->count->mode == 0) note_jump(r, 0.0, r->count->arriving), r->state->rate_now = 0.0;
 }
 
 static void stick(Run *r, double xi_to) {
-    double width = xi_to - r->state[XI], limit = rest_limit(r), part[TERMS], onset = NONE;
-    double *load = r->all_load + TERMS * r->count[LENGTH], *rate = r->all_rate + TERMS * r->count[LENGTH];
+    double width = xi_to - r->state->xi, limit = rest_limit(r), part[TERMS], onset = NONE;
+    double *load = r->all_load + TERMS * r->count->length, *rate = r->all_rate + TERMS * r->count->length;
     int direction = 0;
-    restrict_to(r->load, r->state[XI], width, load);
+    restrict_to(r->load, r->state->xi, width, load);
     for (int way = 1; way >= -1; way -= 2) {
         for (int k = 0; k < TERMS; k++) part[k] = -way * load[k];
-        part[0] = r->count[EDGE] == way ? 0.0 : limit - towards(r, load[0], way);
+        part[0] = r->count->edge == way ? 0.0 : limit - towards(r, load[0], way);
         double first = first_descent(part);
         if (first < onset) onset = first, direction = way;
     }
@@ -293,18 +297,18 @@ static void stick(Run *r, double xi_to) {
         for (int k = 1; k < TERMS; k++, power *= onset) load[k] *= power;
     }
     memset(rate, 0, TERMS * sizeof(double));
-    record(r, slips ? r->state[XI] + onset * width : xi_to);
-    r->count[EDGE] = 0;
-    if (slips) r->count[MODE] = r->count[EDGE] = direction, choose_branch(r, limit);
+    record(r, slips ? r->state->xi + onset * width : xi_to);
+    r->count->edge = 0;
+    if (slips) r->count->mode = r->count->edge = direction, choose_branch(r, limit);
 }
 
 static void come_to_rest(Run *r) {
-    int64_t before = r->count[MODE];
-    r->state[RATE_NOW] = 0.0, r->count[MODE] = 0;
-    if (!r->count[HAS_INERTIA]) { r->count[EDGE] = before; return; }
-    double load = evaluate(r->load, r->state[XI]), limit = rest_limit(r);
+    int64_t before = r->count->mode;
+    r->state->rate_now = 0.0, r->count->mode = 0;
+    if (!r->count->has_inertia) { r->count->edge = before; return; }
+    double load = evaluate(r->load, r->state->xi), limit = rest_limit(r);
     for (int direction = 1; direction >= -1; direction -= 2)
-        if (towards(r, load, direction) > limit) r->count[MODE] = direction;
+        if (towards(r, load, direction) > limit) r->count->mode = direction;
 }
 
 /* ---- one Taylor step ------------------------------------------------------------------------------------------------------ */
@@ -342,23 +346,24 @@ static double usable_length(const double *jet, double tolerance) {
 }
 
 static void series(Run *r, double guess) {
-    int64_t direction = r->count[MODE], n = r->count[DEGREE];
-    double *k = r->k, xi = r->state[XI];
+    int64_t direction = r->count->mode, n = r->count->degree;
+    Series *k = &r->k;
+    double xi = r->state->xi;
     if (n <= 1) r->local[0] = r->load[0] + xi * r->load[1], r->local[1] = guess * r->load[1], n = 1;
     else restrict_low(r->load, n, xi, guess, r->local);
     for (int i = 1; i <= n; i++) r->seen[i] = direction * r->local[i];
     r->seen[0] = towards(r, r->local[0], direction);
-    int edge = r->count[EDGE] != 0;
-    k[K_IMPEDANCE] = r->par[IMPEDANCE], k[K_NORMAL] = r->par[NORMAL], k[K_INERTIA] = r->par[INERTIA];
-    k[K_STIFFNESS] = r->par[STIFFNESS];
-    k[K_CHI] = r->par[COUNTS_NET] == 1.0 ? direction : 1.0;
-    k[K_SPEED] = (r->state[SPEED] + 2.0 * r->state[BEND] * xi) * guess, k[K_BEND] = 2.0 * r->state[BEND] * guess * guess;
-    k[K_SLIP] = r->state[LAW_SLIP] + r->shift[0], k[K_OFFSET] = r->offset[0];
-    k[K_RATE] = fabs(r->state[RATE_NOW]), k[K_FREE] = edge ? 0.0 : 1.0;
-    k[K_FORCE] = edge ? r->par[NORMAL] * r->par[STATIC_EXCESS] : 0.0;
-    if (r->count[IS_ALGEBRAIC]) k[K_RATE] = rate_on_branch(r, r->seen[0], fabs(r->state[RATE_NOW]));
-    if (r->count[HAS_INERTIA]) motion_jet(r->c, k, r->seen, r->jet);
-    else rate_jet(r->c, k, r->seen, r->jet);
+    int edge = r->count->edge != 0;
+    k->impedance = r->par->impedance, k->normal = r->par->normal, k->inertia = r->par->inertia;
+    k->stiffness = r->par->stiffness;
+    k->chi = r->par->counts_net == 1.0 ? direction : 1.0;
+    k->speed = (r->state->speed + 2.0 * r->state->bend * xi) * guess, k->bend = 2.0 * r->state->bend * guess * guess;
+    k->slip = r->state->law_slip + r->shift[0], k->offset = r->offset[0];
+    k->rate = fabs(r->state->rate_now), k->free = edge ? 0.0 : 1.0;
+    k->force = edge ? r->par->normal * r->par->static_excess : 0.0;
+    if (r->count->is_algebraic) k->rate = rate_on_branch(r, r->seen[0], fabs(r->state->rate_now));
+    if (r->count->has_inertia) motion_jet(r->c, (double *)k, r->seen, r->jet);
+    else rate_jet(r->c, (double *)k, r->seen, r->jet);
 }
 
 static void stretch(Run *r, double length, double *restrict rate) {
@@ -376,183 +381,180 @@ static int within_guards(const Run *r, double length) {
 
 /* Whether the contact equation holds at the end of a step, to the tolerance or to rounding. */
 static int obeys_contact(Run *r, const double *rate, double length, double grown, double rate_end) {
-    double dx = r->k[K_SLIP] + r->k[K_CHI] * grown, load = r->seen[0], now[4], unbalanced = 0.0, slope = 0.0;
-    for (int k = 1; k <= r->count[DEGREE]; k++) load += r->powers[k] * r->seen[k];
-    if (r->k[K_FREE] == 0.0) {
-        value(r->c, r->k[K_SLIP], 0.0, now);
-        unbalanced = r->seen[0] - r->par[NORMAL] * (now[0] + r->offset[0]) - r->k[K_FORCE];
+    double dx = r->k.slip + r->k.chi * grown, load = r->seen[0], now[4], unbalanced = 0.0, slope = 0.0;
+    for (int k = 1; k <= r->count->degree; k++) load += r->powers[k] * r->seen[k];
+    if (r->k.free == 0.0) {
+        value(r->c, r->k.slip, 0.0, now);
+        unbalanced = r->seen[0] - r->par->normal * (now[0] + r->offset[0]) - r->k.force;
     }
     value(r->c, dx, rate_end, now);
-    double friction = now[0] + r->offset[0], normal = r->par[NORMAL], impedance = r->par[IMPEDANCE];
+    double friction = now[0] + r->offset[0], normal = r->par->normal, impedance = r->par->impedance;
     double missing = load - impedance * rate_end - normal * friction - unbalanced;
-    double terms = r->par[REFERENCE] + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
+    double terms = r->par->reference + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
     double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
-    double size = (r->count[HAS_INERTIA] ? 300.0 : 10.0) * r->par[TOLERANCE] * largest;
-    if (!r->count[HAS_INERTIA]) {
+    double size = (r->count->has_inertia ? 300.0 : 10.0) * r->par->tolerance * largest;
+    if (!r->count->has_inertia) {
         double resistance = impedance + normal * fmax(now[1], 0.0);
         return fabs(missing) / resistance <= size + 1e-14 * terms / resistance;
     }
     for (int k = 1; k < TERMS; k++) slope += k * rate[k];
-    double pace = (r->k[K_SPEED] + r->k[K_BEND] * length) * length / r->par[INERTIA];
-    return fabs((missing - r->par[STIFFNESS] * grown) * pace - slope) <= size + 1e-14 * terms * pace;
+    double pace = (r->k.speed + r->k.bend * length) * length / r->par->inertia;
+    return fabs((missing - r->par->stiffness * grown) * pace - slope) <= size + 1e-14 * terms * pace;
 }
 
 static void keep_step(Run *r, double *restrict rate, double length, double to) {
-    double direction = r->count[MODE], speed = r->k[K_SPEED] * length, bend = r->k[K_BEND] * length * length;
-    double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->all_load + TERMS * r->count[LENGTH];
+    double direction = r->count->mode, speed = r->k.speed * length, bend = r->k.bend * length * length;
+    double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->all_load + TERMS * r->count->length;
     if (bend != 0.0) grown += bend * integral(rate, 2);
     if (!within_guards(r, length) || !obeys_contact(r, rate, length, grown, rate_end)) abort();
     for (int k = 0; k < TERMS; k++) load[k] = r->local[k] * r->powers[k];
-    if (r->count[IS_BLOCK]) {
-        double straight = direction * r->par[STIFFNESS] * speed;
+    if (r->count->is_block) {
+        double straight = direction * r->par->stiffness * speed;
         for (int k = 1; k < TERMS; k++) load[k] -= straight * reciprocal[k] * rate[k - 1];
-        r->load[0] -= r->par[STIFFNESS] * direction * grown;
+        r->load[0] -= r->par->stiffness * direction * grown;
     }
     if (direction < 0)
         for (int k = 0; k < TERMS; k++) rate[k] = -rate[k];
     record(r, to);
-    r->count[MOVED] = 1, r->count[EDGE] = 0;
-    r->state[SLIP_NOW] += direction * grown, r->state[LAW_SLIP] += r->k[K_CHI] * grown;
-    r->state[RATE_NOW] = direction * fmax(rate_end, 0.0);
+    r->count->moved = 1, r->count->edge = 0;
+    r->state->slip_now += direction * grown, r->state->law_slip += r->k.chi * grown;
+    r->state->rate_now = direction * fmax(rate_end, 0.0);
 }
 
 static void slip(Run *r, double xi_to) {
     double target = xi_to;
     int leaves = 0;
-    if (r->count[IS_ALGEBRAIC]) {
-        if (isnan(r->state[EXIT])) r->state[EXIT] = branch_exit(r);
-        if (r->state[EXIT] < xi_to) {
-            if (r->state[EXIT] <= r->state[XI]) { end_branch(r); return; }
-            target = r->state[EXIT], leaves = 1;
+    if (r->count->is_algebraic) {
+        if (isnan(r->state->exit)) r->state->exit = branch_exit(r);
+        if (r->state->exit < xi_to) {
+            if (r->state->exit <= r->state->xi) { end_branch(r); return; }
+            target = r->state->exit, leaves = 1;
         }
     }
-    double now = fabs(r->state[SPEED] + 2.0 * r->state[BEND] * r->state[XI]), left = target - r->state[XI];
-    double guess = now > 0.0 ? fmin(left, 2.0 * r->state[LAST_STEP] / now) : left;
+    double now = fabs(r->state->speed + 2.0 * r->state->bend * r->state->xi), left = target - r->state->xi;
+    double guess = now > 0.0 ? fmin(left, 2.0 * r->state->last_step / now) : left;
     series(r, guess);
     while (!isfinite(r->jet[TERMS - 1]) && guess > 1e-300) guess *= 1e-3, series(r, guess);
-    if (r->state[XI] == 0.0 && r->count[ARRIVING] != NO_CAUSE) note_jump(r, r->count[MODE] * r->jet[0], r->count[ARRIVING]);
-    else if (r->count[EDGE] != 0 && !r->count[HAS_INERTIA]) note_jump(r, r->count[MODE] * r->jet[0], FOLD);
+    if (r->state->xi == 0.0 && r->count->arriving != NO_CAUSE) note_jump(r, r->count->mode * r->jet[0], r->count->arriving);
+    else if (r->count->edge != 0 && !r->count->has_inertia) note_jump(r, r->count->mode * r->jet[0], FOLD);
 
-    double limit = left / guess, length = usable_length(r->jet, r->par[TOLERANCE]), end = NONE;
-    r->state[LAST_STEP] = length * fabs(r->k[K_SPEED] + 0.5 * r->k[K_BEND] * fmin(length, 1.0));
+    double limit = left / guess, length = usable_length(r->jet, r->par->tolerance), end = NONE;
+    r->state->last_step = length * fabs(r->k.speed + 0.5 * r->k.bend * fmin(length, 1.0));
     int reached = length >= limit;
     if (reached) length = limit;
     else if (length > 0.5 * limit) length = 0.5 * limit;
-    double *rate = r->all_rate + TERMS * r->count[LENGTH];
+    double *rate = r->all_rate + TERMS * r->count->length;
     stretch(r, length, rate);
-    if (!r->count[IS_ALGEBRAIC] && rate[0] <= magnitude(rate)) end = first_descent(rate);
+    if (!r->count->is_algebraic && rate[0] <= magnitude(rate)) end = first_descent(rate);
     int rests = end <= 1.0 - TIE;
     if (!rests) end = 1.0;
-    double to = reached && end == 1.0 ? target : r->state[XI] + end * length * guess;
+    double to = reached && end == 1.0 ? target : r->state->xi + end * length * guess;
     if (end < 1.0) length *= end, stretch(r, length, rate);
     keep_step(r, rate, length, to);
     if (rests) come_to_rest(r);
-    else if (leaves && (reached || target - r->state[XI] < TIE)) end_branch(r);
+    else if (leaves && (reached || target - r->state->xi < TIE)) end_branch(r);
 }
 
 /* ---- the loop ------------------------------------------------------------------------------------------------------------- */
 
 static int next_piece(Run *r) {
-    double *state = r->state;
+    State *state = r->state;
     memset(r->load, 0, sizeof r->load);
-    if (r->count[IS_BLOCK] || r->count[ROW] == 0) {
-        int64_t source = r->count[SOURCE];
+    if (r->count->is_block || r->count->row == 0) {
+        int64_t source = r->count->source;
         if (source >= r->loads - 1) return 0;
-        state[THETA_FROM] = r->first_theta[source], state[THETA_TO] = r->first_theta[source + 1];
-        state[SPEED] = state[THETA_TO] - state[THETA_FROM], state[BEND] = 0.0, r->count[ECHO_OF] = -1;
-        r->load[0] = r->count[IS_BLOCK] && r->count[ROW] > 0 ? state[LOAD_NOW] : r->first_load[source];
-        r->load[1] = r->first_slope[source] * state[SPEED];
-        r->count[ARRIVING] = r->count[ROW] == 0 && source == 0 ? START : NO_CAUSE;
+        state->theta_from = r->first_theta[source], state->theta_to = r->first_theta[source + 1];
+        state->speed = state->theta_to - state->theta_from, state->bend = 0.0, r->count->echo_of = -1;
+        r->load[0] = r->count->is_block && r->count->row > 0 ? state->load_now : r->first_load[source];
+        r->load[1] = r->first_slope[source] * state->speed;
+        r->count->arriving = r->count->row == 0 && source == 0 ? START : NO_CAUSE;
     } else {
-        int64_t source = r->count[PREVIOUS_FROM] + r->count[SOURCE];
-        if (source >= r->count[PREVIOUS_TO]) return 0;
-        r->count[ECHO_OF] = source;
+        int64_t source = r->count->previous_from + r->count->source;
+        if (source >= r->count->previous_to) return 0;
+        r->count->echo_of = source;
         double *real = r->real + REAL * source, *rate = r->all_rate + TERMS * source, *load = r->all_load + TERMS * source;
-        state[THETA_FROM] = real[S_THETA_FROM], state[THETA_TO] = real[S_THETA_TO];
-        state[SPEED] = real[S_SPEED], state[BEND] = real[S_BEND];
-        for (int k = 0; k < TERMS; k++) r->load[k] = r->par[REFLECTION] * (2.0 * r->par[IMPEDANCE] * rate[k] - load[k]);
-        r->load[0] += r->par[INFLOW];
-        r->count[ARRIVING] = r->whole[WHOLE * source + S_JUMP] && r->par[REFLECTION] != 0.0 ? ECHO : NO_CAUSE;
+        state->theta_from = real[S_THETA_FROM], state->theta_to = real[S_THETA_TO];
+        state->speed = real[S_SPEED], state->bend = real[S_BEND];
+        for (int k = 0; k < TERMS; k++) r->load[k] = r->par->reflection * (2.0 * r->par->impedance * rate[k] - load[k]);
+        r->load[0] += r->par->inflow;
+        r->count->arriving = r->whole[WHOLE * source + S_JUMP] && r->par->reflection != 0.0 ? ECHO : NO_CAUSE;
     }
-    r->count[SOURCE]++;
-    state[XI] = 0.0, state[EXIT] = NAN;
-    r->count[DEGREE] = degree(r->load);
+    r->count->source++;
+    state->xi = 0.0, state->exit = NAN;
+    r->count->degree = degree(r->load);
     memset(r->local, 0, sizeof r->local), memset(r->seen, 0, sizeof r->seen);
-    if (r->count[ARRIVING] != NO_CAUSE) r->count[JUMP] = 1;
-    r->count[READY] = 1;
+    if (r->count->arriving != NO_CAUSE) r->count->jump = 1;
+    r->count->ready = 1;
     arrive(r);
     return 1;
 }
 
 static void end_row(Run *r) {
-    if (r->count[IS_BLOCK]) r->state[LOAD_NOW] = total(r->all_load + TERMS * (r->count[LENGTH] - 1));
-    r->count[ROW]++;
-    r->count[PREVIOUS_FROM] = r->count[ROW_FROM], r->count[PREVIOUS_TO] = r->count[ROW_FROM] = r->count[LENGTH];
-    r->count[SOURCE] = r->count[MOVED] = 0;
+    if (r->count->is_block) r->state->load_now = total(r->all_load + TERMS * (r->count->length - 1));
+    r->count->row++;
+    r->count->previous_from = r->count->row_from, r->count->previous_to = r->count->row_from = r->count->length;
+    r->count->source = r->count->moved = 0;
 }
 
-int64_t advance(const int64_t *table, int64_t last_row, double last_theta, int64_t budget) {
+int64_t advance(Memory *m, int64_t last_row, double last_theta, int64_t budget) {
     Run run, *r = &run;
-    int64_t pieces = table[PIECES], branches = table[BRANCHES], loads = table[LOADS];
-    const double *law = (const double *)table[LAW_AT], *branch = (const double *)table[BRANCH_AT];
-    const double *first = (const double *)table[FIRST_AT];
-    run.par = (const double *)table[PAR_AT], run.c = (const double *)table[CONSTANTS_AT];
-    run.shift = law, run.offset = law + pieces;
-    run.rate_from = branch, run.rate_to = branch + branches, run.keep_from = branch + 2 * branches;
-    run.keep_to = branch + 3 * branches, run.excess_from = branch + 4 * branches, run.excess_to = branch + 5 * branches;
-    run.first_theta = first, run.first_load = first + loads, run.first_slope = first + 2 * loads, run.first_jump = first + 3 * loads;
-    run.state = (double *)table[STATES_AT], run.count = (int64_t *)table[COUNTS_AT], run.whole = (int64_t *)table[WHOLE_AT];
-    run.real = (double *)table[REAL_AT], run.all_load = (double *)table[LOAD_AT], run.all_rate = (double *)table[RATE_AT];
-    run.branches = branches, run.loads = loads, run.capacity = table[CAPACITY];
+    run.par = &m->par, run.state = &m->state, run.count = &m->counts, run.c = m->constants;
+    run.shift = m->slip_shift, run.offset = m->offset;
+    run.rate_from = m->rate_from, run.rate_to = m->rate_to, run.keep_from = m->keep_from, run.keep_to = m->keep_to;
+    run.excess_from = m->excess_from, run.excess_to = m->excess_to;
+    run.first_theta = m->first_theta, run.first_load = m->first_load, run.first_slope = m->first_slope, run.first_jump = m->first_jump;
+    run.whole = m->whole, run.real = m->real, run.all_load = m->stored_load, run.all_rate = m->stored_rate;
+    run.branches = m->branches, run.loads = m->loads, run.capacity = m->capacity;
     while (1) {
-        if (run.count[LENGTH] + 8 > run.capacity) return FULL;
-        if (run.count[STALLED] > 200) return STORM;
+        if (run.count->length + 8 > run.capacity) return FULL;
+        if (run.count->stalled > 200) return STORM;
         if (--budget < 0) return -1;
-        if (!run.count[READY]) {
-            if (run.count[ROW] > last_row) return FINISHED;
+        if (!run.count->ready) {
+            if (run.count->row > last_row) return FINISHED;
             if (!next_piece(r)) { end_row(r); continue; }
         }
-        double *state = run.state, xi_to = 1.0;
-        int is_last = run.count[ROW] == last_row && state[THETA_TO] >= last_theta;
-        if (is_last && state[THETA_TO] > last_theta) {
-            double rest = last_theta - state[THETA_FROM];
-            double root = sqrt(fmax(state[SPEED] * state[SPEED] + 4.0 * state[BEND] * rest, 0.0));
-            xi_to = fmin(2.0 * rest / (state[SPEED] + root), 1.0);
+        State *state = run.state;
+        double xi_to = 1.0;
+        int is_last = run.count->row == last_row && state->theta_to >= last_theta;
+        if (is_last && state->theta_to > last_theta) {
+            double rest = last_theta - state->theta_from;
+            double root = sqrt(fmax(state->speed * state->speed + 4.0 * state->bend * rest, 0.0));
+            xi_to = fmin(2.0 * rest / (state->speed + root), 1.0);
         }
-        if (state[XI] < xi_to) {
-            if (run.count[MODE] == 0) stick(r, xi_to);
+        if (state->xi < xi_to) {
+            if (run.count->mode == 0) stick(r, xi_to);
             else slip(r, xi_to);
-            if (!isfinite(state[RATE_NOW])) return FAILED;
+            if (!isfinite(state->rate_now)) return FAILED;
         } else if (is_last) return FINISHED;
-        else run.count[READY] = 0;
+        else run.count->ready = 0;
     }
 }
 
 /* ---- many runs ------------------------------------------------------------------------------------------------------------ */
 
-/* Members one after the other, as `stickslip.batch` does: table[k] = base[k] + n stride[k], a state and a history per thread.
-   slip: of each member, from its start to its end. Returns how many did not finish. */
-int64_t run_members(const int64_t *base, const int64_t *stride, int64_t size, const int64_t *branches, const double *state,
-                    const int64_t *count, const int64_t *last_row, const double *last_theta, int64_t members, int threads,
-                    double *slip) {
+/* Members one after the other, as `stickslip.batch` does: the addresses of member n are base[k] + n stride[k], a state and a history
+   per thread. par: the problem's numbers, par_stride apart. slip: of each member, from its start to its end. Returns how many did
+   not finish. */
+int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *lent, const Params *par, int64_t par_stride,
+                    const int64_t *branches, const State *state, const Counts *count, const int64_t *last_row,
+                    const double *last_theta, int64_t members, int threads, double *slip) {
     int64_t failed = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : failed)
     {
-        int64_t table[32], capacity = base[CAPACITY], own_count[COUNTS];
-        double own_state[STATES];
-        int64_t *whole = malloc(capacity * WHOLE * sizeof *whole);
-        double *real = malloc(capacity * REAL * sizeof *real);
-        double *load = malloc(capacity * TERMS * sizeof *load), *rate = malloc(capacity * TERMS * sizeof *rate);
+        Memory own = *lent;
+        int64_t *addresses = (int64_t *)&own, *whole = malloc(own.capacity * WHOLE * sizeof *whole);
+        double *real = malloc(own.capacity * REAL * sizeof *real);
+        double *load = malloc(own.capacity * TERMS * sizeof *load), *rate = malloc(own.capacity * TERMS * sizeof *rate);
 #pragma omp for schedule(dynamic, 256)
         for (int64_t n = 0; n < members; n++) {
-            for (int64_t k = 0; k < size; k++) table[k] = base[k] + n * stride[k];
-            memcpy(own_state, state, sizeof own_state), memcpy(own_count, count, sizeof own_count);
-            own_count[TO_THE_END] = 1;
-            table[STATES_AT] = (int64_t)own_state, table[COUNTS_AT] = (int64_t)own_count, table[WHOLE_AT] = (int64_t)whole;
-            table[REAL_AT] = (int64_t)real, table[LOAD_AT] = (int64_t)load, table[RATE_AT] = (int64_t)rate;
-            table[BRANCHES] = branches[n];
-            failed += advance(table, last_row[n], last_theta[n], INT64_MAX) != FINISHED;
-            slip[n] = own_state[SLIP_NOW];
+            for (int64_t k = 0; k < ADDRESSES; k++) addresses[k] = base[k] + n * stride[k];
+            own.par = par[n * par_stride], own.state = *state, own.counts = *count, own.counts.to_the_end = 1;
+            own.whole = whole, own.real = real, own.stored_load = load, own.stored_rate = rate;
+            double *b = own.rate_from;
+            own.branches = branches[n], own.rate_to = b + own.branches, own.keep_from = b + 2 * own.branches;
+            own.keep_to = b + 3 * own.branches, own.excess_from = b + 4 * own.branches, own.excess_to = b + 5 * own.branches;
+            failed += advance(&own, last_row[n], last_theta[n], INT64_MAX) != FINISHED;
+            slip[n] = own.state.slip_now;
         }
         free(whole), free(real), free(load), free(rate);
     }

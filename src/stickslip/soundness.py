@@ -19,21 +19,22 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import Checkpoint
 from stickslip.evolution.history import History
 from stickslip.evolution.inflow import row_time
-from stickslip.evolution.layout import Setup
+from stickslip.evolution.layout import Counts, Setup, State
 from stickslip.evolution.moving_branches import STORM_OF, branch_rows, folds_move, has_levels_to_set
+from stickslip.evolution.records import Record
 from stickslip.evolution.setup import prepare
 from stickslip.evolution.solution import Solution
-from stickslip.evolution.workspace import COUNTS, DEGREE, EXIT, REAL, STATES, WHOLE, WORK_ROWS
+from stickslip.evolution.workspace import REAL, WHOLE, WORK_ROWS
 
 ROUNDING = 1e-9
 """Of the length of a row: offsets lie in it, but for rounding."""
 LAST_CAUSE = at.HEALING
-SAME = (at.IS_BLOCK, at.HAS_INERTIA, at.IS_ALGEBRAIC, at.HAS_STATE, at.STICKS, at.FOLDS_MOVE, at.KNOTS_IN_RATE, at.VARIES)
+SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone."""
-FLAGS = (at.MOVED, at.JUMP, at.STIFF, at.LEAVING, at.IS_LOCKED, at.TO_THE_END, at.SPARSE, at.LUMPED, at.LUMPS)
-SIGNS = (at.MODE, at.EDGE)
-NOT_NEGATIVE = (at.ROW, at.SOURCE, at.STEPS, at.SLIP_ROW, at.TINY, at.PAUSE_AT, at.PAUSE_FOR, at.STALLED, at.LUMPED_SINCE, at.ROUGH)
-FREE = (at.LAST_STEP, at.FOLD_RATE, at.AMPLIFIED, at.GAIN, at.TARGET, at.UNBALANCED, at.ROUNDED, at.ROUGHEST, EXIT)
+FLAGS = ("moved", "jump", "stiff", "leaving", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+SIGNS = ("mode", "edge")
+NOT_NEGATIVE = ("row", "source", "steps", "slip_row", "tiny", "pause_at", "pause_for", "stalled", "lumped_since", "rough")
+FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
 """Numbers of the state that may be infinite or no number."""
 Fault = tuple[str, Any]
 """Name of what is wrong, and whether it is."""
@@ -122,77 +123,82 @@ def check_checkpoint(solution: Solution, path: Path) -> None:
     assert checkpoint is not None
     setup, _, count = prepare(solution.problem, solution.rtol, solution.shortest_event)
     _refuse(_shapes_of_checkpoint(checkpoint), path)
-    _refuse(_faults_of_places(checkpoint.count, setup, len(history), len(history.creep)), path)
-    _refuse(_faults_of_codes(checkpoint.count, count), path)
+    _refuse(_faults_of_places(Counts(checkpoint.count), setup, len(history), len(history.creep)), path)
+    _refuse(_faults_of_codes(Counts(checkpoint.count), count), path)
     _refuse(_faults_of_state(checkpoint, history), path)
     _refuse(_faults_of_branch(checkpoint, setup, solution), path)
 
 
 def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     branches = checkpoint.branch.shape[1] if checkpoint.branch.ndim == 2 else 0
-    shapes = {"state": (STATES,), "scratch": (WORK_ROWS, at.TERMS), "branch": (6, max(branches, 1)), "stick_to": (1,)}
+    shapes = {"state": (State.total,), "scratch": (WORK_ROWS, at.TERMS), "branch": (6, max(branches, 1)), "stick_to": (1,)}
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
-    yield "shape or type of engine_count", not _is(checkpoint.count, (COUNTS,), "i")
+    yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
     crossings = checkpoint.crossings
     yield "engine_crossings", not _is(crossings, (min(crossings.size, STORM_OF),), "f") or not np.isfinite(crossings).all()
 
 
-def _faults_of_places(count: at.Integers, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
+def _places(record: Record, *names: str) -> Any:
+    """Return some of a record's numbers as an array."""
+    return record.numbers[[record.places[name].first for name in names]]
+
+
+def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
     """What the engine uses as an index."""
-    length = int(count[at.LENGTH])
-    begins = count[at.ROW] == 0 and (count[at.SOURCE] == 0 or count[at.READY] != 0)
+    length = int(count.length)
+    begins = count.row == 0 and (count.source == 0 or count.ready != 0)
     yield "number of pieces", not 0 <= length <= pieces or (length == 0 and not begins)
-    if count[at.SPARSE] == 0:  # else these are not used, and a catalogue counts them down below zero
-        for name in ("ROW_FROM", "PREVIOUS_FROM", "PREVIOUS_TO"):
-            yield f"engine_count {name}", not 0 <= count[getattr(at, name)] <= length
-        yield "engine_count PREVIOUS_FROM", count[at.PREVIOUS_FROM] > count[at.PREVIOUS_TO]
+    if count.sparse == 0:  # else these are not used, and a catalogue counts them down below zero
+        for name in ("row_from", "previous_from", "previous_to"):
+            yield f"engine_count {name}", not 0 <= getattr(count, name) <= length
+        yield "engine_count previous_from", count.previous_from > count.previous_to
     else:
-        yield "engine_count NEW_FROM", not 1 <= count[at.NEW_FROM] <= length
-        echoes = setup.par[at.REFLECTION] == -1.0 and count[at.IS_BLOCK] == count[at.HAS_STATE] == count[at.VARIES] == 0
-        yield "engine_count SPARSE", not (echoes and count[at.STICKS] == 1)
-    yield "engine_count ECHO_OF", not -1 <= count[at.ECHO_OF] < length
-    yield "engine_count PIECE", not 0 <= count[at.PIECE] < setup.address.shape[1]
-    yield "engine_count SEGMENT", not 0 <= count[at.ROW_SEGMENT] <= count[at.SEGMENT] < setup.loading.shape[1]
-    yield "engine_count CREEP_LEAPS", not 0 <= count[at.CREEP_LEAPS] <= leaps
-    yield "engine_count DEGREE", not 0 <= count[DEGREE] < at.TERMS
+        yield "engine_count new_from", not 1 <= count.new_from <= length
+        echoes = setup.par.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
+        yield "engine_count sparse", not (echoes and count.sticks == 1)
+    yield "engine_count echo_of", not -1 <= count.echo_of < length
+    yield "engine_count piece", not 0 <= count.piece < setup.address.shape[1]
+    yield "engine_count segment", not 0 <= count.row_segment <= count.segment < setup.loading.shape[1]
+    yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
+    yield "engine_count degree", not 0 <= count.degree < at.TERMS
 
 
-def _faults_of_codes(count: at.Integers, fresh: at.Integers) -> Iterator[Fault]:
+def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
     """What the engine takes as a code, a flag or a number of rows."""
-    yield "engine_count: what follows from the problem", (count[[*SAME]] != fresh[[*SAME]]).any()
-    yield "engine_count: a flag", _outside(count[[*FLAGS]], 0, 1)
-    yield "engine_count: a direction", _outside(count[[*SIGNS]], -1, 1)
-    yield "engine_count: a number of rows or steps", _outside(count[[*NOT_NEGATIVE]], 0, at.NEVER)
-    yield "engine_count STUCK_ROWS", not -1 <= count[at.STUCK_ROWS] <= at.NEVER
-    yield "engine_count CREEP_IN or LUMP_ABOVE", _outside(count[[at.CREEP_IN, at.LUMP_ABOVE]], -at.NEVER, at.NEVER)
-    yield "engine_count: a cause", _outside(count[[at.CAUSE, at.ARRIVING]], 0, LAST_CAUSE)
-    yield "engine_count READY", not 0 <= count[at.READY] <= at.BROUGHT
-    yield "engine_count AT_FOLD", not 0 <= count[at.AT_FOLD] <= 3
-    yield "engine_count WAITS", count[at.WAITS] != 0
-    yield "engine_count BREACH", count[at.BREACH] not in (0, at.OFF_THE_LAW, at.NEGATIVE_FRICTION)
+    yield "engine_count: what follows from the problem", (_places(count, *SAME) != _places(fresh, *SAME)).any()
+    yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
+    yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
+    yield "engine_count: a number of rows or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)
+    yield "engine_count stuck_rows", not -1 <= count.stuck_rows <= at.NEVER
+    yield "engine_count creep_in or LUMP_ABOVE", _outside(_places(count, "creep_in", "lump_above"), -at.NEVER, at.NEVER)
+    yield "engine_count: a cause", _outside(_places(count, "cause", "arriving"), 0, LAST_CAUSE)
+    yield "engine_count ready", not 0 <= count.ready <= at.BROUGHT
+    yield "engine_count at_fold", not 0 <= count.at_fold <= 3
+    yield "engine_count waits", count.waits != 0
+    yield "engine_count breach", count.breach not in (0, at.OFF_THE_LAW, at.NEGATIVE_FRICTION)
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:
-    state, row = checkpoint.state, history.row_time
-    finite = np.delete(state, [*FREE])
+    state, row = State(checkpoint.state), history.row_time
+    finite = _places(state, *(name for name in State.places if name not in FREE))
     yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
-    yield "engine_state XI", not -ROUNDING <= state[at.XI] <= 1.0 + ROUNDING
-    yield "engine_state: times", _no_interval(state[at.THETA_FROM], state[at.THETA_TO], row)
-    yield "engine_state LAST_STEP", not state[at.LAST_STEP] > 0.0
+    yield "engine_state xi", not -ROUNDING <= state.xi <= 1.0 + ROUNDING
+    yield "engine_state: times", _no_interval(state.theta_from, state.theta_to, row)
+    yield "engine_state last_step", not state.last_step > 0.0
     rows = history.store.row[: checkpoint.length]
-    yield "engine_count ROW, before the end of the history,", bool((rows[-1:] > checkpoint.count[at.ROW]).any())
+    yield "engine_count row, before the end of the history,", bool((rows[-1:] > Counts(checkpoint.count).row).any())
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
     """Branches follow from the problem, and where folds move, from the slip at which they were worked out."""
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
-    yield "engine_count BRANCH", not 0 <= checkpoint.count[at.BRANCH] < branch.shape[1]
+    yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < branch.shape[1]
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
     if not folds_move(problem):
-        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branch) or stick_to != setup.par[at.STICK_TO]
+        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branch) or stick_to != setup.par.stick_to
         return
-    rows, level = branch_rows(problem, float(checkpoint.state[at.TABLE_SLIP]))
+    rows, level = branch_rows(problem, float(State(checkpoint.state).table_slip))
     compared = [*range(6)]
     if has_levels_to_set(problem):  # by compiled code, to rounding
         compared = [at.RATE_FROM, at.RATE_TO, at.EXCESS_FROM, at.EXCESS_TO]

@@ -174,3 +174,53 @@ def test_run_ends_where_the_state_makes_friction_negative(body: ss.SpringBlock |
     rate_now = abs(run.slip_rate(np.linspace(0.0, run.history.duration, 500)))
     assert (law.coefficient(0.0, rate_now, state) >= 0.0).all()
     assert float(law.coefficient(0.0, 0.0, state[-1])) < 0.0
+
+
+@pytest.mark.parametrize("direct", [0.0, 1e-3])
+def test_slip_rate_that_decays_into_the_rounding_of_the_load_ends_no_run(direct: float) -> None:
+    """Friction follows with a lag until it carries the load: the slip rate is then the difference of two large stresses."""
+    rate = F.VelocityStrengthening(static=0.0124, a=1.0146, rate=1e-6, viscosity=0.0097)
+    law = F.LaggedFriction(rate=rate, time=7e4, direct=direct, direct_rate=3.3e6)
+    slab = ss.ElasticSlab(252.49, 379.84, 2e7, 3.86e9)
+    run = ss.simulate(ss.Problem(slab, law, initial_excess=6e6), 5e5)
+    assert run.status.ok
+    times = np.geomspace(1e-6, 5e5, 100)
+    assert abs(slab.impedance * run.slip_rate(times) + run.traction(times) - run.load(times)).max() < 1e-12 * run.load(0.0)
+
+
+def test_state_of_a_contact_at_extreme_friction_is_followed() -> None:
+    """e^(reference / a) is 1e168 here, whose square is no number: the slope of the arcsinh was zero then."""
+    law = F.RateAndState(reference=88.66, a=0.2289, b=1.7e-5, distance=0.418, evolution="prz")
+    slab = ss.ElasticSlab(4094.2, 3396.9, 568495.0, 6450.26)
+    problem = ss.Problem(slab, law, pull_rate=0.78, initial_load=-1502.0, initial_state=1.575)
+    run = ss.simulate(problem, 300.0, rtol=1e-6)
+    assert run.status.ok
+    assert float(run.slip_rate(300.0)) > 0.0
+
+
+def test_contact_that_is_not_on_its_law_ends_the_run() -> None:
+    """Under the maximal rule this contact leaves rest for a branch that is not there yet: no step is taken off the law."""
+    slip = F.SinusoidalSlip(mean=0.7510978306911695, amplitude=0.5847982785427647, wavenumber=199398448.69464782)
+    rate = F.PiecewiseLinearRate(
+        rates=(3.2743576685049207e-06, 0.0002247878671875812, 0.006257439225655866, 12.804272030445127),
+        coefficients=(1.131407484799384, 0.9491362073925511, 1.119843564178372, 0.2903181450626548),
+    )
+    law = F.SlipPlusRate(slip=slip, rate=rate)
+    pull = ss.loading.Sinusoidal(0.013418994494105092, -0.0017049132849254074, 1.2181003473026206e-05, 3.2105955621184474)
+    slab = ss.ElasticSlab(5409.33893546461, 778.2911174489649, 0.02612859006187082, 1900619.7173155327, 4210040.444742945)
+    problem = ss.Problem(
+        slab,
+        law,
+        pull_rate=pull,
+        initial_slip=2.8485142501525827e-05,
+        initial_excess=0.01697089205822083,
+        far_stress=654369.9684587554,
+        far_stress_rate=-245483412.5571528,
+        selection="maximal",
+    )
+    run = ss.simulate(problem, 8.118629130684283e-05, rtol=1e-4)
+    assert run.status.name == "off the law"
+    times = np.linspace(0.0, run.history.duration, 100)
+    speed = abs(run.slip_rate(times))
+    by_law = slab.normal_stress * law.coefficient(problem.law_slip + run.slip(times) - run.slip(0.0), speed)
+    assert run.traction(times) == pytest.approx(by_law, rel=1e-3, abs=0.0)

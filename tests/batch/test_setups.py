@@ -15,6 +15,7 @@ from stickslip.batch.setups import Setups, set_up
 from stickslip.evolution import layout as at
 from stickslip.evolution.automatic import wait_for_creep
 from stickslip.evolution.drive import split_time
+from stickslip.evolution.layout import Params
 from stickslip.evolution.setup import prepare, row_time
 from stickslip.evolution.tables import default_event_rate
 from stickslip.friction import LAWS
@@ -48,15 +49,15 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
             problem = alone.problem
             setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
             wait_for_creep(count, problem, alone.creep_rtol)
-            assert row_of(setups.par, n)[at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
-            others = np.arange(at.PARAMETERS) != at.STICK_TO
-            assert np.array_equal(row_of(setups.par, n)[others], setup.par[others])
+            assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
+            others = [place for place in range(Params.total) if place != Params.places["stick_to"].first]
+            assert np.array_equal(row_of(setups.par, n)[others], setup.par.numbers[others])
             assert np.array_equal(setups.address, setup.address)
             assert np.array_equal(row_of(setups.constants, n), setup.constants)
             assert np.array_equal(row_of(setups.law, n), setup.law)
             assert np.array_equal(row_of(setups.first, n), setup.first)
-            assert np.array_equal(setups.state, state)
-            assert np.array_equal(setups.counts, count)
+            assert np.array_equal(setups.state, state.numbers)
+            assert np.array_equal(setups.counts, count.numbers)
             assert setups.threshold[n] == default_event_rate(problem)
             assert setups.excess[n] == problem.excess
             assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, row_time(problem))
@@ -85,7 +86,7 @@ def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> Non
         assert setups.irregular[n] == (contact.regime == "irregular")
         assert branch_of(setups, n)[:2] == pytest.approx(setup.branch[:2], rel=1e-9, abs=0)
         assert branch_of(setups, n)[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
-        assert row_of(setups.par, n)[at.STICK_TO] == pytest.approx(setup.par[at.STICK_TO], rel=0, abs=LEVEL * problem.strength)
+        assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
 
 
 @pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])

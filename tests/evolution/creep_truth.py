@@ -19,10 +19,11 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.evolution import layout as at
+from stickslip.evolution.echoes import new_echoes, resized
 from stickslip.evolution.engine import advance
 from stickslip.evolution.history import History
 from stickslip.evolution.setup import prepare
-from stickslip.evolution.workspace import WORK_ROWS, lend
+from stickslip.evolution.workspace import counts_in, lend, memory_of, state_in
 
 GROWN = 0.01
 ROUND, IMPEDANCE = 2 * 1e4 / 3500.0, 2800.0 * 3500.0
@@ -37,24 +38,27 @@ def printed(faster: float) -> ss.Problem:
 def by_engine(problem: ss.Problem) -> float:
     """Time (s) at which slip has grown by GROWN, by the exact engine, one round trip at a time."""
     setup, state, count = prepare(problem, 1e-10)
-    scratch, store = np.zeros((WORK_ROWS, at.TERMS)), at.new_store(4096)
-    table = lend(setup, state, count, scratch, store)
-    count[at.PAUSE_AT] = 1
+    store, trees = at.new_store(4096), new_echoes(4096)
+    memory = memory_of(setup.par, state, count)
+    state, count = state_in(memory), counts_in(memory)
+    lend(memory, setup, store, trees)
+    count.pause_at = 1
     while True:
-        code = advance(table, 10**9, 1.0, 10**9)
+        code = advance(memory, 10**9, 1.0, 10**9)
         if code == at.FULL:
-            store = at.resized(store, int(count[at.LENGTH]), 2 * len(store.whole))
-            table = lend(setup, state, count, scratch, store)
+            store = at.resized(store, int(count.length), 2 * len(store.whole))
+            trees = resized(trees, 0, len(store.whole))
+            lend(memory, setup, store, trees)
             continue
         assert code == at.PAUSED
-        row = slice(int(count[at.PREVIOUS_FROM]), int(count[at.PREVIOUS_TO]))
+        row = slice(int(count.previous_from), int(count.previous_to))
         pieces = row.stop - row.start
-        if state[at.SLIP_NOW] > GROWN:
-            return _crossing(at.Store(*(part[row].copy() for part in store)), problem, int(count[at.ROW]) - 1)
+        if state.slip_now > GROWN:
+            return _crossing(at.Store(*(part[row].copy() for part in store)), problem, int(count.row) - 1)
         for part in store:
             part[:pieces] = part[row]
-        count[at.PREVIOUS_FROM], count[at.PREVIOUS_TO] = 0, pieces
-        count[at.ROW_FROM], count[at.LENGTH], count[at.PAUSE_AT] = pieces, pieces, count[at.ROW] + 1
+        count.previous_from, count.previous_to = 0, pieces
+        count.row_from, count.length, count.pause_at = pieces, pieces, count.row + 1
 
 
 def _crossing(store: at.Store, problem: ss.Problem, row: int) -> float:

@@ -57,17 +57,17 @@ def test_at_an_edge_the_side_decides() -> None:
 def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
     run, last, met = RunInProgress.begin(problem, 1e-10), split_time(2000.0, row_time(problem)), 0
-    impedance, ramp = SLAB.impedance, float(run.setup.par[at.RAMP])
+    impedance, ramp = SLAB.impedance, float(run.setup.par.ramp)
     while run.advance(last, 1) == -1 and met < 150:
-        between_trips = run.count[at.SPARSE] and run.count[at.READY] == 0 and run.count[at.BEHIND] == NOTHING
-        if not between_trips or run.count[at.NEW_FROM] != run.length or run.count[at.MODE] != 0:
+        between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING
+        if not between_trips or run.count.new_from != run.length or run.count.mode != 0:
             continue
         store = at.trimmed(run.store, run.length)
         piece, low, high = Phases.of(store, row_time(problem)).standing(run.length - 1)
         assert low[0] == 0.0
         assert (low[1:] == high[:-1]).all()
         leaves = np.polynomial.polynomial.polyval(PLACES, (store.load[piece] - 2.0 * impedance * store.rate[piece]).T)
-        ahead = run.count[at.ROW] - store.row[piece]
+        ahead = run.count.row - store.row[piece]
         highest = float((leaves.max(axis=1) + (ahead - 1) * ramp)[ahead > 1].max(initial=-np.inf))
         assert highest < 1e-6
         assert float((leaves.max(axis=1) + ahead * ramp).max()) > -1e-6  # and there it breaks

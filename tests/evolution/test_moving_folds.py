@@ -255,7 +255,7 @@ def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.Fric
     run = RunInProgress.begin(case, 1e-10)
     scan = search_grid(contact_resistance(case))
     table = new_branches(scan)
-    found = branches_at(run._table, law_slip, int(law.piece_at(law_slip)), scan, table)
+    found = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan, table)
     expected, _ = moving_branches.branch_rows(case, law_slip)
     assert found == expected.shape[1]
     assert table[:2, :found] == pytest.approx(expected[:2], rel=1e-9, abs=1e-300)

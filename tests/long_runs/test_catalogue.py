@@ -15,7 +15,6 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.evolution import layout as at
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream
 from stickslip.evolution.in_progress import RunInProgress
@@ -112,13 +111,13 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     problem, duration = bundled("cycles-block", 1500.0)
     run = RunInProgress.begin(problem, 1e-10)
     monkeypatch.setattr(module.CatalogueKeeper, "note", lambda self, run, look: (look.tell(), self._remember(run)))
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par[at.RAMP]))
+    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     keeper = CatalogueKeeper.of(run, Orders(duration), stream)
     keeper.rows = RowsInMemory()
     capacities = {len(run.store.whole)}
     for share in (0.01, 0.1, 1.0):
         drive(run, share * duration, keeper)
-        run.count[at.TO_THE_END], run.before_end = 0, None
+        run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.whole))
     assert stream.told > 9_000
     assert run.forgotten > 150_000

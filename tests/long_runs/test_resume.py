@@ -20,6 +20,7 @@ from stickslip.evolution.drive import split_time
 from stickslip.evolution.in_progress import RunInProgress
 from stickslip.evolution.inflow import row_time
 from stickslip.evolution.keeper import Orders, as_solution
+from stickslip.evolution.layout import State
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
 from stickslip.evolution.report import Report
 from stickslip.evolution.status import UNDER_WAY
@@ -73,13 +74,13 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
             if run.advance(last, 1) not in (OUT_OF_BUDGET, at.FULL) or run.length > 400:
                 break
             count, state = run.count, run.state
-            met |= {"stick" if count[at.MODE] == 0 else "slip", f"at fold {count[at.AT_FOLD]}"}
-            met |= {"stiff"} if count[at.STIFF] else set()
-            met |= {"state"} if count[at.HAS_STATE] else set()
-            met |= {"leap"} if run.length and count[at.ROW] > run.store.row[run.length - 1] + 1 else set()
-            met |= {"inside"} if 0.0 < state[at.XI] < 1.0 else set()
+            met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}
+            met |= {"stiff"} if count.stiff else set()
+            met |= {"state"} if count.has_state else set()
+            met |= {"leap"} if run.length and count.row > run.store.row[run.length - 1] + 1 else set()
+            met |= {"inside"} if 0.0 < state.xi < 1.0 else set()
             met |= {"crossings"} if run.follower.times else set()
-            met |= {"leaving"} if count[at.LEAVING] else set()
+            met |= {"leaving"} if count.leaving else set()
     expected = {"stick", "slip", "at fold 0", "at fold 1", "stiff", "state", "leap", "inside", "crossings", "leaving"}
     assert expected <= met, expected - met
 
@@ -101,7 +102,7 @@ def test_what_is_not_restored_is_noticed(tmp_path: Path) -> None:
     stopped(problem, duration, 50, path)
     half = ss.load(path)
     assert half.checkpoint is not None
-    half.checkpoint.state[at.LAW_SLIP] *= 1.0 + 1e-15
+    State(half.checkpoint.state).law_slip *= 1.0 + 1e-15
     save_checkpoint(half, path)
     assert "rate" in differences(ss.resume(path), whole)
 

@@ -210,3 +210,34 @@ def test_a_run_without_events() -> None:
     assert run.energetics().empty
     assert list(run.energetics()) == list(ENERGETICS_COLUMNS)
     assert run.pulses().empty
+
+
+@pytest.mark.parametrize("name", ["block, damped", "slab, contact mass"])
+def test_event_that_begins_and_ends_at_the_same_rate_gains_no_kinetic_energy_at_the_contact(name: str) -> None:
+    """Events are cut where the slip rate passes a threshold: what the mass holds there is the same at both ends."""
+    run = ss.simulate(*RUNS[name], rtol=1e-12)
+    threshold = 0.3 * float(run.events["peak_rate"].min())
+    table, rows = run.energetics(threshold), run.catalogue(threshold, energies=True)
+    assert (abs(run.slip_rate(rows.end)) == pytest.approx(threshold, rel=1e-6)) or name.startswith("slab")
+    assert (rows.balance.abs() < 1e-9 * rows.released).all()
+    waves = np.zeros(len(rows))
+    if name.startswith("slab"):
+        waves = wave_kinetic(run, rows.end.to_numpy()) - wave_kinetic(run, rows.start.to_numpy())
+    assert table.kinetic.to_numpy() == pytest.approx(waves, rel=1e-3, abs=1e-9 * float(rows.released.max()))
+
+
+def wave_kinetic(run: ss.Solution, times: np.ndarray) -> np.ndarray:
+    """Kinetic energy of the slab (J/m^2) by a sum over its thickness."""
+    x = THICKNESS * (np.arange(20_000) + 0.5) / 20_000
+    return np.array([0.5 * SLAB.density * np.mean(run.field(x, time).velocity ** 2) * THICKNESS for time in times])
+
+
+def test_trapped_energy_is_told_in_joules_and_as_a_share_of_what_the_slab_holds() -> None:
+    """It is that of the energies at the end; strength^2 / (2 K) is what a slab at its static strength holds."""
+    problem, duration = RUNS["slab, slip law"]
+    run = ss.simulate(problem, float(ss.simulate(problem, duration).events["peak_time"][0]))  # ends while it slips
+    energy, _, rest = run.trapped_note.partition(" J/m2 in waves at the end, ")
+    trapped = float(run.energy(run.history.duration).trapped[0])
+    assert float(energy) == pytest.approx(trapped, rel=1e-5, abs=0.0)
+    held = run.problem.strength**2 / (2.0 * SLAB.stiffness)
+    assert float(rest.split()[0]) == pytest.approx(100.0 * trapped / held, rel=0.05, abs=0.0)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.batch.kernels import reduction as of
-from stickslip.evolution import layout as at
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream
 from stickslip.evolution.in_progress import RunInProgress
@@ -100,7 +99,7 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     problem = scenario.problem
     run = RunInProgress.begin(problem, scenario.rtol, scenario.creep_rtol, scenario.shortest_event)
     run.reserve(capacity)
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par[at.RAMP]))
+    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     out[:] = np.nan
     out[[of.EVENTS, of.PULSES, of.SHOCKS]] = 0.0
     watch = Folding(stream, Fold(out), stop)

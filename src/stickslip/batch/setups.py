@@ -11,10 +11,9 @@ from stickslip.batch.kernels.constants import fill_constants
 from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.many import Values, many, member, shared
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution import layout as at
 from stickslip.evolution.automatic import set_lumping, wait_for_creep
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
-from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.layout import Counts, Floats, Integers, Params, State
 from stickslip.evolution.moving_branches import branch_rows, has_inertia, is_algebraic
 from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of, together
 from stickslip.evolution.tables import default_event_rate
@@ -59,8 +58,8 @@ class Alike(NamedTuple):
     jets: Integers  # as in `Setups`
     prepare: Integers  # (pieces,)
     size: int  # of the constants of a piece
-    state: Floats  # at t = 0
-    counts: Integers
+    state: State  # at t = 0
+    counts: Counts
 
 
 def alike(scenario: Scenario, values: Values) -> Alike:
@@ -83,17 +82,17 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
     problem = many(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
-    last_row, last_theta = split_times(duration, spread(par[at.ROW_TIME], count))
+    last_row, last_theta = split_times(duration, spread(par.row_time, count))
     constants, law = formulas(problem, group)
     branch, branches, irregular, stick_to = branches_of(problem, group, constants, count)
     rtol = values.get("run.rtol", scenario.rtol)
-    if par.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
-        par = spread(par[:, None], count)
+    if par.numbers.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
+        par = Params(spread(par.numbers[:, None], count))
     set_tolerance(par, rtol, scenario.shortest_event)
-    if par.ndim > 1:
-        par[at.STICK_TO] = stick_to
+    if par.numbers.ndim > 1:
+        par.numbers[Params.places["stick_to"].first] = stick_to
     return Setups(
-        par=rows(par, 1),
+        par=rows(par.numbers, 1),
         address=group.address,
         jets=group.jets,
         constants=constants,
@@ -102,8 +101,8 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
         first=rows(first_load(problem), 2),
         branches=branches,
         irregular=irregular,
-        state=group.state,
-        counts=group.counts,
+        state=group.state.numbers,
+        counts=group.counts.numbers,
         last_row=last_row,
         last_theta=last_theta,
         duration=duration,
@@ -137,7 +136,7 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 
 def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
     """Constants of the law's functions, and shifts, offsets and knots: as in `evolution.setup`."""
-    law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts[at.PIECE])
+    law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
     references = near if law.knot_variable == "slip" else [start] * pieces
     static = shared(law.pieces[home](law, start, 0.0) + law.static_excess)
@@ -168,7 +167,7 @@ def jets_of(formula: CompiledFormula, problem: Problem) -> int:
 def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
     """Branches of each member's resistance, how many, whether some loads have several solutions, and where stick is left."""
     branches, one = np.ones(count, np.int64), group.problem
-    if group.counts[at.IS_ALGEBRAIC] == 0:
+    if group.counts.is_algebraic == 0:
         return branch_rows(one, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
     assert isinstance(body, ElasticSlab)

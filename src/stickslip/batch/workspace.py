@@ -14,30 +14,9 @@ from stickslip.batch.setups import Setups
 from stickslip.evolution import layout as at
 from stickslip.evolution.echoes import Echoes, new_echoes
 from stickslip.evolution.lanes import WIDTH
-from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.layout import Floats, Integers, Params, Setup, Store
 from stickslip.evolution.setup import NOT_VARYING
-from stickslip.evolution.workspace import (
-    BRANCH_AT,
-    CONSTANTS_AT,
-    COUNTS,
-    COUNTS_AT,
-    FIRST_AT,
-    HEIGHTS_AT,
-    LAW_AT,
-    LOAD_AT,
-    NODE_AT,
-    PAR_AT,
-    PLACES,
-    RATE_AT,
-    REAL_AT,
-    SCRATCH_AT,
-    STATES,
-    STATES_AT,
-    STORED_STATE_AT,
-    WHOLE_AT,
-    WORK_ROWS,
-    lend,
-)
+from stickslip.evolution.workspace import ADDRESSES, PLACES, Run, lend
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Pieces of history for which a lane has room; a member that needs more is run by itself."""
@@ -48,9 +27,6 @@ LINE = 16
 class Workspace(NamedTuple):
     """What one thread needs, whatever members come: of each table, one for each lane."""
 
-    state: Floats
-    counts: Integers
-    scratch: Floats
     store: Store
     echoes: Echoes
     points: Points
@@ -60,7 +36,7 @@ class Workspace(NamedTuple):
     waits: Integers
     member: Integers  # the one in each lane
     code: Integers  # what its run has come to
-    table: Integers  # the engine's table for it
+    table: Integers  # the memory of its run
     upcoming: Integers  # the next member to be taken
 
     @property
@@ -119,9 +95,6 @@ def new_workspace() -> Workspace:
     """For one thread."""
     stage, waits, member, code = apart(4, WIDTH, dtype=np.int64)
     return Workspace(
-        apart(WIDTH, STATES),
-        apart(WIDTH, COUNTS, dtype=np.int64),
-        apart(WIDTH, WORK_ROWS, at.TERMS),
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
         in_lanes(new_echoes(WIDTH * FIRST_CAPACITY)),
         new_points(POINTS_PER_PIECE * FIRST_CAPACITY),
@@ -136,16 +109,21 @@ def new_workspace() -> Workspace:
 
 
 def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
-    """The engine's table of each lane for the first member, and what to add to it from one member to the next."""
-    own = Setup(setups.par[0], setups.address, setups.constants[0], setups.law[0], setups.branch[:1], setups.first[0], NOT_VARYING)
-    table = lend(own, work.state[0], work.counts[0], work.scratch[0], lane_of(work.store, 0), lane_of(work.echoes, 0))
-    to_next = np.zeros(len(table), np.int64)
-    arrays = (work.state, work.counts, work.scratch, *work.store, *work.echoes)
-    to_next[[STATES_AT, COUNTS_AT, SCRATCH_AT, WHOLE_AT, REAL_AT, LOAD_AT, RATE_AT, STORED_STATE_AT, NODE_AT, HEIGHTS_AT]] = [
-        array.strides[0] for array in arrays
-    ]
-    stride = np.zeros(len(table), np.int64)
-    own_rows = {PAR_AT: setups.par, CONSTANTS_AT: setups.constants, LAW_AT: setups.law, BRANCH_AT: setups.branch}
-    for place, rows in (own_rows | {FIRST_AT: setups.first}).items():
-        stride[place] = rows.strides[0] if len(rows) > 1 else 0
-    return table + np.arange(WIDTH)[:, None] * to_next, stride
+    """The addresses that each lane lends its run for the first member, and what to add to them from one member to the next."""
+    par, branch = Params(setups.par[0]), setups.branch[0].reshape(6, -1)
+    own = Setup(par, setups.address, setups.constants[0], setups.law[0], branch, setups.first[0], NOT_VARYING)
+    addresses = np.empty((WIDTH, ADDRESSES), np.int64)
+    for n in range(WIDTH):
+        lend(work.table[n], own, lane_of(work.store, n), lane_of(work.echoes, n))
+        addresses[n] = work.table[n, :ADDRESSES]
+    stride = np.zeros(ADDRESSES, np.int64)
+    own_rows = {
+        ("constants",): setups.constants,
+        ("slip_shift", "offset", "knot"): setups.law,
+        ("rate_from",): setups.branch,
+        ("first_theta", "first_load", "first_slope", "first_jump"): setups.first,
+    }
+    for names, rows in own_rows.items():
+        for name in names:
+            stride[Run.places[name].first] = rows.strides[0] if len(rows) > 1 else 0
+    return addresses, stride

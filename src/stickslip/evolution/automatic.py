@@ -8,35 +8,35 @@ from __future__ import annotations
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.creep.conditions import PATIENCE, missing_but_pull
-from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.layout import Counts, Params
 from stickslip.evolution.lumping import AUTOMATIC_SHARE, MOST_PIECES, lumps_by_itself
 from stickslip.problem import Problem
 
 
-def wait_for_creep(count: Integers, problem: Problem, creep_rtol: float | None) -> None:
+def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
     """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
     if creep_rtol is None and not missing_but_pull(problem):
-        count[at.CREEP_IN] = PATIENCE
+        count.creep_in = PATIENCE
 
 
-def set_lumping(count: Integers, problem: Problem, shortest: float | None) -> None:
+def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None:
     """Set the counts at t = 0 that say when short pieces are lumped: from the start, later, or never."""
     lumps = shortest is not None and shortest > 0.0
-    count[at.LUMPS], count[at.LUMPED_SINCE] = lumps, 0 if lumps else at.NEVER
-    count[at.LUMP_ABOVE] = MOST_PIECES if shortest is None and lumps_by_itself(problem) else at.NEVER
+    count.lumps, count.lumped_since = lumps, 0 if lumps else at.NEVER
+    count.lump_above = MOST_PIECES if shortest is None and lumps_by_itself(problem) else at.NEVER
 
 
-def set_length(par: Floats, shortest: float | None) -> None:
+def set_length(par: Params, shortest: float | None) -> None:
     """Set the length of the pieces that are lumped, in `Setup.par` or in one with a column a member."""
-    par[at.SHORTEST] = AUTOMATIC_SHARE * par[at.ROW_TIME] if shortest is None else shortest
+    par.shortest = AUTOMATIC_SHARE * par.row_time if shortest is None else shortest
 
 
-def lumping_note(count: Integers, par: Floats, shortest: float | None) -> str:
+def lumping_note(count: Counts, par: Params, shortest: float | None) -> str:
     """Return one line on automatic lumping in a run; empty where it did not begin."""
-    if shortest is not None or count[at.LUMPS] == 0:
+    if shortest is not None or count.lumps == 0:
         return ""
-    since = count[at.LUMPED_SINCE] * par[at.ROW_TIME]
+    since = count.lumped_since * par.row_time
     return (
-        f"events shorter than {par[at.SHORTEST]:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
+        f"events shorter than {par.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
         f" {MOST_PIECES} pieces: what comes after is right on average only (shortest_event = 0 resolves every event)"
     )

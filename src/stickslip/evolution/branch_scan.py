@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.evolution import layout as at
 from stickslip.evolution.branch import friction_of, piece_at
 from stickslip.evolution.compiled import kernel
 from stickslip.evolution.layout import Floats, Integers
@@ -47,7 +46,7 @@ def new_branches(scan: Floats) -> Floats:
 def friction_there(contact: Contact, rate: float) -> None:
     """Leave S (mu - mu_reference) at a slip rate, its derivatives and mu - mu_reference in run.value, as `friction_of` does."""
     run = contact.run
-    piece = piece_at(run, rate) if run.counts[at.KNOTS_IN_RATE] == 1 else contact.piece
+    piece = piece_at(run, rate) if run.counts.knots_in_rate == 1 else contact.piece
     friction_of(run, piece, contact.law_slip, rate, run.value)
 
 
@@ -55,22 +54,22 @@ def friction_there(contact: Contact, rate: float) -> None:
 def level_at(contact: Contact, rate: float) -> float:
     """g (Pa, minus the reference) at a slip rate >= 0, 0 for 0+; its slope is left in run.value[1]."""
     friction_there(contact, rate)
-    contact.run.value[1] += contact.run.par[at.IMPEDANCE]
-    return contact.run.par[at.IMPEDANCE] * rate + contact.run.value[0]
+    contact.run.value[1] += contact.run.par.impedance
+    return contact.run.par.impedance * rate + contact.run.value[0]
 
 
 @kernel
 def strength_at(contact: Contact) -> float:
     """Static strength (Pa), minus the reference."""
     friction_there(contact, 0.0)
-    return contact.run.par[at.NORMAL] * (contact.run.value[3] + contact.run.par[at.STATIC_EXCESS])
+    return contact.run.par.normal * (contact.run.value[3] + contact.run.par.static_excess)
 
 
 @kernel
 def steepness(contact: Contact, rate: float) -> float:
     """g', less what counts as flat: positive on a branch."""
     level_at(contact, rate)
-    return contact.run.value[1] - FLAT * contact.run.par[at.IMPEDANCE]
+    return contact.run.value[1] - FLAT * contact.run.par.impedance
 
 
 @kernel
@@ -137,7 +136,7 @@ def find_branches(contact: Contact, top: float) -> int:
     while length < len(contact.scan) and (length < 2 or contact.scan[length - 1] <= top):
         slope[length] = steepness(contact, contact.scan[length])
         length += 1
-    starts_flat = slope[0] >= -2.0 * FLAT * contact.run.par[at.IMPEDANCE] and slope[1] > 0.0
+    starts_flat = slope[0] >= -2.0 * FLAT * contact.run.par.impedance and slope[1] > 0.0
     count = note_fold(contact, 0.0, 0) if slope[0] > 0.0 or starts_flat else 0
     refined = 0  # up to this rate of the scan g' has been looked at between rates, too
     for k in range(1, length):
@@ -197,7 +196,7 @@ def area(contact: Contact, load: float, low: float, high: float) -> float:
     run, whole, start, first = contact.run, 0.0, low, FIRST_PANEL * contact.scan[1]
     while start < high:
         end = min(max(first, 2.0 * start), high)
-        if run.counts[at.KNOTS_IN_RATE] == 1:
+        if run.counts.knots_in_rate == 1:
             for k in range(run.pieces - 1):
                 if start < run.knot[k] < end:
                     end = run.knot[k]

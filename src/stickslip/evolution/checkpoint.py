@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
-from stickslip.evolution import layout as at
 from stickslip.evolution.cache import SOURCES
-from stickslip.evolution.layout import Floats, Integers
+from stickslip.evolution.layout import Counts, Floats, Integers
 
 DECIDE = ("batch", "bodies", "contact", "evolution", "friction", "loading")
 """Folders of the package whose code decides what a run gives."""
@@ -30,7 +29,7 @@ class Checkpoint:
     @property
     def length(self) -> int:
         """Pieces of the history up to here; a run that has ended may have cut some more to its end."""
-        return int(self.count[at.LENGTH])
+        return int(Counts(self.count).length)
 
 
 ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engine")

@@ -11,11 +11,13 @@ from functools import cache, cached_property
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
-from stickslip.evolution.cache import SealedCache, load_module
+from stickslip.evolution.cache import load_module
 from stickslip.evolution.generate import ORDER, FormulaWriter
+from stickslip.evolution.one_module import Kernel
+from stickslip.evolution.records import FLOATS, INTEGERS
 from stickslip.friction.expression import Expression
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -27,13 +29,12 @@ def kernel(function: F) -> F:
 
 
 def inlined(function: F) -> F:
-    """As `kernel`, put in place where it is called: a call would copy every field of every array of the engine's state."""
+    """As `kernel`, always put in place where it is called: for small functions in the innermost loops."""
     return _compiled(function, forceinline=True)
 
 
 def _compiled(function: F, **options: bool) -> F:
-    compiled: Any = njit(error_model="numpy", nogil=True, fastmath={"contract"}, **options)(function)
-    compiled._cache = SealedCache(function)
+    compiled: Any = Kernel(function, **options)
     return compiled
 
 
@@ -108,9 +109,6 @@ class CompiledFormula:
 def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> CompiledFormula:
     """The compiled functions of a formula (and of how its state changes), the same ones for every problem."""
     return CompiledFormula(formula, parameters, state_rate)
-
-
-FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 
 
 @intrinsic

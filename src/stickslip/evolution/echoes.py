@@ -18,7 +18,7 @@ import numpy as np
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import rest_limit
-from stickslip.evolution.compiled import ahead, bits_of, inlined, kernel
+from stickslip.evolution.compiled import ahead, bits_of, kernel
 from stickslip.evolution.layout import TERMS, Floats, Integers
 from stickslip.evolution.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.evolution.workspace import REAL, WHOLE, Run, borrow
@@ -122,7 +122,7 @@ def without_first(node: Integers, heights: Floats, ramp: float, n: int) -> int:
     return n
 
 
-@inlined
+@kernel
 def first_of(run: Run, n: int) -> int:
     """The first piece in a tree."""
     while n != NOTHING and run.node[NODE * n + LEFT] != NOTHING:
@@ -130,7 +130,7 @@ def first_of(run: Run, n: int) -> int:
     return n
 
 
-@inlined
+@kernel
 def rank(phase: float, trip: int) -> int:
     """As good as random, but always the same for a piece (the finalizer of MurmurHash3, public domain, A. Appleby)."""
     h = bits_of(phase) ^ (trip * 0x5851F42D4C957F2D)
@@ -142,20 +142,20 @@ def rank(phase: float, trip: int) -> int:
 # ---- when a piece breaks ----------------------------------------------------------------------------------------------------
 
 
-@inlined
+@kernel
 def room(run: Run, n: int, way: int, limit: float) -> float:
     """How far the load of a piece stays from the limit in the round trip after its own, less the ramp."""
-    top = run.heights[HEIGHTS * n + HIGH] if way > 0 else run.heights[HEIGHTS * n + LOW] - 2.0 * run.par[at.REFERENCE]
-    return limit - NEARLY * abs(run.par[at.REFERENCE]) - top
+    top = run.heights[HEIGHTS * n + HIGH] if way > 0 else run.heights[HEIGHTS * n + LOW] - 2.0 * run.par.reference
+    return limit - NEARLY * abs(run.par.reference) - top
 
 
-@inlined
+@kernel
 def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
     """Whether the contact may slip under a piece in a round trip."""
-    return way * run.par[at.RAMP] * (trip - run.node[NODE * n + TRIP]) > room(run, n, way, limit)
+    return way * run.par.ramp * (trip - run.node[NODE * n + TRIP]) > room(run, n, way, limit)
 
 
-@inlined
+@kernel
 def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
     """Whether it may slip under any piece of a tree."""
     forwards = breaks(run, run.node[NODE * n + FIRST_UP], 1, limit, trip)
@@ -180,11 +180,11 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
     """The next round trip in which the contact may slip under any piece of a tree."""
-    coming = run.counts[at.ROW] + 1
+    coming = run.counts.row + 1
     if any_breaks(run, n, limit, coming):
         return coming
-    way = 1 if run.par[at.RAMP] > 0.0 else -1
-    growth, first = abs(run.par[at.RAMP]), run.node[NODE * n + (FIRST_UP if way > 0 else FIRST_DOWN)]
+    way = 1 if run.par.ramp > 0.0 else -1
+    growth, first = abs(run.par.ramp), run.node[NODE * n + (FIRST_UP if way > 0 else FIRST_DOWN)]
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
         return FOREVER
@@ -197,11 +197,11 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 # ---- a round trip -----------------------------------------------------------------------------------------------------------
 
 
-@inlined
+@kernel
 def leave_out_ends(run: Run, real: Floats) -> None:
     """Of the load in a piece leave only what is not too near its ends: slip there alone would be too short to be resolved."""
     width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
-    share = run.par[at.SHORTEST] / width if run.counts[at.LUMPS] == 1 else 0.0
+    share = run.par.shortest / width if run.counts.lumps == 1 else 0.0
     if share >= 0.5:
         mean = mean_of(run.part, real[at.S_SPEED], real[at.S_BEND], width)
         fill(run.part, 0.0)
@@ -217,7 +217,7 @@ def add(run: Run, n: int) -> None:
     node, heights = ahead(run.node, NODE * n), ahead(run.heights, HEIGHTS * n)
     load, rate = ahead(run.stored_load, TERMS * n), ahead(run.stored_rate, TERMS * n)
     for k in range(TERMS):
-        run.part[k] = load[k] - 2.0 * run.par[at.IMPEDANCE] * rate[k]
+        run.part[k] = load[k] - 2.0 * run.par.impedance * rate[k]
     real = ahead(run.real, REAL * n)
     leave_out_ends(run, real)
     heights[PHASE], heights[HIGH], heights[LOW] = real[at.S_THETA_FROM], maximum(run.part), maximum(run.part, -1.0)
@@ -225,43 +225,43 @@ def add(run: Run, n: int) -> None:
     node[FIRST_UP] = node[FIRST_DOWN] = n
     node[TRIP] = run.whole[WHOLE * n + at.S_ROW]
     node[RANK] = rank(heights[PHASE], node[TRIP])
-    run.counts[at.BEHIND] = join(run.node, run.heights, run.par[at.RAMP], run.counts[at.BEHIND], n)
+    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, n)
 
 
 @kernel
 def add_new(run: Run) -> None:
     """The pieces recorded since the last call."""
-    for n in range(run.counts[at.NEW_FROM], run.counts[at.LENGTH]):
+    for n in range(run.counts.new_from, run.counts.length):
         add(run, n)
-    run.counts[at.NEW_FROM] = run.counts[at.LENGTH]
+    run.counts.new_from = run.counts.length
 
 
-@inlined
+@kernel
 def pass_to(run: Run, n: int) -> None:
     """The round trip passes over what comes before a piece, and takes that piece."""
     phase = run.heights[HEIGHTS * n + PHASE]
-    before, rest = part(run.node, run.heights, run.par[at.RAMP], run.counts[at.AHEAD], phase)
-    run.counts[at.BEHIND] = join(run.node, run.heights, run.par[at.RAMP], run.counts[at.BEHIND], before)
-    run.counts[at.AHEAD] = without_first(run.node, run.heights, run.par[at.RAMP], rest)
-    if run.counts[at.NEW_FROM] == run.counts[at.LENGTH]:
-        run.state[at.NEW_SINCE] = phase
-    run.state[at.TAKEN_TO] = run.real[REAL * n + at.S_THETA_TO]
+    before, rest = part(run.node, run.heights, run.par.ramp, run.counts.ahead, phase)
+    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, before)
+    run.counts.ahead = without_first(run.node, run.heights, run.par.ramp, rest)
+    if run.counts.new_from == run.counts.length:
+        run.state.new_since = phase
+    run.state.taken_to = run.real[REAL * n + at.S_THETA_TO]
 
 
-@inlined
+@kernel
 def goes_on(run: Run) -> bool:
     """Whether the piece that follows must be met: the contact slips, or has come to rest just where the last one ended."""
-    return run.counts[at.MODE] != 0 or run.whole[WHOLE * (run.counts[at.LENGTH] - 1) + at.S_MODE] != 0
+    return run.counts.mode != 0 or run.whole[WHOLE * (run.counts.length - 1) + at.S_MODE] != 0
 
 
 @kernel
 def next_echo(run: Run) -> int:
     """The piece of history whose echo has to be met next; NOTHING where the round trip holds no more."""
     if goes_on(run):
-        source = first_of(run, run.counts[at.AHEAD])
+        source = first_of(run, run.counts.ahead)
     else:
         add_new(run)
-        source = first_to_break(run, run.counts[at.AHEAD], rest_limit(run), run.counts[at.ROW])
+        source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.row)
     if source != NOTHING:
         pass_to(run, source)
     return source
@@ -271,25 +271,25 @@ def next_echo(run: Run) -> int:
 def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one in which something happens. Nothing ever will: the contact is locked."""
     add_new(run)
-    whole = join(run.node, run.heights, run.par[at.RAMP], run.counts[at.BEHIND], run.counts[at.AHEAD])
-    trip = run.counts[at.ROW] + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
-    settled = run.par[at.RAMP] == 0.0 and run.counts[at.MOVED] == 0
-    run.counts[at.IS_LOCKED] = 1 if trip == FOREVER or settled else 0
-    run.counts[at.ROW] = trip
-    run.counts[at.AHEAD], run.counts[at.BEHIND] = whole, NOTHING
-    run.state[at.NEW_SINCE] = run.state[at.TAKEN_TO] = 0.0
-    run.counts[at.MOVED] = 0
+    whole = join(run.node, run.heights, run.par.ramp, run.counts.behind, run.counts.ahead)
+    trip = run.counts.row + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
+    settled = run.par.ramp == 0.0 and run.counts.moved == 0
+    run.counts.is_locked = 1 if trip == FOREVER or settled else 0
+    run.counts.row = trip
+    run.counts.ahead, run.counts.behind = whole, NOTHING
+    run.state.new_since = run.state.taken_to = 0.0
+    run.counts.moved = 0
 
 
 @kernel
 def pays(run: Run) -> bool:
     """Whether to meet only what breaks from here on: the round trip was at rest, or, if it had many pieces, almost."""
-    if run.par[at.REFLECTION] != -1.0 or run.counts[at.IS_BLOCK] == 1 or run.counts[at.HAS_STATE] == 1:
+    if run.par.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
         return False
-    if run.counts[at.STICKS] == 0 or run.counts[at.VARIES] == 1 or run.counts[at.PAUSE_AT] != at.NEVER:
+    if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != at.NEVER:
         return False
-    slipping, pieces = 0, run.counts[at.LENGTH] - run.counts[at.ROW_FROM]
-    for n in range(run.counts[at.ROW_FROM], run.counts[at.LENGTH]):
+    slipping, pieces = 0, run.counts.length - run.counts.row_from
+    for n in range(run.counts.row_from, run.counts.length):
         slipping += 1 if run.whole[WHOLE * n + at.S_MODE] != 0 else 0
     return slipping == 0 or (pieces >= MANY and slipping <= pieces // (MANY // 4))
 
@@ -297,8 +297,8 @@ def pays(run: Run) -> bool:
 @kernel
 def plant(run: Run) -> None:
     """From here on only echoes that break are met: those of the round trip just past are the first."""
-    run.counts[at.SPARSE], run.counts[at.NEW_FROM] = 1, run.counts[at.ROW_FROM]
-    run.counts[at.BEHIND] = run.counts[at.AHEAD] = NOTHING
+    run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
+    run.counts.behind = run.counts.ahead = NOTHING
     end_trip(run)
 
 
@@ -306,9 +306,9 @@ def plant(run: Run) -> None:
 def replant(table: Integers, pieces: Integers, past: int) -> None:
     """The trees again: of these pieces, in order of phase; the first `past` of them lie before the round trip's place."""
     run = borrow(table)
-    run.counts[at.BEHIND] = NOTHING
+    run.counts.behind = NOTHING
     for k in range(past, len(pieces)):
         add(run, pieces[k])
-    run.counts[at.AHEAD], run.counts[at.BEHIND] = run.counts[at.BEHIND], NOTHING
+    run.counts.ahead, run.counts.behind = run.counts.behind, NOTHING
     for k in range(past):
         add(run, pieces[k])

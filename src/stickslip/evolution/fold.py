@@ -6,11 +6,12 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import end_branch, friction_at, is_knot, rate_on_branch, towards
-from stickslip.evolution.compiled import inlined
+from stickslip.evolution.compiled import kernel
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.evolution.record import note_degree, theta_at
-from stickslip.evolution.workspace import EXIT, Run
+from stickslip.evolution.records import numbers_of
+from stickslip.evolution.workspace import Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference."""
@@ -23,18 +24,18 @@ DEPARTURE = 1e-10
 """Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
 
 
-@inlined
+@kernel
 def ends_at_fold(run: Run, way: float) -> bool:
     """Whether the branch ends there because g turns smoothly, and not at a knot or because the rule prefers another solution."""
-    branch = run.counts[at.BRANCH]
-    level = towards(run, evaluate(run.load, run.state[at.XI] + way), run.counts[at.MODE])
+    branch = run.counts.branch
+    level = towards(run, evaluate(run.load, run.state.xi + way), run.counts.mode)
     if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
         return run.keep_to[branch] == run.excess_to[branch] and not is_knot(run, run.rate_to[branch])
     starts = run.rate_from[branch]
     return starts > 0.0 and run.keep_from[branch] == run.excess_from[branch] and not is_knot(run, starts)
 
 
-@inlined
+@kernel
 def share_described(c: Floats) -> float:
     """How far from 0 (as 2^-n) the first half of a series describes it to rounding: squaring its variable leaves no more terms."""
     share = 1.0
@@ -51,7 +52,7 @@ def share_described(c: Floats) -> float:
     return share
 
 
-@inlined
+@kernel
 def square_variable(c: Floats, out: Floats) -> None:
     """p(y^2) from p, cut to the terms that there are."""
     fill(out, 0.0)
@@ -59,150 +60,150 @@ def square_variable(c: Floats, out: Floats) -> None:
         out[2 * k] = c[k]
 
 
-@inlined
+@kernel
 def set_aside(run: Run, width: float) -> None:
     """Keep the present piece of load, to be taken up again `width` further."""
     copy(run.load, run.kept_load, at.TERMS)
-    copy(run.state, run.kept, at.KEPT)
-    run.kept[at.XI] = run.state[at.XI] + width
-    if run.state[at.XI] > 0.0:
-        run.counts[at.ARRIVING] = at.NO_CAUSE
+    copy(numbers_of(run.state), numbers_of(run.kept), at.KEPT)
+    run.kept.xi = run.state.xi + width
+    if run.state.xi > 0.0:
+        run.counts.arriving = at.NO_CAUSE
 
 
-@inlined
+@kernel
 def approach_fold(run: Run, width: float) -> float:
     """Prepare the way to a fold at distance `width`: s goes as the square root of the time left, so that becomes the variable.
 
     Returns 0 once the piece is changed, or the part of the way that must be walked first.
     """
     backwards, squared = run.part, run.spare
-    restrict(run.load, run.state[at.XI] + width, -width, backwards)  # from the fold, z on [0, 1]
+    restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold, z on [0, 1]
     share = share_described(backwards)
     if share < 1.0:
         return (1.0 - share) * width
     set_aside(run, width)
-    theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
+    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
     square_variable(backwards, squared)
     restrict(squared, 1.0, -1.0, run.load)
-    run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
-    run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
-    run.state[EXIT] = math.nan
+    run.state.theta_from, run.state.theta_to = theta_from, theta_to
+    run.state.speed, run.state.bend, run.state.xi = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
+    run.state.exit = math.nan
     note_degree(run)
-    run.counts[at.AT_FOLD] = APPROACHING
+    run.counts.at_fold = APPROACHING
     return 0.0
 
 
-@inlined
+@kernel
 def starts_at_fold(run: Run) -> bool:
     """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
-    branch = run.counts[at.BRANCH]
+    branch = run.counts.branch
     fold = run.rate_from[branch]
-    if run.counts[at.EDGE] == 0 or run.counts[at.AT_FOLD] != 0 or fold == 0.0 or is_knot(run, fold):
+    if run.counts.edge == 0 or run.counts.at_fold != 0 or fold == 0.0 or is_knot(run, fold):
         return False
-    level = towards(run, evaluate(run.load, run.state[at.XI]), run.counts[at.MODE])
-    return level - run.excess_from[branch] <= AT_THE_FOLD * run.par[at.REFERENCE]
+    level = towards(run, evaluate(run.load, run.state.xi), run.counts.mode)
+    return level - run.excess_from[branch] <= AT_THE_FOLD * run.par.reference
 
 
-@inlined
+@kernel
 def load_outruns_fold(run: Run) -> bool:
     """Whether the load grows faster than the friction at the fold does as the contact slips there."""
-    fold, xi, direction = run.rate_from[run.counts[at.BRANCH]], run.state[at.XI], run.counts[at.MODE]
-    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
+    fold, xi, direction = run.rate_from[run.counts.branch], run.state.xi, run.counts.mode
+    friction_at(run, run.state.law_slip, fold, run.value)
     restrict(run.load, xi, 1.0, run.part)
-    sense = direction if run.par[at.COUNTS_NET] == 1.0 else 1
-    return direction * run.part[1] > run.value[2] * sense * fold * (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * xi)
+    sense = direction if run.par.counts_net == 1.0 else 1
+    return direction * run.part[1] > run.value[2] * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
 
 
-@inlined
+@kernel
 def depart_from_fold(run: Run, left: float) -> None:
     """Prepare the first bit of the way from a fold, on which the rate grows as the root of time.
 
     The bit is so short that the load is a straight line in time along it, in the echo of an earlier fold too.
     """
     width, forwards = DEPARTURE * left, run.part
-    restrict(run.load, run.state[at.XI], width, forwards)
-    rise, seen = run.counts[at.MODE] * forwards[1], ROUNDING * abs(run.excess_from[run.counts[at.BRANCH]])
+    restrict(run.load, run.state.xi, width, forwards)
+    rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.excess_from[run.counts.branch])
     if 0.0 < rise < seen:  # the end of the bit would be the fold itself
         width = min(width * seen / rise, left)
-        restrict(run.load, run.state[at.XI], width, forwards)
+        restrict(run.load, run.state.xi, width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
-    theta_from, theta_to = theta_at(run, run.state[at.XI]), theta_at(run, run.state[at.XI] + width)
-    run.state[at.THETA_FROM], run.state[at.THETA_TO] = theta_from, theta_to
-    run.state[at.SPEED], run.state[at.BEND], run.state[at.XI] = 0.0, theta_to - theta_from, 0.0
+    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
+    run.state.theta_from, run.state.theta_to = theta_from, theta_to
+    run.state.speed, run.state.bend, run.state.xi = 0.0, theta_to - theta_from, 0.0
     note_degree(run)
-    run.counts[at.AT_FOLD] = DEPARTING
+    run.counts.at_fold = DEPARTING
 
 
-@inlined
+@kernel
 def last_to_fold(run: Run) -> float:
     """Share of the root of time before a fold that is a straight line: a moving fold is known as well as the run is accurate."""
-    if run.counts[at.FOLDS_MOVE] == 0:
+    if run.counts.folds_move == 0:
         return LAST_TO_FOLD
-    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par[at.TOLERANCE]))
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par.tolerance))
 
 
-@inlined
+@kernel
 def straight_to_fold(run: Run) -> None:
     """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
 
     What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
     """
-    branch = run.counts[at.BRANCH]
+    branch = run.counts.branch
     low, high = run.rate_from[branch], run.rate_to[branch]
     fold = low if run.jet[0] - low < high - run.jet[0] else high
-    if run.counts[at.FOLDS_MOVE] == 1:
-        fold = run.state[at.FOLD_RATE]
+    if run.counts.folds_move == 1:
+        fold = run.state.fold_rate
     for k in range(2, at.TERMS):
         run.jet[k] = 0.0
     run.jet[1] = fold - run.jet[0]
 
 
-@inlined
+@kernel
 def straight_from_fold(run: Run) -> None:
     """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
-    fold = run.rate_from[run.counts[at.BRANCH]]
-    friction_at(run, run.state[at.LAW_SLIP], fold, run.value)
-    weakened = run.value[2] * run.k[at.K_CHI] * fold * (run.state[at.SPEED] + run.state[at.BEND])
-    reached = rate_on_branch(run, towards(run, total(run.load), run.counts[at.MODE]) - weakened, fold)
+    fold = run.rate_from[run.counts.branch]
+    friction_at(run, run.state.law_slip, fold, run.value)
+    weakened = run.value[2] * run.k.chi * fold * (run.state.speed + run.state.bend)
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts.mode) - weakened, fold)
     fill(run.jet, 0.0)
     run.jet[0], run.jet[1] = fold, reached - fold
 
 
-@inlined
+@kernel
 def leave_fold_piece(run: Run) -> None:
     """The piece next to a fold is done: take up the piece of load where it was left, and jump if the fold is reached."""
     state = run.state
     way = theta_at(run, 1.0) - theta_at(run, 0.0)
-    if run.counts[at.AT_FOLD] == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
-        state[at.LAST_STEP] = way
-    rate, slipped, law_slip = state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP]
-    last = state[at.LAST_STEP] if state[at.LAST_STEP] > 0.0 else run.kept[at.LAST_STEP]  # a piece that time does not resolve
-    copy(run.kept, run.state, at.KEPT)
-    state[at.RATE_NOW], state[at.SLIP_NOW], state[at.LAW_SLIP], state[at.LAST_STEP] = rate, slipped, law_slip, last
+    if run.counts.at_fold == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
+        state.last_step = way
+    rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
+    last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # a piece that time does not resolve
+    copy(numbers_of(run.kept), numbers_of(run.state), at.KEPT)
+    state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
     note_degree(run)
-    reached = run.counts[at.AT_FOLD] == APPROACHING
-    run.counts[at.AT_FOLD] = 0
+    reached = run.counts.at_fold == APPROACHING
+    run.counts.at_fold = 0
     if reached:
         reach_end(run)
 
 
-@inlined
+@kernel
 def reach_end(run: Run) -> None:
     """The branch ends here: go to another one, at once or when the branches at this slip are known."""
-    if run.counts[at.FOLDS_MOVE] == 1:
-        run.counts[at.LEAVING] = 1
+    if run.counts.folds_move == 1:
+        run.counts.leaving = 1
     else:
-        run.counts[at.STALLED] += 1  # to and fro between branches without any time would go on without end
+        run.counts.stalled += 1  # to and fro between branches without any time would go on without end
         end_branch(run)
 
 
-@inlined
+@kernel
 def leave_moving_branch(run: Run) -> None:
     """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
-    run.counts[at.LEAVING] = 0
-    run.counts[at.STALLED] += 1
+    run.counts.leaving = 0
+    run.counts.stalled += 1
     end_branch(run)
-    if run.counts[at.AT_FOLD] != 0:
-        run.counts[at.AT_FOLD] = PASSING
+    if run.counts.at_fold != 0:
+        run.counts.at_fold = PASSING

@@ -10,8 +10,7 @@ import math
 
 import numpy as np
 
-from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.compiled import kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import NONE
 from stickslip.evolution.workspace import Run
@@ -24,7 +23,7 @@ ALIKE = 0.03
 """How far two estimates of the time to the fold may differ before it is looked for at all."""
 
 
-@inlined
+@kernel
 def time_to_root(jet: Floats) -> float:
     """Time to a square root's branch point, judged from the last coefficients; NONE if they do not look like that.
 
@@ -87,15 +86,15 @@ def way_to_fold(run: Run, guess: float) -> float:
     eta, rate = fold_ahead(run.jet)
     if eta == NONE or rate <= 0.0:
         return NONE
-    piece = run.counts[at.PIECE]
-    if run.counts[at.KNOTS_IN_RATE] == 1:
+    piece = run.counts.piece
+    if run.counts.knots_in_rate == 1:
         if rate > run.knot[piece] or (piece > 0 and rate < run.knot[piece - 1]):
             return NONE
     elif run.pieces > 1:
-        walked = max(rate, run.jet[0]) * (run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * eta) * eta
-        slip = run.state[at.LAW_SLIP]
-        knot = piece if run.k[at.K_CHI] > 0.0 else piece - 1
+        walked = max(rate, run.jet[0]) * (run.k.speed + 0.5 * run.k.bend * eta) * eta
+        slip = run.state.law_slip
+        knot = piece if run.k.chi > 0.0 else piece - 1
         if 0 <= knot < run.pieces - 1 and abs(run.knot[knot] - slip) <= abs(walked):
             return NONE
-    run.state[at.FOLD_RATE] = rate
+    run.state.fold_rate = rate
     return eta * guess

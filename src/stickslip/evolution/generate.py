@@ -90,6 +90,8 @@ def power_difference(reference, now, step, exponent):
 
 @njit(error_model="numpy")
 def arcsinh_difference(reference, now, step):
+    if abs(reference) > 1e150 or abs(now) > 1e150:  # their squares are no numbers
+        return asinh(now) - asinh(reference)
     root, other = sqrt(1.0 + reference * reference), sqrt(1.0 + now * now)
     if abs(step) < 0.5 * root:
         return asinh(step * (root - reference * (2.0 * reference + step) / (root + other)))

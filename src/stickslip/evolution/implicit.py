@@ -10,7 +10,7 @@ import math
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, load_ahead, onset_of_slip
 from stickslip.evolution.collocation import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
-from stickslip.evolution.compiled import ahead, inlined, kernel
+from stickslip.evolution.compiled import ahead, kernel
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
 from stickslip.evolution.record import record
@@ -25,6 +25,7 @@ from stickslip.evolution.stages import (
     larger,
     rate_at_load,
     rounding_of_law,
+    size_of_load,
     solve_stages,
     stays_in_sight,
 )
@@ -56,25 +57,25 @@ FORGOTTEN = 1e-18
 """Share of friction below which what is left of the state at rest is dropped."""
 
 
-@inlined
+@kernel
 def is_implicit(run: Run) -> bool:
     """Whether the next step is an implicit one."""
-    return run.counts[at.HAS_STATE] == 1 or run.counts[at.STIFF] == 1
+    return run.counts.has_state == 1 or run.counts.stiff == 1
 
 
 @kernel
 def settling_rate(run: Run) -> float:
     """How fast (1/s) the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
-    contact_at(run, run.state[at.LAW_SLIP], abs(run.state[at.RATE_NOW]), run.state[at.STATE_NOW])
-    return (run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[1]) / run.par[at.INERTIA]
+    contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
+    return (run.par.impedance + run.par.normal * run.value[1]) / run.par.inertia
 
 
-@inlined
+@kernel
 def judge_stiffness(run: Run) -> None:
     """After an explicit step of a contact with mass: now and then, whether it has become stiff."""
-    run.counts[at.STEPS] += 1
-    if run.counts[at.STEPS] % CHECKED == 0 and run.state[at.LAST_STEP] * settling_rate(run) > STIFF:
-        run.counts[at.STIFF] = 1
+    run.counts.steps += 1
+    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
+        run.counts.stiff = 1
 
 
 @kernel
@@ -85,13 +86,13 @@ def growth_rate(run: Run) -> float:
     disturbance is left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with it.
     """
     par, value = run.par, run.value
-    contact_at(run, run.state[at.LAW_SLIP], run.stage_rate[0], run.stage_state[0])
-    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE]
-    if run.counts[at.HAS_INERTIA] == 0:
-        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par[at.NORMAL] * value[BY_STATE] / resistance, 0.0)
-    mass = par[at.INERTIA]
+    contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
+    resistance = par.impedance + par.normal * value[BY_RATE]
+    if run.counts.has_inertia == 0:
+        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par.normal * value[BY_STATE] / resistance, 0.0)
+    mass = par.inertia
     trace = value[CHANGE_BY_STATE] - resistance / mass
-    product = (par[at.NORMAL] * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
+    product = (par.normal * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
@@ -103,17 +104,17 @@ def growth_rate(run: Run) -> float:
 def start_of_step(run: Run) -> float:
     """Slip rate and state at the start into the stages; the force that is none by definition, where slip leaves rest."""
     state, force = run.state, 0.0
-    run.stage_state[0] = state[at.STATE_NOW]
-    run.stage_rate[0] = abs(state[at.RATE_NOW])
-    if run.counts[at.MODE] == 0:
+    run.stage_state[0] = state.state_now
+    run.stage_rate[0] = abs(state.rate_now)
+    if run.counts.mode == 0:
         run.stage_rate[0] = 0.0
-    elif run.counts[at.EDGE] != 0:
-        contact_at(run, state[at.LAW_SLIP], 0.0, state[at.STATE_NOW])
-        force = run.seen[0] - run.par[at.NORMAL] * run.value[MU]
-        if run.counts[at.HAS_INERTIA] == 0:
+    elif run.counts.edge != 0:
+        contact_at(run, state.law_slip, 0.0, state.state_now)
+        force = run.seen[0] - run.par.normal * run.value[MU]
+        if run.counts.has_inertia == 0:
             run.stage_rate[0] = 0.0
-    elif run.counts[at.HAS_INERTIA] == 0:
-        run.stage_rate[0] = rate_at_load(run, run.seen[0], abs(state[at.RATE_NOW]))
+    elif run.counts.has_inertia == 0:
+        run.stage_rate[0] = rate_at_load(run, run.seen[0], abs(state.rate_now))
     return force
 
 
@@ -124,17 +125,17 @@ def strength_ahead(run: Run) -> float:
     Returns by how much it misses the law between the points, in units of the tolerance.
     """
     par = run.par
-    largest, missed = ROUNDING / par[at.TOLERANCE] * par[at.REFERENCE] + abs(run.seen[0]), 0.0
+    largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
     for i in range(POINTS):
-        contact_at(run, run.state[at.LAW_SLIP], 0.0, run.stage_state[i])
-        run.stage_rate[i] = par[at.NORMAL] * run.value[MU]
+        contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
+        run.stage_rate[i] = par.normal * run.value[MU]
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
-        contact_at(run, run.state[at.LAW_SLIP], 0.0, evaluate(run.state_jet, MIDDLE[i]))
-        missed = larger(missed, abs(par[at.NORMAL] * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+        contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
+        missed = larger(missed, abs(par.normal * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
-    return max(missed, last_terms(run.jet)) / (par[at.TOLERANCE] * largest)
+    return max(missed, last_terms(run.jet)) / (par.tolerance * largest)
 
 
 @kernel
@@ -145,33 +146,33 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     between the points, where a feature of the law may lie that none of the points sees. `lost` is what is known to be lost by
     rounding in the law itself.
     """
-    par, value, h = run.par, run.value, run.k[at.K_SPEED]
-    fastest, farthest = par[at.RATE_FLOOR], par[at.STATE_SCALE] + 1e-300
+    par, value, h = run.par, run.value, run.k.speed
+    fastest, farthest = par.rate_floor, par.state_scale + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
-    resistance = par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] + par[at.INERTIA] / h  # as at the last stage
+    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h  # as at the last stage
     noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
-    error = max(last_terms(run.jet), missed) / (par[at.TOLERANCE] * fastest + noise + lost)
-    if run.counts[at.HAS_STATE] == 1:
+    error = max(last_terms(run.jet), missed) / (par.tolerance * fastest + noise + lost)
+    if run.counts.has_state == 1:
         missed_state = ALLOWED * max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
         state_noise += lost_state
-        error = max(error, max(last_terms(run.state_jet), missed_state) / (par[at.TOLERANCE] * farthest + state_noise))
-    if run.counts[at.MODE] == 0:
+        error = max(error, max(last_terms(run.state_jet), missed_state) / (par.tolerance * farthest + state_noise))
+    if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
     return error
 
 
-@inlined
+@kernel
 def settle_start(run: Run) -> bool:
     """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
 
     Leading coefficients that are negative by the rounding of the interpolation alone are set to zero: a contact with mass leaves
     rest with a slip rate that grows as the square of time, or even later.
     """
-    if run.counts[at.MODE] == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
+    if run.counts.mode == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
         return True
     fastest = 0.0
     for i in range(1, POINTS):
@@ -186,15 +187,6 @@ def settle_start(run: Run) -> bool:
 
 
 @kernel
-def size_of_load(run: Run) -> float:
-    """Return the size (Pa, or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
-    size = run.par[at.REFERENCE]
-    for k in range(at.TERMS):
-        size += abs(run.load[k])
-    return size
-
-
-@kernel
 def turn_with_load(run: Run, left: float) -> float:
     """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
 
@@ -203,8 +195,8 @@ def turn_with_load(run: Run, left: float) -> float:
     slip rate: near a load of zero that rate may lie far below the error of the polynomial.
     """
     part, direction, rounding = run.part, 1, LOAD_ROUNDING * size_of_load(run)
-    restrict(run.load, run.state[at.XI], left, part)
-    part[0] += run.par[at.REFERENCE]
+    restrict(run.load, run.state.xi, left, part)
+    part[0] += run.par.reference
     if part[0] < 0.0:
         turn_over(part)
         direction = -1
@@ -216,13 +208,13 @@ def turn_with_load(run: Run, left: float) -> float:
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
-    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par[at.REFERENCE]:
+    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par.reference:
         return left  # no load at all
-    run.counts[at.MODE] = direction
-    return min(first, 1.0) * left if run.counts[at.HAS_INERTIA] == 0 and first > TIE else left
+    run.counts.mode = direction
+    return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
 
 
-@inlined
+@kernel
 def turn_over(c: Floats) -> None:
     """Change the sign of a polynomial."""
     for k in range(at.TERMS):
@@ -237,7 +229,7 @@ def judged_error(run: Run, force: float, before: float) -> float:
     """
     error = error_of(run, force, 0.0, 0.0)
     if error > 1.0 and error > 0.5 * before:
-        lost, lost_state = rounding_of_law(run, run.k[at.K_SPEED])
+        lost, lost_state = rounding_of_law(run, run.k.speed)
         error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
     return error if settle_start(run) else math.inf
 
@@ -245,13 +237,13 @@ def judged_error(run: Run, force: float, before: float) -> float:
 @kernel
 def first_length(run: Run, left: float) -> float:
     """Return the length in xi with which to try an implicit step: short enough for a disturbance that grows."""
-    speed = abs(run.state[at.SPEED])
-    guess = min(left, run.state[at.LAST_STEP] / speed)
+    speed = abs(run.state.speed)
+    guess = min(left, run.state.last_step / speed)
     if 0.5 * left < guess < left:
         guess = 0.5 * left
     load_ahead(run, guess)
     start_of_step(run)
-    growth = growth_rate(run) if run.counts[at.MODE] != 0 else 0.0
+    growth = growth_rate(run) if run.counts.mode != 0 else 0.0
     return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
 
 
@@ -262,15 +254,15 @@ def collocate(run: Run, left: float) -> float:
     The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. An error that
     does not shrink with the step is rounding, after PATIENCE attempts in a row. The polynomials are NaN if all attempts fail.
     """
-    speed = abs(run.state[at.SPEED])
-    if run.counts[at.STICKS] == 0 and (run.counts[at.HAS_INERTIA] == 0 or run.state[at.RATE_NOW] == 0.0):
+    speed = abs(run.state.speed)
+    if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
         left = turn_with_load(run, left)
     guess = longest = first_length(run, left)
     before, in_vain, solution_over = math.inf, 0, 0.0
     for _ in range(ATTEMPTS):
         force = begin_step(run, guess)
-        solved = solve_stages(run, run.k[at.K_SPEED], force, guess / solution_over if solution_over > 0.0 else 0.0)
-        used, solution_over = stays_in_sight(run, run.k[at.K_SPEED]) if solved else math.inf, guess if solved else 0.0
+        solved = solve_stages(run, run.k.speed, force, guess / solution_over if solution_over > 0.0 else 0.0)
+        used, solution_over = stays_in_sight(run, run.k.speed) if solved else math.inf, guess if solved else 0.0
         if solved:
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
@@ -280,10 +272,10 @@ def collocate(run: Run, left: float) -> float:
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
             if error <= 1.0 or in_vain >= PATIENCE:
                 if error > 1.0:
-                    run.counts[at.ROUGH] += 1
-                    run.state[at.ROUGHEST] = max(run.state[at.ROUGHEST], error * run.par[at.TOLERANCE])
+                    run.counts.rough += 1
+                    run.state.roughest = max(run.state.roughest, error * run.par.tolerance)
                 change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0  # steps that had to shrink go on to
-                run.state[at.LAST_STEP] = speed * (guess * min(factor, change) if error <= 1.0 else longest)
+                run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
                 return guess
             before = error
             guess *= max(min(factor, 0.8), 0.1)
@@ -295,70 +287,70 @@ def collocate(run: Run, left: float) -> float:
     return guess
 
 
-@inlined
+@kernel
 def begin_step(run: Run, guess: float) -> float:
     """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
     load_ahead(run, guess)
-    if run.counts[at.STICKS] == 0 and abs(run.seen[0] + run.par[at.REFERENCE]) <= LOAD_ROUNDING * size_of_load(run):
-        run.seen[0] = -run.par[at.REFERENCE]  # the load passes through zero here: slip begins with a rate of zero
-    run.k[at.K_SPEED], run.k[at.K_BEND] = run.state[at.SPEED] * guess, 0.0
-    run.k[at.K_CHI] = run.counts[at.MODE] if run.par[at.COUNTS_NET] == 1.0 else 1.0
+    if run.counts.sticks == 0 and abs(run.seen[0] + run.par.reference) <= LOAD_ROUNDING * size_of_load(run):
+        run.seen[0] = -run.par.reference  # the load passes through zero here: slip begins with a rate of zero
+    run.k.speed, run.k.bend = run.state.speed * guess, 0.0
+    run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
     return start_of_step(run)
 
 
 @kernel
 def keep_state(run: Run, length: float) -> None:
     """Put the state's polynomial, up to `length` of the step, into the history, and the state at its end where it is now."""
-    if run.counts[at.HAS_STATE] == 0:
+    if run.counts.has_state == 0:
         return
-    kept = ahead(run.stored_state, at.TERMS * run.counts[at.LENGTH])
+    kept = ahead(run.stored_state, at.TERMS * run.counts.length)
     for k in range(at.TERMS):
         kept[k] = run.state_jet[k]
     if length != 1.0:
         scale(kept, length)
-    run.state[at.STATE_NOW] = total(kept)
+    run.state.state_now = total(kept)
 
 
 @kernel
 def note_negative_friction(run: Run) -> None:
     """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
-    rate, state = run.state[at.RATE_NOW], run.state[at.STATE_NOW]
+    rate, state = run.state.rate_now, run.state.state_now
     if not math.isfinite(rate):
         rate, state = run.stage_rate[0], run.stage_state[0]
-    contact_at(run, run.state[at.LAW_SLIP], abs(rate), state)
-    if run.par[at.REFERENCE] + run.par[at.NORMAL] * run.value[MU] < -NEGLIGIBLE * run.par[at.NORMAL]:
-        run.counts[at.BREACH] = at.NEGATIVE_FRICTION
+    contact_at(run, run.state.law_slip, abs(rate), state)
+    if run.par.reference + run.par.normal * run.value[MU] < -NEGLIGIBLE * run.par.normal:
+        run.counts.breach = at.NEGATIVE_FRICTION
 
 
 @kernel
 def forgotten(run: Run) -> bool:
     """Whether nothing is left of the state that friction would notice; then nothing is left at all."""
-    contact_at(run, run.state[at.LAW_SLIP], 0.0, run.state[at.STATE_NOW])
-    if abs(run.value[BY_STATE] * run.state[at.STATE_NOW]) > FORGOTTEN:
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    if abs(run.value[BY_STATE] * run.state.state_now) > FORGOTTEN:
         return False
-    run.state[at.STATE_NOW] = 0.0
+    run.state.state_now = 0.0
     return True
 
 
 @kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
     """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
-    width = collocate(run, xi_to - run.state[at.XI])
+    width = collocate(run, xi_to - run.state.xi)
     if not math.isfinite(run.jet[0]):
-        run.state[at.RATE_NOW] = math.nan
+        run.state.rate_now = math.nan
         note_negative_friction(run)
         return
-    reached = width >= xi_to - run.state[at.XI]
-    load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
-    fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
+    reached = width >= xi_to - run.state.xi
+    load = ahead(run.stored_load, at.TERMS * run.counts.length)
+    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
     copy(run.local, load, at.TERMS)
     onset, direction = onset_of_slip(run, load, run.jet)
     end = min(onset, 1.0)
     if end < 1.0:
         scale(load, end)
     keep_state(run, end)
-    record(run, xi_to if reached and end == 1.0 else run.state[at.XI] + end * width)
+    record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
     note_negative_friction(run)
-    run.counts[at.EDGE], run.counts[at.MOVED] = 0, 1
+    run.counts.edge, run.counts.moved = 0, 1
     if onset < NONE:
-        run.counts[at.MODE], run.counts[at.EDGE] = direction, direction
+        run.counts.mode, run.counts.edge = direction, direction

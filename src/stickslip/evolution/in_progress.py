@@ -21,7 +21,7 @@ from stickslip.evolution.moving_branches import OUT_OF_BUDGET, RuleFollower, ren
 from stickslip.evolution.phases import standing_behind
 from stickslip.evolution.setup import prepare
 from stickslip.evolution.status import rounding_note
-from stickslip.evolution.workspace import WORK_ROWS, lend
+from stickslip.evolution.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
 from stickslip.problem import Problem
 
 FIRST_CAPACITY = 512
@@ -35,9 +35,8 @@ class RunInProgress:
     problem: Problem
     rtol: float
     setup: Setup
-    state: Floats
-    count: Integers
-    scratch: Floats
+    memory: Integers
+    """Where the engine works: see `workspace.Run`."""
     store: Store
     echoes: Echoes
     follower: RuleFollower
@@ -49,20 +48,24 @@ class RunInProgress:
     forgotten: int = 0
 
     def __post_init__(self) -> None:
+        self.par, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
+        self.scratch = scratch_in(self.memory)
         self._lend()
 
     @classmethod
     def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = None, shortest_event: float | None = None) -> Self:
         """Return a run at t = 0."""
         setup, state, count = prepare(problem, rtol, shortest_event)
+        memory = memory_of(setup.par, state, count)
+        state, count = state_in(memory), counts_in(memory)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
         tolerance = creep_tolerance(problem, creep_rtol, rtol)
         leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
             leaps.begin(count)
-        scratch, echoes = np.zeros((WORK_ROWS, at.TERMS)), new_echoes(FIRST_CAPACITY)
-        return cls(problem, rtol, setup, state, count, scratch, store, echoes, follower, leaps, creep_rtol, shortest_event)
+        echoes = new_echoes(FIRST_CAPACITY)
+        return cls(problem, rtol, setup, memory, store, echoes, follower, leaps, creep_rtol, shortest_event)
 
     @classmethod
     def at_checkpoint(
@@ -83,28 +86,28 @@ class RunInProgress:
         return run
 
     def _lend(self) -> None:
-        self._table = lend(self.setup, self.state, self.count, self.scratch, self.store, self.echoes)
+        lend(self.memory, self.setup, self.store, self.echoes)
 
     @property
     def length(self) -> int:
         """Pieces of the history so far."""
-        return int(self.count[at.LENGTH])
+        return int(self.count.length)
 
     @property
     def time(self) -> float:
         """Simulated time, s."""
-        xi, speed, bend = self.state[[at.XI, at.SPEED, at.BEND]]
-        return float(self.count[at.ROW] * row_time(self.problem) + self.state[at.THETA_FROM] + xi * (speed + xi * bend))
+        xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
+        return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
         """Return one line on automatic lumping; empty where it did not begin."""
-        return lumping_note(self.count, self.setup.par, self.shortest_event)
+        return lumping_note(self.count, self.par, self.shortest_event)
 
     @property
     def rounding_note(self) -> str:
         """Return one line on steps in which rounding hides the law; empty where there are none."""
-        return rounding_note(int(self.count[at.ROUGH]), float(self.state[at.ROUGHEST]))
+        return rounding_note(int(self.count.rough), float(self.state.roughest))
 
     @property
     def creep(self) -> Floats:
@@ -121,12 +124,12 @@ class RunInProgress:
 
     def step(self, last: tuple[int, float], budget: int) -> int:
         """As `engine.advance`; the branches of a law of slip and slip rate are renewed where they are due."""
-        code = self.follower.advance(self._table, self.store, last, budget)
+        code = self.follower.advance(self.memory, self.store, last, budget)
         if code != at.NEED_BRANCHES:
             return code
-        self.setup = renewed(self.problem, self.setup, self.state, self.count)
+        self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
         self._lend()
-        self.follower.set_levels(self._table)
+        self.follower.set_levels(self.memory)
         return OUT_OF_BUDGET
 
     def grow(self, max_pieces: int) -> bool:
@@ -144,15 +147,16 @@ class RunInProgress:
 
     def forget_before(self, piece: int) -> int:
         """Drop what stands nowhere in the body any more when a piece begins; returns how many pieces that were."""
-        piece = min(piece, int(self.count[at.NEW_FROM if self.count[at.SPARSE] else at.PREVIOUS_FROM]))
+        piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
         if piece == 0:
             return 0
         standing, _, _ = standing_behind(at.trimmed(self.store, piece), row_time(self.problem))
         kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
-        self.count[at.ECHO_OF] = place[self.count[at.ECHO_OF]]
-        self.count[[at.LENGTH, at.ROW_FROM, at.PREVIOUS_FROM, at.PREVIOUS_TO, at.NEW_FROM]] -= dropped
+        self.count.echo_of = place[self.count.echo_of]
+        for name in ("length", "row_from", "previous_from", "previous_to", "new_from"):
+            setattr(self.count, name, getattr(self.count, name) - dropped)
         self._replant()
         self.forgotten += dropped
         return dropped
@@ -160,22 +164,22 @@ class RunInProgress:
     def _replant(self) -> None:
         """Have the trees of echoes as the history says."""
         self._lend()
-        if self.count[at.SPARSE] == 0:
+        if self.count.sparse == 0:
             return
-        first = int(self.count[at.NEW_FROM])
+        first = int(self.count.new_from)
         pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
-        past, ahead = low < self.state[at.NEW_SINCE], low >= self.state[at.TAKEN_TO]
-        replant(self._table, pieces[past | ahead].astype(np.int64), int(past.sum()))
+        past, ahead = low < self.state.new_since, low >= self.state.taken_to
+        replant(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
         """From here on the end of the run decides what comes: keep where a longer run would go on."""
         self.before_end = self.stands()
-        self.count[at.TO_THE_END] = 1
+        self.count.to_the_end = 1
 
     def stands(self) -> Checkpoint:
         """Where the engine stands."""
-        stick_to, crossings = self.setup.par[[at.STICK_TO]], np.array(self.follower.times, float)
-        state, count, scratch = self.state.copy(), self.count.copy(), self.scratch.copy()
+        stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
+        state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
         return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
 
     def checkpoint(self) -> Checkpoint:
@@ -184,11 +188,12 @@ class RunInProgress:
 
     def restore(self, checkpoint: Checkpoint) -> None:
         """Go back to where the engine stood, on the same history or a copy of it."""
-        self.state[:], self.count[:], self.scratch[:] = checkpoint.state, checkpoint.count, checkpoint.scratch
+        self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
+        self.scratch[:] = checkpoint.scratch
         self.setup = self.setup._replace(branch=checkpoint.branch.copy())
-        self.setup.par[at.STICK_TO] = checkpoint.stick_to[0]
+        self.par.stick_to = checkpoint.stick_to[0]
         self.follower.times.clear()
         self.follower.times.extend(checkpoint.crossings.tolist())
-        if self.count[at.TO_THE_END] == 0:
+        if self.count.to_the_end == 0:
             self.before_end = None
         self._replant()

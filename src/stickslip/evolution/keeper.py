@@ -52,7 +52,7 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     kept = at.trimmed(run.store, run.length)
     whole = code in (at.FINISHED, at.LOCKED)
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
-    history = History(kept, run.problem, row_time(run.problem), float(run.setup.par[at.RAMP]), reached, creep=run.creep)
+    history = History(kept, run.problem, row_time(run.problem), float(run.setup.par.ramp), reached, creep=run.creep)
     found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
     found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
     return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
@@ -72,7 +72,7 @@ class Keeper:
     @classmethod
     def of(cls, run: RunInProgress, orders: Orders, stream: EventStream | None = None) -> Self:
         """For a run and what is wanted of it; a stream that is given has told the events before."""
-        stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par[at.RAMP]))
+        stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
         reporter = Reporter.of(orders.progress, orders.duration, orders.events, stream.threshold)
         keeper = cls(orders=orders, stream=stream, reporter=reporter, saving=NowAndThen.from_now(orders.checkpoint_every))
         keeper.looked = keeper.stands(run)

@@ -12,59 +12,153 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.evolution.generate import ORDER
+from stickslip.evolution.records import Record
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 TERMS = ORDER + 1
 
-# ---- Setup.par: the problem's numbers ----------------------------------------------------------------------------------------
-ROW_TIME, IMPEDANCE, NORMAL, INERTIA, STIFFNESS, REFLECTION, INFLOW, INFLOW_RATE = range(8)
-REFERENCE, LARGEST_DROP, COUNTS_NET, STATIC_EXCESS, STICK_TO, RAMP, TOLERANCE, SMALLEST_JUMP, RELATIVE_JUMP = range(8, 17)
-STATE_SCALE, RATE_FLOOR = 17, 18
-SHORTEST = 20  # pieces of load that are shorter, s, are lumped while LUMPS is set
-HEALED_PIECE = 19  # of the law, where rest heals the contact; -1 where the law remembers all slip
-TONE, TONE_FREQUENCY, TONE_PHASE = range(21, 24)  # of a loading that varies: F has TONE sin(TONE_FREQUENCY t + TONE_PHASE)
-PARAMETERS = 24
 
-# ---- state: where the contact is, and the piece of load that it meets -------------------------------------------------------
-XI, SLIP_NOW, LAW_SLIP, RATE_NOW, LOAD_NOW, LAST_STEP = range(6)
-THETA_FROM, THETA_TO, SPEED, BEND = range(6, 10)  # theta = THETA_FROM + SPEED xi + BEND xi^2, xi from 0 to 1
-TABLE_SLIP, FOLD_RATE = range(10, 12)  # law slip at which Setup.branch holds; slip rate at the moving fold that is approached
-STATE_NOW = 12  # of the friction law, as its formulas see it
-NEW_SINCE, TAKEN_TO = 13, 14  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees
-AMPLIFIED, GAIN = 15, 16  # what has become of an error of the load in the present piece; by how much slip multiplies it
-SLIP_SINCE = 17  # offset at which slip began
-KEPT = 18  # of these, what is set aside where another piece comes in between
-TAKEN, TAKEN_TO_THETA = 18, 19  # how much of the source of load has been brought, in its xi and as an offset
-TARGET = 20  # xi up to which a run may slip that waits for others, to take its step side by side with them
-UNBALANCED = 21  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
-ROUNDED = 22  # rounding (m/s) that was found in that step where it seemed not to obey the law
-ROUGHEST = 23  # largest share of the slip rate that rounding in the law has taken, where that is more than the tolerance
-STATES = 24
-assert KEPT <= TERMS  # it is set aside in a row of scratch space
+class Params(Record):
+    """The problem's numbers, in SI. Nothing here changes during a run, but `stick_to` under a law of slip and slip rate."""
 
-# ---- count: the same in whole numbers ---------------------------------------------------------------------------------------
-ROW, SOURCE, MODE, PIECE, BRANCH, EDGE, LENGTH, ROW_FROM, PREVIOUS_FROM, PREVIOUS_TO = range(10)
-MOVED, READY, JUMP, CAUSE, ECHO_OF, STUCK_ROWS, STALLED, AT_FOLD, IS_BLOCK, HAS_INERTIA, IS_ALGEBRAIC, ARRIVING = range(10, 22)
-HAS_STATE, STICKS, STIFF, STEPS, FOLDS_MOVE, KNOTS_IN_RATE, LEAVING = range(22, 29)
-IS_LOCKED, TO_THE_END = 29, 30  # TO_THE_END: the end of the run may cut a piece or a leap, which a longer run would not
-SPARSE, BEHIND, AHEAD, NEW_FROM = range(31, 35)  # only echoes that break are met; roots of the trees; first piece not in them
-LUMPED, SLIP_ROW, TINY = 35, 36, 37  # the load was lumped; row in which slip began; slips beyond resolution, less others
-PAUSE_AT, PAUSE_FOR, CREEP_LEAPS = 38, 39, 40  # row before which `advance` returns; rows to the pause after it; leaps so far
-VARIES, SEGMENT, ROW_SEGMENT = 41, 42, 43  # the loading varies; its segment now, and at the end of the row before
-WAITS = 44  # explicit steps of slip are left to the caller
-CREEP_IN = 45  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
-LUMPS, LUMP_ABOVE, LUMPED_SINCE = 46, 47, 48  # short pieces are lumped; pieces of a round trip above which they are; row since when
-ROUGH = 49  # steps with such rounding
-BREACH = 50  # why no step can go on from here: OFF_THE_LAW or NEGATIVE_FRICTION; 0 where one can
-COUNTS = 51
+    row_time: float  # s: a round trip of the slab, a period of the block
+    impedance: float  # Z of a slab, damping of a block
+    normal: float  # normal stress, or force
+    inertia: float  # mass of the contact, or of the block
+    stiffness: float  # of a block's spring; 0 for a slab
+    reflection: float  # of the driver
+    inflow: float  # what a steady driver sends, and how that grows in a second
+    inflow_rate: float
+    reference: float  # static strength at the start, from which loads are differences
+    largest_drop: float
+    counts_net: float  # 1 where the law counts net slip, 0 where it counts the path
+    static_excess: float
+    stick_to: float  # load (minus the reference) at which a contact at rest begins to slip
+    ramp: float  # by how much the load at rest grows in a round trip
+    tolerance: float  # local error of a step, relative
+    smallest_jump: float  # m/s: smaller changes of the slip rate are no shocks
+    relative_jump: float
+    state_scale: float
+    rate_floor: float  # m/s: slip rates below are not resolved
+    healed_piece: float  # of the law, where rest heals the contact; -1 where the law remembers all slip
+    shortest: float  # s: pieces of load that are shorter are lumped while `Counts.lumps` is set
+    tone: float  # of a loading that varies: the inflow has tone sin(tone_frequency t + tone_phase)
+    tone_frequency: float
+    tone_phase: float
+
+
+class State(Record):
+    """Where the contact is, and the piece of load that it meets."""
+
+    xi: float  # place in the piece of load, from 0 to 1
+    slip_now: float  # m, minus the initial slip
+    law_slip: float  # m, as the law counts it, minus its initial value
+    rate_now: float  # m/s
+    load_now: float  # of a block at the end of the period before
+    last_step: float  # s: what the error allowed the last step to be
+    theta_from: float  # s, offset in the round trip: theta = theta_from + speed xi + bend xi^2
+    theta_to: float
+    speed: float
+    bend: float
+    table_slip: float  # law slip at which the branches hold
+    fold_rate: float  # m/s, at the moving fold that is approached
+    state_now: float  # of the friction law, as its formulas see it
+    new_since: float  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees of echoes
+    taken_to: float
+    amplified: float  # what has become of an error of the load in the present piece
+    gain: float  # by how much slip multiplies it
+    slip_since: float  # offset at which slip began
+    taken: float  # how much of the source of load has been brought, in its xi and as an offset
+    taken_to_theta: float
+    target: float  # xi up to which a run may slip that waits for others, to take its step side by side with them
+    unbalanced: float  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
+    rounded: float  # m/s: rounding that was found in that step where it seemed not to obey the law
+    roughest: float  # largest share of the slip rate that rounding in the law has taken, where that is more than the tolerance
+    exit: float  # xi at which an algebraic contact leaves its branch (inf: not on this piece); nan where it is not known yet
+
+
+KEPT = State.places["taken"].first
+"""Places of the state that are set aside where another piece of load comes in between."""
+
+
+class Counts(Record):
+    """The state in whole numbers: places in the history, flags, codes."""
+
+    row: int  # round trip, from 0
+    source: int  # where the next piece of load comes from
+    mode: int  # 0 stuck, +1 slips forwards, -1 backwards
+    piece: int  # of the law
+    branch: int
+    edge: int  # slip begins here, in this direction; 0 elsewhere
+    length: int  # pieces of the history
+    row_from: int  # first piece of this round trip, and those of the one before
+    previous_from: int
+    previous_to: int
+    moved: int  # there was slip in this round trip
+    ready: int  # what has become of the next piece of load: 0, MET or BROUGHT
+    jump: int  # the next piece of the history begins with a jump of the slip rate, and why
+    cause: int
+    echo_of: int
+    stuck_rows: int
+    stalled: int  # steps that took no time, one after the other
+    at_fold: int
+    is_block: int
+    has_inertia: int
+    is_algebraic: int
+    arriving: int  # the piece of load begins with a jump, for this cause
+    has_state: int
+    sticks: int
+    stiff: int
+    steps: int
+    folds_move: int
+    knots_in_rate: int
+    leaving: int  # a moving branch has ended
+    is_locked: int
+    to_the_end: int  # the end of the run may cut a piece or a leap, which a longer run would not
+    sparse: int  # only echoes that break are met
+    behind: int  # roots of the trees of echoes
+    ahead: int
+    new_from: int  # first piece that is not in them
+    lumped: int  # the load was lumped
+    slip_row: int  # round trip in which slip began
+    tiny: int  # slips beyond resolution, less others
+    pause_at: int  # row before which `advance` returns; rows to the pause after it
+    pause_for: int
+    creep_leaps: int
+    varies: int  # the loading; its segment now, and at the end of the row before
+    segment: int
+    row_segment: int
+    waits: int  # explicit steps of slip are left to the caller
+    creep_in: int  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
+    lumps: int  # short pieces are lumped; pieces of a round trip above which they are; row since when
+    lump_above: int
+    lumped_since: int
+    rough: int  # steps in which rounding in the law hides more than the tolerance
+    breach: int  # why no step can go on from here: OFF_THE_LAW or NEGATIVE_FRICTION; 0 where one can
+    degree: int  # of the piece of load: its coefficients beyond are zero
+
+
+class Series(Record):
+    """What a jet receives (see `generate`), in this order."""
+
+    impedance: float
+    normal: float
+    chi: float
+    speed: float
+    bend: float
+    slip: float
+    offset: float
+    inertia: float
+    stiffness: float
+    rate: float
+    free: float
+    force: float
+
 
 NEVER = 2**62
 """No row."""
-
-# ---- the vector k that a jet receives (see `generate`) ----------------------------------------------------------------------
-K_IMPEDANCE, K_NORMAL, K_CHI, K_SPEED, K_BEND, K_SLIP, K_OFFSET, K_INERTIA, K_STIFFNESS, K_RATE, K_FREE, K_FORCE = range(12)
 
 # ---- READY: what has become of the next piece of load ------------------------------------------------------------------------
 MET, BROUGHT = 1, 2
@@ -89,7 +183,7 @@ S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP, S_AMPLIFIED, S_GA
 class Setup(NamedTuple):
     """A problem as the engine sees it. Nothing here changes during a run, but the branches of a law of slip and slip rate."""
 
-    par: Floats
+    par: Params
     address: Integers  # (5, pieces of the law): of `value`, `rate_jet` or `motion_jet`, `state_value`, `guards`; number of guards
     constants: Floats  # (pieces, size): what `prepare` filled for them
     law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end

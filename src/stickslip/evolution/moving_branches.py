@@ -22,7 +22,7 @@ from stickslip.contact.selection import selection_table
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch_scan import new_branches
 from stickslip.evolution.engine import advance
-from stickslip.evolution.layout import Floats, Integers, Setup, Store
+from stickslip.evolution.layout import Counts, Floats, Integers, Params, Setup, State, Store
 from stickslip.evolution.moving_levels import (
     COMPILED_RULES,
     EXACT,
@@ -36,7 +36,6 @@ from stickslip.evolution.moving_levels import (
     set_maxwell_levels,
 )
 from stickslip.evolution.polynomial import RECIPROCAL
-from stickslip.evolution.workspace import EXIT
 from stickslip.friction.difference import difference
 from stickslip.problem import Problem
 
@@ -99,15 +98,15 @@ def has_levels_to_set(problem: Problem) -> bool:
     return COMPILED_RULES.get(problem.rule) == MAXWELL
 
 
-def renewed(problem: Problem, setup: Setup, state: Floats, count: Integers) -> Setup:
-    """The setup with the branches at the present law slip; state and count take note of it.
+def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
+    """The setup with the branches at the present law slip; the other arguments take note of it.
 
     Under Maxwell's rule its levels are still to be set (`RuleFollower.set_levels`).
     """
     case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
-    rows, setup.par[at.STICK_TO] = branch_rows(case, float(state[at.LAW_SLIP]))
-    count[at.BRANCH] = branch_of(rows, abs(float(state[at.RATE_NOW])))
-    state[at.TABLE_SLIP] = state[at.LAW_SLIP]
+    rows, par.stick_to = branch_rows(case, float(state.law_slip))
+    count.branch = branch_of(rows, abs(float(state.rate_now)))
+    state.table_slip = state.law_slip
     return setup._replace(branch=rows)
 
 
@@ -179,8 +178,8 @@ class RuleFollower:
 
     problem: Problem
     row_time: float
-    state: Floats
-    count: Integers
+    state: State
+    count: Counts
     times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
 
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
@@ -190,10 +189,10 @@ class RuleFollower:
         for _ in range(min(budget, AT_A_TIME)):
             state, count = self.state.copy(), self.count.copy()
             code = advance(table, *last, 1)
-            place = self._crossing(table, store, int(count[at.LENGTH]))
+            place = self._crossing(table, store, int(count.length))
             if place is not None:
-                state[EXIT] = state[at.XI] + place * (self.state[at.XI] - state[at.XI])
-                self.state[:], self.count[:] = state, count
+                state.exit = state.xi + place * (self.state.xi - state.xi)
+                self.state.numbers[:], self.count.numbers[:] = state.numbers, count.numbers
                 if self._storms():
                     return at.STORM
             elif code != OUT_OF_BUDGET:
@@ -207,7 +206,7 @@ class RuleFollower:
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Where a step in slip that has just been made crosses a level of the rule."""
-        stepped = self.count[at.LENGTH] > length and store.mode[length] != 0 and self.count[at.LEAVING] == 0
+        stepped = self.count.length > length and store.mode[length] != 0 and self.count.leaving == 0
         if not stepped:
             return None
         if self.problem.rule not in COMPILED_RULES:
@@ -223,7 +222,7 @@ class RuleFollower:
 
     def _storms(self) -> bool:
         """Note the time of a crossing: whether many have come with hardly any time between them."""
-        whole, theta = float(self.count[at.ROW]), float(self.state[at.THETA_FROM])
-        xi = float(self.state[EXIT])
-        self.times.append(whole * self.row_time + theta + xi * (self.state[at.SPEED] + xi * self.state[at.BEND]))
+        whole, theta = float(self.count.row), float(self.state.theta_from)
+        xi = float(self.state.exit)
+        self.times.append(whole * self.row_time + theta + xi * (self.state.speed + xi * self.state.bend))
         return len(self.times) == STORM_OF and self.times[-1] - self.times[0] <= STORM_IN * self.row_time

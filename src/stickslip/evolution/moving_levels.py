@@ -55,7 +55,7 @@ class View(NamedTuple):
 @kernel
 def fastest(run: Run, load: float) -> float:
     """A slip rate that no solution at this load exceeds."""
-    return (load + run.par[at.LARGEST_DROP]) / run.par[at.IMPEDANCE] * (1.0 + 1e-12)
+    return (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12)
 
 
 @kernel
@@ -94,7 +94,7 @@ def law_slip_in(run: Run, n: int, xi: float) -> float:
     real, rate = ahead(run.real, REAL * n), ahead(run.stored_rate, TERMS * n)
     grown = real[at.S_SPEED] * integral(rate, xi, 1) + 2.0 * real[at.S_BEND] * integral(rate, xi, 2)
     mode = run.whole[WHOLE * n + at.S_MODE]
-    return real[at.S_LAW_SLIP] + (grown if run.par[at.COUNTS_NET] == 1.0 else mode * grown)
+    return real[at.S_LAW_SLIP] + (grown if run.par.counts_net == 1.0 else mode * grown)
 
 
 @kernel
@@ -127,7 +127,7 @@ def place_of_crossing(view: View, low: float, high: float) -> float:
 
     Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
     """
-    slack = EXACT * view.run.par[at.REFERENCE]
+    slack = EXACT * view.run.par.reference
     above, below = max(room_in(view, low), slack), room_in(view, high)
     side, x = 0, high
     for _ in range(100):
@@ -153,7 +153,7 @@ def crossing_in(places: Integers, step: int, rule: int, scan: Floats, table: Flo
     `places` comes from `workspace.lend`.
     """
     view = View(borrow(places), step, rule, scan, table)
-    before, slack = 0.0, ROUNDING * view.run.par[at.REFERENCE]
+    before, slack = 0.0, ROUNDING * view.run.par.reference
     for place in (FIRST_PLACE, LAST_PLACE):
         if room_in(view, place) < -slack:
             if room_in(view, before) <= slack and room_in(view, before + NEXT * (place - before)) <= 0.0:
@@ -186,7 +186,7 @@ def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float)
         step = load - value / slope
         if not low < step < high:
             step = 0.5 * (low + high)
-        if abs(step - load) <= EXACT * contact.run.par[at.NORMAL] or step in (low, high):
+        if abs(step - load) <= EXACT * contact.run.par.normal or step in (low, high):
             load = step
             break
         load = step
@@ -220,7 +220,7 @@ def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
 def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
     """Write the levels of Maxwell's rule at the present slip into the setup, where branches are kept up to their ends so far."""
     run = borrow(places)
-    contact = Contact(run, run.counts[at.PIECE], run.state[at.LAW_SLIP], scan, table)
+    contact = Contact(run, run.counts.piece, run.state.law_slip, scan, table)
     for k in range(run.branches):
         table[RATE_FROM, k], table[RATE_TO, k] = run.rate_from[k], run.rate_to[k]
         table[LEVEL_FROM, k], table[LEVEL_TO, k] = run.excess_from[k], run.excess_to[k]
@@ -232,4 +232,4 @@ def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
     for k in range(run.branches):
         if run.keep_from[k] >= run.keep_to[k]:
             run.keep_from[k], run.keep_to[k] = math.inf, -math.inf
-    run.par[at.STICK_TO] = stick_to - strength
+    run.par.stick_to = stick_to - strength

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import NEAR_KNOT, friction_of, is_knot, piece_at
-from stickslip.evolution.compiled import inlined, kernel
+from stickslip.evolution.compiled import kernel
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import NONE, first_descent
 from stickslip.evolution.workspace import Run
@@ -16,23 +16,23 @@ def settle_piece(run: Run, rate: float) -> None:
 
     But where a branch starts or ends at the knot, it is the piece on which g rises.
     """
-    piece = run.counts[at.PIECE]
+    piece = run.counts.piece
     below = piece > 0 and rate < run.knot[piece - 1] * (1.0 - NEAR_KNOT)
     if below or rate > run.knot[piece] * (1.0 + NEAR_KNOT):
         piece = piece_at(run, rate)
-    if run.counts[at.IS_ALGEBRAIC] == 1 and is_knot(run, rate):
-        friction_of(run, piece, run.state[at.LAW_SLIP], rate, run.value)
-        if run.par[at.IMPEDANCE] + run.value[1] <= 0.0:
+    if run.counts.is_algebraic == 1 and is_knot(run, rate):
+        friction_of(run, piece, run.state.law_slip, rate, run.value)
+        if run.par.impedance + run.value[1] <= 0.0:
             piece += 1 if abs(run.knot[piece] - rate) <= NEAR_KNOT * rate else -1
-    run.counts[at.PIECE] = piece
+    run.counts.piece = piece
 
 
-@inlined
+@kernel
 def is_end_of_branch(run: Run, rate: float) -> bool:
     """Whether a branch that stays where it is ends at this knot: its end is found from the load."""
-    if run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1:
+    if run.counts.is_algebraic == 0 or run.counts.folds_move == 1:
         return False
-    branch, room = run.counts[at.BRANCH], NEAR_KNOT * rate
+    branch, room = run.counts.branch, NEAR_KNOT * rate
     return abs(run.rate_to[branch] - rate) <= room or abs(run.rate_from[branch] - rate) <= room
 
 
@@ -41,7 +41,7 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
     """Where on [0, 1] the slip rate leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down."""
     first, turn, part = NONE, 1, run.part
     for way in (1, -1):
-        knot = run.counts[at.PIECE] if way == 1 else run.counts[at.PIECE] - 1
+        knot = run.counts.piece if way == 1 else run.counts.piece - 1
         if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.knot[knot]):
             continue
         for k in range(at.TERMS):
@@ -57,12 +57,12 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
 @kernel
 def pass_rate_knot(run: Run, turn: int) -> bool:
     """Stand at the knot and go on behind it; False where the resistance g falls there: then the branch ends at the knot."""
-    piece = run.counts[at.PIECE]
+    piece = run.counts.piece
     knot = run.knot[piece] if turn > 0 else run.knot[piece - 1]
-    run.state[at.RATE_NOW] = run.counts[at.MODE] * knot
-    if run.counts[at.FOLDS_MOVE] == 1:
-        friction_of(run, piece + turn, run.state[at.LAW_SLIP], knot, run.value)
-        if run.par[at.IMPEDANCE] + run.value[1] <= 0.0:
+    run.state.rate_now = run.counts.mode * knot
+    if run.counts.folds_move == 1:
+        friction_of(run, piece + turn, run.state.law_slip, knot, run.value)
+        if run.par.impedance + run.value[1] <= 0.0:
             return False
-    run.counts[at.PIECE] = piece + turn
+    run.counts.piece = piece + turn
     return True

@@ -243,7 +243,7 @@ class Recurrences:
                     "log": f"{da} / {a0}",
                     "sqrt": f"{da} / (2.0 * {value})",
                     "tanh": f"(1.0 - {value} * {value}) * {da}",
-                    "arcsinh": f"{da} / sqrt(1.0 + {a0} * {a0})",
+                    "arcsinh": f"{da} / (sqrt(1.0 + {a0} * {a0}) if abs({a0}) < 1e150 else abs({a0}))",
                     "pow": f"{self.reference(node.arguments[-1])} * {value} / {a0} * {da}",
                 }[node.operation]
             lines.append(f"{tag}{self.index[node]} = {rule}")

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, Self
 
-from stickslip.evolution import layout as at
 from stickslip.evolution.in_progress import RunInProgress
 
 Doing = Literal["stuck", "creeping", "slipping"]
@@ -64,6 +63,6 @@ class Reporter:
         self.tell(Report(now, self.duration, events, self.events_wanted, run.forgotten + run.length, doing, pace, left))
 
     def _doing(self, run: RunInProgress) -> Doing:
-        if run.count[at.MODE] == 0:
+        if run.count.mode == 0:
             return "stuck"
-        return "slipping" if abs(run.state[at.RATE_NOW]) > self.event_rate else "creeping"
+        return "slipping" if abs(run.state.rate_now) > self.event_rate else "creeping"

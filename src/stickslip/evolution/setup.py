@@ -6,6 +6,7 @@ import ctypes
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,14 +18,13 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.automatic import set_length, set_lumping
 from stickslip.evolution.compiled import CompiledFormula, compile_formula
 from stickslip.evolution.inflow import inflow_of, row_time, steady_inflow
-from stickslip.evolution.layout import Setup
+from stickslip.evolution.layout import Counts, Params, Setup, State
 from stickslip.evolution.moving_branches import branch_rows, folds_move, has_inertia, is_algebraic
-from stickslip.evolution.workspace import COUNTS, STATES
 from stickslip.problem import Problem
 from stickslip.selection import SelectionRule
 
 
-def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, at.Floats, at.Integers]:
+def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, State, Counts]:
     """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
 
     Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
@@ -37,50 +37,50 @@ def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tupl
     return setup._replace(par=par), state.copy(), count
 
 
-def set_tolerance(par: at.Floats, rtol: Any, shortest: float | None) -> None:
+def set_tolerance(par: Params, rtol: Any, shortest: float | None) -> None:
     """What the tolerance says in `Setup.par`, or in one with a column a member."""
     set_length(par, shortest)
-    par[at.TOLERANCE], par[at.RELATIVE_JUMP] = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
+    par.tolerance, par.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
 @lru_cache(maxsize=256)
-def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, at.Floats, at.Integers]:  # the rule of a name may change
+def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # the rule of a name may change
     par = parameters_of(problem)
-    branches, par[at.STICK_TO] = branch_rows(problem, 0.0)
+    branches, par.stick_to = branch_rows(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
     setup = Setup(par, *_formulas(problem), branches, first, loading_of(problem))
-    for shared in setup:
+    for shared in (par.numbers, *setup[1:]):
         shared.flags.writeable = False
     return setup, *start_of(problem)
 
 
-def parameters_of(problem: Problem) -> at.Floats:
+def parameters_of(problem: Problem) -> Params:
     """`Setup.par` but for what the tolerance says; with a column a member where any of the problem's numbers is an array."""
     body, law = problem.body, problem.friction
-    par: list[Any] = [0.0] * at.PARAMETERS
-    par[at.ROW_TIME] = row_time(problem)
-    par[at.NORMAL] = problem.normal
-    par[at.REFERENCE] = problem.strength
-    par[at.COUNTS_NET] = 1.0 if law.counts == "net" else 0.0
-    par[at.STATIC_EXCESS] = law.static_excess
-    par[at.STATE_SCALE] = law.state.scale if law.state else 0.0
-    par[at.RATE_FLOOR] = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
-    par[at.HEALED_PIECE] = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
+    par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
+    par.row_time = row_time(problem)
+    par.normal = problem.normal
+    par.reference = problem.strength
+    par.counts_net = 1.0 if law.counts == "net" else 0.0
+    par.static_excess = law.static_excess
+    par.state_scale = law.state.scale if law.state else 0.0
+    par.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
+    par.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
-    par[at.LARGEST_DROP] = np.maximum(problem.strength - problem.normal * lowest, 0.0)
+    par.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
     if isinstance(body, ElasticSlab):
-        par[at.IMPEDANCE], par[at.INERTIA], par[at.REFLECTION] = body.impedance, body.contact_mass, body.reflection
-        par[at.SMALLEST_JUMP] = 1e-14 * problem.normal / body.impedance
+        par.impedance, par.inertia, par.reflection = body.impedance, body.contact_mass, body.reflection
+        par.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
-        par[at.IMPEDANCE], par[at.INERTIA], par[at.STIFFNESS] = body.damping, body.mass, body.stiffness
+        par.impedance, par.inertia, par.stiffness = body.damping, body.mass, body.stiffness
     if problem.varies:
-        par[at.TONE], par[at.TONE_FREQUENCY], par[at.TONE_PHASE] = inflow_of(problem).tone
+        par.tone, par.tone_frequency, par.tone_phase = inflow_of(problem).tone
     elif not isinstance(body, ElasticSlab):
-        par[at.RAMP] = body.stiffness * problem.first_pull_rate * row_time(problem)
+        par.ramp = body.stiffness * problem.first_pull_rate * row_time(problem)
     else:
-        par[at.INFLOW], par[at.INFLOW_RATE] = steady_inflow(problem)
-        par[at.RAMP] = par[at.INFLOW] if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
-    return together(par)
+        par.inflow, par.inflow_rate = steady_inflow(problem)
+        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
+    return Params(together([getattr(par, name) for name in Params.places]))
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:
@@ -201,20 +201,20 @@ def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at
     formula.prepare(values.ctypes.data_as(double), reference, row.ctypes.data_as(double))
 
 
-def start_of(problem: Problem) -> tuple[at.Floats, at.Integers]:
+def start_of(problem: Problem) -> tuple[State, Counts]:
     """State and counts at t = 0: at rest, the load not yet met."""
-    state, count = np.zeros(STATES), np.zeros(COUNTS, np.int64)
-    state[at.LAST_STEP] = math.inf
-    count[at.PIECE] = int(problem.friction.piece_at(problem.law_slip))
-    count[at.VARIES] = problem.varies
-    count[at.IS_BLOCK] = not isinstance(problem.body, ElasticSlab)
-    count[at.HAS_INERTIA] = has_inertia(problem)
-    count[at.IS_ALGEBRAIC] = is_algebraic(problem)
-    count[at.HAS_STATE], count[at.STICKS] = problem.friction.state is not None, problem.friction.sticks
-    state[at.STATE_NOW] = problem.state
+    state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
+    state.last_step = math.inf
+    count.piece = int(problem.friction.piece_at(problem.law_slip))
+    count.varies = problem.varies
+    count.is_block = not isinstance(problem.body, ElasticSlab)
+    count.has_inertia = has_inertia(problem)
+    count.is_algebraic = is_algebraic(problem)
+    count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
+    state.state_now = problem.state
     if not problem.friction.sticks:
-        count[at.MODE] = 1 if problem.load >= 0.0 else -1
-    count[at.PAUSE_AT] = count[at.LUMPED_SINCE] = count[at.LUMP_ABOVE] = at.NEVER
-    count[at.FOLDS_MOVE] = folds_move(problem)
-    count[at.KNOTS_IN_RATE] = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
+        count.mode = 1 if problem.load >= 0.0 else -1
+    count.pause_at = count.lumped_since = count.lump_above = at.NEVER
+    count.folds_move = folds_move(problem)
+    count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

@@ -9,7 +9,7 @@ import math
 
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import TIE, branch_exit, constants_of, friction_at, load_ahead, rate_from_here, rate_on_branch
-from stickslip.evolution.compiled import ahead, call_jet, inlined, kernel
+from stickslip.evolution.compiled import ahead, call_jet, kernel
 from stickslip.evolution.fold import (
     APPROACHING,
     DEPARTING,
@@ -40,6 +40,7 @@ from stickslip.evolution.polynomial import (
 )
 from stickslip.evolution.rate_knots import pass_rate_knot, rate_knot_crossing, settle_piece
 from stickslip.evolution.record import note_jump, record
+from stickslip.evolution.records import numbers_of
 from stickslip.evolution.step_size import usable_length
 from stickslip.evolution.stick import come_to_rest
 from stickslip.evolution.verify import (
@@ -51,7 +52,7 @@ from stickslip.evolution.verify import (
     obeys_contact,
     within_guards,
 )
-from stickslip.evolution.workspace import EXIT, Run
+from stickslip.evolution.workspace import Run
 
 LONGEST_GUESS = 2.0
 """Guess at the next step's length (1), relative to the last one."""
@@ -61,68 +62,68 @@ NO_EVENT, ARREST, KNOT = range(3)
 """What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
 
 
-@inlined
+@kernel
 def first_guess(run: Run, left: float) -> float:
     """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
-    speed = abs(run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI])
-    return min(left, max(LONGEST_GUESS * run.state[at.LAST_STEP] / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
+    speed = abs(run.state.speed + 2.0 * run.state.bend * run.state.xi)
+    return min(left, max(LONGEST_GUESS * run.state.last_step / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
 
 
-@inlined
+@kernel
 def series(run: Run, guess: float) -> None:
     """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
     prepare_series(run, guess)
-    piece = run.counts[at.PIECE]
-    call_jet(run.jet_at[piece], constants_of(run, piece), run.k, run.seen, run.jet)
+    piece = run.counts.piece
+    call_jet(run.jet_at[piece], constants_of(run, piece), numbers_of(run.k), run.seen, run.jet)
 
 
-@inlined
+@kernel
 def prepare_series(run: Run, guess: float) -> None:
     """What the series is made of: the load ahead (run.seen), and run.k."""
-    direction, par, k = run.counts[at.MODE], run.par, run.k
+    direction, par, k = run.counts.mode, run.par, run.k
     load_ahead(run, guess)
-    k[at.K_RATE] = abs(run.state[at.RATE_NOW])
-    if run.counts[at.IS_ALGEBRAIC] == 1:
-        if run.counts[at.FOLDS_MOVE] == 0 or run.state[at.TABLE_SLIP] == run.state[at.LAW_SLIP]:
-            k[at.K_RATE] = rate_on_branch(run, run.seen[0], k[at.K_RATE])
+    k.rate = abs(run.state.rate_now)
+    if run.counts.is_algebraic == 1:
+        if run.counts.folds_move == 0 or run.state.table_slip == run.state.law_slip:
+            k.rate = rate_on_branch(run, run.seen[0], k.rate)
         else:
-            k[at.K_RATE] = rate_from_here(run, run.seen[0], k[at.K_RATE])
-    if run.counts[at.KNOTS_IN_RATE] == 1:
-        settle_piece(run, k[at.K_RATE])
-    piece = run.counts[at.PIECE]
-    edge = run.counts[at.EDGE] != 0
-    k[at.K_CHI] = direction if par[at.COUNTS_NET] == 1.0 else 1.0
-    k[at.K_SPEED] = (run.state[at.SPEED] + 2.0 * run.state[at.BEND] * run.state[at.XI]) * guess
-    k[at.K_BEND] = 2.0 * run.state[at.BEND] * guess * guess
-    k[at.K_SLIP], k[at.K_OFFSET] = run.state[at.LAW_SLIP] + run.slip_shift[piece], run.offset[piece]
-    k[at.K_FREE] = 0.0 if edge else 1.0
-    k[at.K_FORCE] = par[at.NORMAL] * par[at.STATIC_EXCESS] if edge else 0.0
+            k.rate = rate_from_here(run, run.seen[0], k.rate)
+    if run.counts.knots_in_rate == 1:
+        settle_piece(run, k.rate)
+    piece = run.counts.piece
+    edge = run.counts.edge != 0
+    k.chi = direction if par.counts_net == 1.0 else 1.0
+    k.speed = (run.state.speed + 2.0 * run.state.bend * run.state.xi) * guess
+    k.bend = 2.0 * run.state.bend * guess * guess
+    k.slip, k.offset = run.state.law_slip + run.slip_shift[piece], run.offset[piece]
+    k.free = 0.0 if edge else 1.0
+    k.force = par.normal * par.static_excess if edge else 0.0
 
 
-@inlined
+@kernel
 def stretch(run: Run, length: float, rate: Floats) -> None:
     """The slip rate's magnitude over a step of so many guesses, on [0, 1]."""
     powers_of(length, run.powers)
     multiply(run.jet, run.powers, rate)
 
 
-@inlined
+@kernel
 def growth(run: Run, rate: Floats, length: float, end: float) -> float:
     """Slip over the step up to `end` on [0, 1]: the integral of the rate over dtheta = (A + B eta) d eta."""
-    straight = run.k[at.K_SPEED] * length * integral(rate, end, 1)
-    if run.k[at.K_BEND] == 0.0:
+    straight = run.k.speed * length * integral(rate, end, 1)
+    if run.k.bend == 0.0:
         return straight
-    return straight + run.k[at.K_BEND] * length * length * integral(rate, end, 2)
+    return straight + run.k.bend * length * length * integral(rate, end, 2)
 
 
 @kernel
 def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
     """Where on [0, end] the slip reaches the next knot of the law; NONE if it does not. Up to the end of slip it is monotone."""
-    grown = run.k[at.K_CHI] * growth(run, rate, length, end)
-    next_knot = run.counts[at.PIECE] if grown > 0.0 else run.counts[at.PIECE] - 1
+    grown = run.k.chi * growth(run, rate, length, end)
+    next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
     if next_knot < 0 or next_knot >= run.pieces - 1:
         return NONE
-    distance = abs(run.knot[next_knot] - run.state[at.LAW_SLIP])
+    distance = abs(run.knot[next_knot] - run.state.law_slip)
     if distance >= abs(grown):
         return NONE
     low, high = 0.0, end
@@ -135,126 +136,126 @@ def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
     return high
 
 
-@inlined
+@kernel
 def next_knot(run: Run, rate: Floats, length: float, end: float) -> tuple[float, int]:
     """Where on [0, end] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
-    if run.counts[at.KNOTS_IN_RATE] == 1:
+    if run.counts.knots_in_rate == 1:
         return rate_knot_crossing(run, rate)
-    return knot_crossing(run, rate, length, end), 1 if run.k[at.K_CHI] > 0.0 else -1
+    return knot_crossing(run, rate, length, end), 1 if run.k.chi > 0.0 else -1
 
 
 @kernel
 def pass_knot(run: Run, turn: int) -> None:
     """Go on in the next piece of the law."""
-    if run.counts[at.KNOTS_IN_RATE] == 0:
-        run.counts[at.PIECE] += turn
+    if run.counts.knots_in_rate == 0:
+        run.counts.piece += turn
     elif not pass_rate_knot(run, turn):
         reach_end(run)
 
 
-@inlined
+@kernel
 def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
     """An algebraic contact may leave its branch: how far to go, whether the branch ends there, whether it did so just now."""
-    moves = run.counts[at.FOLDS_MOVE] == 1
-    if math.isnan(run.state[EXIT]) and not moves:
-        run.state[EXIT] = branch_exit(run)
-    way = run.state[EXIT] - run.state[at.XI]
-    if not run.state[EXIT] < xi_to:
+    moves = run.counts.folds_move == 1
+    if math.isnan(run.state.exit) and not moves:
+        run.state.exit = branch_exit(run)
+    way = run.state.exit - run.state.xi
+    if not run.state.exit < xi_to:
         return xi_to, False, False
     if way <= 0.0:
         reach_end(run)
         return xi_to, False, True
-    if not moves and run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
+    if not moves and run.state.bend == 0.0 and way > SHORTEST_FOLD and ends_at_fold(run, way):
         first = approach_fold(run, way)
-        return run.state[at.XI] + first, False, first == 0.0
-    return run.state[EXIT], True, False
+        return run.state.xi + first, False, first == 0.0
+    return run.state.exit, True, False
 
 
 @kernel
 def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[float, bool, bool]:
     """As `end_of_branch`, for a fold that moves with slip: where the series runs into it, if that is before the target."""
     way = way_to_fold(run, guess)
-    if not way < target - run.state[at.XI]:
+    if not way < target - run.state.xi:
         return target, leaves, False
     if way <= TIE:
-        run.state[at.RATE_NOW] = run.counts[at.MODE] * run.state[at.FOLD_RATE]
+        run.state.rate_now = run.counts.mode * run.state.fold_rate
         reach_end(run)
         return target, False, True
-    if run.state[at.BEND] == 0.0 and way > SHORTEST_FOLD:
+    if run.state.bend == 0.0 and way > SHORTEST_FOLD:
         first = approach_fold(run, way)
-        return run.state[at.XI] + first, False, first == 0.0
-    return run.state[at.XI] + way, False, False
+        return run.state.xi + first, False, first == 0.0
+    return run.state.xi + way, False, False
 
 
-@inlined
+@kernel
 def slip(run: Run, xi_to: float) -> None:
     """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
     target, leaves, done = xi_to, False, False
-    if run.counts[at.IS_ALGEBRAIC] == 1 and (run.counts[at.AT_FOLD] == 0 or run.counts[at.FOLDS_MOVE] == 1):
+    if run.counts.is_algebraic == 1 and (run.counts.at_fold == 0 or run.counts.folds_move == 1):
         target, leaves, done = end_of_branch(run, xi_to)
         if not done and starts_at_fold(run):
-            if run.counts[at.FOLDS_MOVE] == 0 or load_outruns_fold(run):
-                depart_from_fold(run, target - run.state[at.XI])
+            if run.counts.folds_move == 0 or load_outruns_fold(run):
+                depart_from_fold(run, target - run.state.xi)
             else:
-                run.counts[at.STALLED] += 1  # slip would end where it starts, again and again
+                run.counts.stalled += 1  # slip would end where it starts, again and again
             return
     if done:
         return
-    guess = first_guess(run, target - run.state[at.XI])
-    at_last = run.counts[at.AT_FOLD] == APPROACHING and 1.0 - run.state[at.XI] < last_to_fold(run)
+    guess = first_guess(run, target - run.state.xi)
+    at_last = run.counts.at_fold == APPROACHING and 1.0 - run.state.xi < last_to_fold(run)
     if at_last:
-        guess = target - run.state[at.XI]
+        guess = target - run.state.xi
     series(run, guess)
     if at_last:
         straight_to_fold(run)
-    elif run.counts[at.AT_FOLD] == DEPARTING:
+    elif run.counts.at_fold == DEPARTING:
         straight_from_fold(run)
     while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
         guess *= 1e-3
         series(run, guess)
-    if run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.AT_FOLD] not in (APPROACHING, DEPARTING):
+    if run.counts.folds_move == 1 and run.counts.at_fold not in (APPROACHING, DEPARTING):
         target, leaves, done = look_for_fold(run, guess, target, leaves)
         if done:
             return
     note_shock(run)
     take_step(run, target, guess, leaves)
-    if run.counts[at.HAS_INERTIA] == 1:
+    if run.counts.has_inertia == 1:
         judge_stiffness(run)
 
 
-@inlined
+@kernel
 def note_shock(run: Run) -> None:
     """Note the jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
-    if run.state[at.XI] == 0.0 and run.counts[at.ARRIVING] != at.NO_CAUSE:
-        note_jump(run, run.counts[at.MODE] * run.jet[0], run.counts[at.ARRIVING])
-    elif run.counts[at.EDGE] != 0 and run.counts[at.HAS_INERTIA] == 0:
-        note_jump(run, run.counts[at.MODE] * run.jet[0], at.FOLD)
+    if run.state.xi == 0.0 and run.counts.arriving != at.NO_CAUSE:
+        note_jump(run, run.counts.mode * run.jet[0], run.counts.arriving)
+    elif run.counts.edge != 0 and run.counts.has_inertia == 0:
+        note_jump(run, run.counts.mode * run.jet[0], at.FOLD)
 
 
 @kernel
 def slip_implicitly(run: Run, xi_to: float) -> None:
     """Slip for one implicit step, or up to what ends it."""
-    if run.counts[at.KNOTS_IN_RATE] == 1:
-        settle_piece(run, abs(run.state[at.RATE_NOW]))
-    guess = collocate(run, xi_to - run.state[at.XI])
+    if run.counts.knots_in_rate == 1:
+        settle_piece(run, abs(run.state.rate_now))
+    guess = collocate(run, xi_to - run.state.xi)
     note_shock(run)
-    rate = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH])
+    rate = ahead(run.stored_rate, at.TERMS * run.counts.length)
     stretch(run, 1.0, rate)
-    reached = guess >= xi_to - run.state[at.XI]
-    if run.counts[at.HAS_STATE] == 0 and run.k[at.K_SPEED] * settling_rate(run) < NOT_STIFF:
-        run.counts[at.STIFF] = 0
+    reached = guess >= xi_to - run.state.xi
+    if run.counts.has_state == 0 and run.k.speed * settling_rate(run) < NOT_STIFF:
+        run.counts.stiff = 0
     event, turn, end = first_event(run, rate, 1.0)
     keep_state(run, end)
-    keep_step(run, rate, end, xi_to if reached and end == 1.0 else run.state[at.XI] + end * guess)
+    keep_step(run, rate, end, xi_to if reached and end == 1.0 else run.state.xi + end * guess)
     note_negative_friction(run)
     end_step(run, xi_to, event, turn, False, reached)
 
 
-@inlined
+@kernel
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     """Choose the length of an explicit step, cut it at the first event, make it shorter until it obeys the law, and go."""
-    length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par[at.TOLERANCE]))
-    rate, load = ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
+    length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par.tolerance))
+    rate, load = ahead(run.stored_rate, at.TERMS * run.counts.length), ahead(run.stored_load, at.TERMS * run.counts.length)
     begin_verification(run)
     stretch(run, length, rate)
     event, turn, end = first_event(run, rate, length)
@@ -263,38 +264,38 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         if is_straight(run) or (obeys_contact(run, rate, length * end, grown, rate_end) and not is_negative(run)):
             break
         if halving == HALVINGS:
-            run.counts[at.BREACH] = at.NEGATIVE_FRICTION if is_negative(run) else at.OFF_THE_LAW
+            run.counts.breach = at.NEGATIVE_FRICTION if is_negative(run) else at.OFF_THE_LAW
             break
-        if run.state[at.ROUNDED] == 0.0:
+        if run.state.rounded == 0.0:
             note_rounding(run, length)
         length *= 0.5 * end
-        reached, run.state[at.LAST_STEP] = False, min(run.state[at.LAST_STEP], duration_of(run, length))
+        reached, run.state.last_step = False, min(run.state.last_step, duration_of(run, length))
         stretch(run, length, rate)
         event, turn, end = first_event(run, rate, length)
         grown, rate_end = growth(run, rate, length * end, 1.0), total(rate)
-    if run.state[at.ROUNDED] > 0.0:
+    if run.state.rounded > 0.0:
         note_rough_step(run, rate, rate_end)
     multiply(run.local, run.powers, load)
-    to = target if reached and end == 1.0 else run.state[at.XI] + end * length * guess
+    to = target if reached and end == 1.0 else run.state.xi + end * length * guess
     move(run, rate, end * length, grown, rate_end, to)
     end_step(run, target, event, turn, leaves, reached)
 
 
-@inlined
+@kernel
 def is_straight(run: Run) -> bool:
     """Return True on the bits next to a fold that are straight lines in the root of time: what these miss is known."""
-    return run.counts[at.AT_FOLD] != 0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
+    return run.counts.at_fold != 0 and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
 
 
-@inlined
+@kernel
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
-    limit = (target - run.state[at.XI]) / guess
-    if run.guard_count[run.counts[at.PIECE]] > 0 and not is_straight(run):
+    limit = (target - run.state.xi) / guess
+    if run.guard_count[run.counts.piece] > 0 and not is_straight(run):
         seen = within_guards(run, min(length, limit))
         length = seen if seen < min(length, limit) else length
     # Store the error-controlled length: truncation at an event must not shrink the next guess.
-    run.state[at.LAST_STEP] = duration_of(run, length)
+    run.state.last_step = duration_of(run, length)
     reached = length >= limit
     if reached:
         length = limit
@@ -303,20 +304,20 @@ def choose_length(run: Run, target: float, guess: float, length: float) -> tuple
     return length, reached
 
 
-@inlined
+@kernel
 def duration_of(run: Run, length: float) -> float:
     """Return how long (s) a step of so many guesses is."""
-    return length * abs(run.k[at.K_SPEED] + 0.5 * run.k[at.K_BEND] * min(length, 1.0))
+    return length * abs(run.k.speed + 0.5 * run.k.bend * min(length, 1.0))
 
 
-@inlined
+@kernel
 def first_event(run: Run, rate: Floats, length: float) -> tuple[int, int, float]:
     """Find what ends a step (of so many guesses) early, and cut the step there.
 
     Returns the event, which knot it passes (1 upwards, -1 down), and the share of the step up to there.
     """
     arrest = NONE
-    if (run.counts[at.IS_ALGEBRAIC] == 0 or run.counts[at.FOLDS_MOVE] == 1) and rate[0] <= magnitude(rate):
+    if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
     knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
     end = min(arrest, knot)
@@ -327,58 +328,58 @@ def first_event(run: Run, rate: Floats, length: float) -> tuple[int, int, float]
     return ARREST if arrest == end else KNOT, turn, end
 
 
-@inlined
+@kernel
 def end_step(run: Run, target: float, event: int, turn: int, leaves: bool, reached: bool) -> None:
     """Do what the event at the end of a step asks for."""
     if event == ARREST:
         come_to_rest(run)
     elif event == KNOT:
         pass_knot(run, turn)
-    elif leaves and (reached or target - run.state[at.XI] < TIE):
+    elif leaves and (reached or target - run.state.xi < TIE):
         reach_end(run)
 
 
-@inlined
+@kernel
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     """Record the step, which ends at xi = to, and move the state there."""
-    multiply(run.local, run.powers, ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH]))
+    multiply(run.local, run.powers, ahead(run.stored_load, at.TERMS * run.counts.length))
     move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
-@inlined
+@kernel
 def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
     """Record the step, of which load and rate (as a magnitude) stand in the next free row, and the slip is known; move there."""
-    direction = run.counts[at.MODE]
-    load = ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
-    speed, bend = run.k[at.K_SPEED] * length, run.k[at.K_BEND] * length * length
-    if run.counts[at.IS_BLOCK] == 1:
-        unload_spring(direction * run.par[at.STIFFNESS] * speed, direction * run.par[at.STIFFNESS] * bend, rate, load)
-        run.load[0] -= run.par[at.STIFFNESS] * direction * grown
+    direction = run.counts.mode
+    load = ahead(run.stored_load, at.TERMS * run.counts.length)
+    speed, bend = run.k.speed * length, run.k.bend * length * length
+    if run.counts.is_block == 1:
+        unload_spring(direction * run.par.stiffness * speed, direction * run.par.stiffness * bend, rate, load)
+        run.load[0] -= run.par.stiffness * direction * grown
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]
     note_gain(run, rate)
     record(run, to)
-    run.counts[at.MOVED], run.counts[at.EDGE] = 1, 0
-    run.state[at.SLIP_NOW] += direction * grown
-    run.state[at.LAW_SLIP] += run.k[at.K_CHI] * grown
-    run.state[at.RATE_NOW] = direction * max(rate_end, 0.0)
+    run.counts.moved, run.counts.edge = 1, 0
+    run.state.slip_now += direction * grown
+    run.state.law_slip += run.k.chi * grown
+    run.state.rate_now = direction * max(rate_end, 0.0)
 
 
-@inlined
+@kernel
 def note_gain(run: Run, rate: Floats) -> None:
     """By how much slip multiplies an error of the load (Z v + S mu(v) = load, and 2 Z v - load goes back): |2 Z / g'(v) - 1|.
 
     Where slip, inertia or a state decide with it, what becomes of an error is no matter of its phase alone.
     """
-    if run.counts[at.IS_ALGEBRAIC] == 1 and run.counts[at.FOLDS_MOVE] == 0:
-        friction_at(run, run.state[at.LAW_SLIP], abs(evaluate(rate, 0.5)), run.value)
-        run.state[at.GAIN] = abs(2.0 * run.par[at.IMPEDANCE] / (run.par[at.IMPEDANCE] + run.value[1]) - 1.0)
+    if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
+        friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)), run.value)
+        run.state.gain = abs(2.0 * run.par.impedance / (run.par.impedance + run.value[1]) - 1.0)
     else:
-        run.state[at.GAIN] = math.nan
+        run.state.gain = math.nan
 
 
-@inlined
+@kernel
 def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> None:
     """The block unloads its spring as it slips: take stiffness times slip from the outer load."""
     for k in range(1, at.TERMS):

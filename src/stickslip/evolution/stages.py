@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
 from stickslip.evolution.collocation import (
     DERIVATIVE,
@@ -24,7 +23,7 @@ from stickslip.evolution.collocation import (
     STAGES,
     VALUE_IN_MIDDLE,
 )
-from stickslip.evolution.compiled import ahead, call_guards, call_state_value, call_value, floats, inlined, kernel
+from stickslip.evolution.compiled import ahead, call_guards, call_state_value, call_value, floats, kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import evaluate
 from stickslip.evolution.workspace import Run
@@ -36,18 +35,21 @@ RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
 STRIDE = 1e-4
 """Share of the way between two places (1) over which the slope of a guard's argument is taken."""
 CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
+PLACES_ON_CHORD = 4
 """Where between two places guards are looked at."""
 NUDGE = 1e-15
 """Relative change of a number that is rounding: 4 ulp or more."""
 ITERATIONS = 40
+NEWTON_ROUNDING = 1e-15
+"""Rounding of the load (1), relative to its terms, as Newton's method meets it."""
 
 
-@inlined
+@kernel
 def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
     """Friction and the change of the state, with derivatives, into run.value."""
-    piece = run.counts[at.PIECE]
+    piece = run.counts.piece
     constants, slip = constants_of(run, piece), law_slip + run.slip_shift[piece]
-    if run.counts[at.HAS_STATE] == 1:
+    if run.counts.has_state == 1:
         call_state_value(run.state_at[piece], constants, slip, rate, state, run.value)
     else:
         below = min(rate, 0.0)  # a rate law need not mean anything there, but an iteration may look: straight on
@@ -61,13 +63,13 @@ def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
 @kernel
 def rate_at_load(run: Run, load: float, guess: float) -> float:
     """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
-    impedance, normal = run.par[at.IMPEDANCE], run.par[at.NORMAL]
-    low, high = 0.0, (load + run.par[at.REFERENCE]) / impedance
+    impedance, normal = run.par.impedance, run.par.normal
+    low, high = 0.0, (load + run.par.reference) / impedance
     if high <= 0.0:
         return 0.0
     s = guess if low < guess < high else 0.5 * high
     for _ in range(200):
-        contact_at(run, run.state[at.LAW_SLIP], s, run.state[at.STATE_NOW])
+        contact_at(run, run.state.law_slip, s, run.state.state_now)
         error = impedance * s + normal * run.value[MU] - load
         if error > 0.0:
             high = s
@@ -86,8 +88,8 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
 def assemble(run: Run, h: float, force: float) -> None:
     """Newton's equations at the present stages, for a step of h seconds; `force` is taken from the load."""
     par, v, w, m = run.par, run.stage_rate, run.stage_state, run.matrix
-    moving, remembers = run.counts[at.MODE] != 0, run.counts[at.HAS_STATE] == 1
-    mass, chi = par[at.INERTIA] / h, run.k[at.K_CHI] * h
+    moving, remembers = run.counts.mode != 0, run.counts.has_state == 1
+    mass, chi = par.inertia / h, run.k.chi * h
     size = 2 * STAGES if remembers else STAGES
     for i in range(1, POINTS):
         row, other = ahead(m, TERMS * (i - 1)), ahead(m, TERMS * (STAGES + i - 1))
@@ -96,20 +98,20 @@ def assemble(run: Run, h: float, force: float) -> None:
             walked += INTEGRAL[i, j] * v[j]
             change += DERIVATIVE[i, j] * v[j]
             evolved += DERIVATIVE[i, j] * w[j]
-        contact_at(run, run.state[at.LAW_SLIP] + chi * walked, v[i], w[i])
+        contact_at(run, run.state.law_slip + chi * walked, v[i], w[i])
         value = run.value
-        resisted = par[at.IMPEDANCE] * v[i] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * walked
-        by_walk = par[at.STIFFNESS] * h + par[at.NORMAL] * value[BY_SLIP] * chi
+        resisted = par.impedance * v[i] + par.normal * value[MU] + par.stiffness * h * walked
+        by_walk = par.stiffness * h + par.normal * value[BY_SLIP] * chi
         for j in range(1, POINTS):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
-        row[i - 1] += par[at.IMPEDANCE] + par[at.NORMAL] * value[BY_RATE] if moving else 1.0
+        row[i - 1] += par.impedance + par.normal * value[BY_RATE] if moving else 1.0
         row[size] = evaluate(run.seen, POINT[i]) - force - resisted - mass * change if moving else 0.0
         if remembers:
             for j in range(1, POINTS):
                 row[STAGES + j - 1] = 0.0
                 other[j - 1] = -h * value[CHANGE_BY_SLIP] * chi * INTEGRAL[i, j] if moving else 0.0
                 other[STAGES + j - 1] = DERIVATIVE[i, j]
-            row[STAGES + i - 1] = par[at.NORMAL] * value[BY_STATE] if moving else 0.0
+            row[STAGES + i - 1] = par.normal * value[BY_STATE] if moving else 0.0
             other[i - 1] -= h * value[CHANGE_BY_RATE]
             other[STAGES + i - 1] -= h * value[CHANGE_BY_STATE]
             other[size] = h * value[CHANGE] - evolved
@@ -148,10 +150,22 @@ def eliminate(m: Floats, size: int) -> bool:
 
 
 @kernel
-def correct(run: Run, size: int) -> float:
-    """Add the solution of Newton's equations to the stages; how large the change is, relative to the stages."""
+def size_of_load(run: Run) -> float:
+    """Return the size (Pa, or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
+    size = run.par.reference
+    for k in range(TERMS):
+        size += abs(run.load[k])
+    return size
+
+
+@kernel
+def correct(run: Run, size: int, rounding: float) -> float:
+    """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
+
+    rounding: of the load (Pa, or N); a change of the slip rate that is no more than that makes is none.
+    """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
-    fastest, farthest, moved, evolved = 1e-300, run.par[at.STATE_SCALE] + 1e-300, 0.0, 0.0
+    fastest, farthest, moved, evolved = 1e-300, run.par.state_scale + 1e-300, 0.0, 0.0
     for i in range(1, POINTS):
         step = m[TERMS * (i - 1) + size]
         v[i] += step
@@ -162,6 +176,8 @@ def correct(run: Run, size: int) -> float:
             evolved, farthest = max(evolved, abs(step)), max(farthest, abs(w[i]))
         if not (math.isfinite(v[i]) and math.isfinite(w[i])):
             return math.inf
+    if rounding > 0.0:
+        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value[BY_RATE]), 0.0)  # as at the last stage
     return max(moved / fastest, evolved / farthest)
 
 
@@ -176,17 +192,17 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
         run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
         if share > 0.0:
             run.stage_state[i] = evaluate(run.state_jet, share * POINT[i])
-            if run.counts[at.MODE] != 0:  # at rest run.jet holds the strength
+            if run.counts.mode != 0:  # at rest run.jet holds the strength
                 run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
-    size = 2 * STAGES if run.counts[at.HAS_STATE] == 1 else STAGES
-    before = math.inf
+    size = 2 * STAGES if run.counts.has_state == 1 else STAGES
+    before, rounding = math.inf, NEWTON_ROUNDING * size_of_load(run) if run.counts.has_inertia == 0 else 0.0
     for _ in range(ITERATIONS):
         assemble(run, h, force)
         if not eliminate(run.matrix, size):
             return False
-        change = correct(run, size)
+        change = correct(run, size, rounding)
         # Newton squares its error: the next change would be lost in the tolerance; or the last digits go round in circles
-        if change <= 1e-2 * math.sqrt(run.par[at.TOLERANCE]) or 0.1 * before < change < 1e-9:
+        if change <= 1e-2 * math.sqrt(run.par.tolerance) or 0.1 * before < change < 1e-9:
             look_between(run)
             return True
         if math.isinf(change):
@@ -198,7 +214,7 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
 @kernel
 def look_between(run: Run) -> None:
     """Put slip rate, its change and integral, state and its change halfway between the points into rows of run.matrix."""
-    v, w, remembers = run.stage_rate, run.stage_state, run.counts[at.HAS_STATE] == 1
+    v, w, remembers = run.stage_rate, run.stage_state, run.counts.has_state == 1
     for i in range(STAGES):
         rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(POINTS):
@@ -213,22 +229,22 @@ def look_between(run: Run) -> None:
         row[RATE], row[ACCELERATION], row[WALKED], row[STATE], row[EVOLVED] = rate, acceleration, walked, state, evolved
 
 
-@inlined
+@kernel
 def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
     """Evaluate the contact at a place where `look_between` has looked; all of its arguments are larger by a relative nudge."""
     row = ahead(run.matrix, TERMS * i)
-    slip = run.state[at.LAW_SLIP] + run.k[at.K_CHI] * h * row[WALKED]
+    slip = run.state.law_slip + run.k.chi * h * row[WALKED]
     contact_at(run, slip * (1.0 + nudge), row[RATE] * (1.0 + nudge), row[STATE] * (1.0 + nudge))
 
 
-@inlined
+@kernel
 def yielding(run: Run, h: float) -> tuple[float, float]:
     """Return the error of slip rate per load that is missing, and of the state per missing change, over a step of h seconds.
 
     What is missing of a derivative turns its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
-    resistance = abs(run.par[at.IMPEDANCE] + run.par[at.NORMAL] * run.value[BY_RATE]) + STAGES * run.par[at.INERTIA] / h
-    return 1.0 / resistance if run.counts[at.MODE] != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
+    resistance = abs(run.par.impedance + run.par.normal * run.value[BY_RATE]) + STAGES * run.par.inertia / h
+    return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
 
 
 @kernel
@@ -243,36 +259,38 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
         middle = ahead(run.matrix, TERMS * i)
         contact_between(run, i, h, 0.0)
         by_load, by_change = yielding(run, h)
-        resisted = par[at.IMPEDANCE] * middle[RATE] + par[at.NORMAL] * value[MU] + par[at.STIFFNESS] * h * middle[WALKED]
-        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par[at.INERTIA] / h * middle[ACCELERATION]
+        resisted = par.impedance * middle[RATE] + par.normal * value[MU] + par.stiffness * h * middle[WALKED]
+        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par.inertia / h * middle[ACCELERATION]
         missed = larger(missed, abs(missing) * by_load)
         missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
-    return missed, missed_state if run.counts[at.HAS_STATE] == 1 else 0.0
+    return missed, missed_state if run.counts.has_state == 1 else 0.0
 
 
-@inlined
+@kernel
 def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
     """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
-    piece = run.counts[at.PIECE]
-    slip = run.state[at.LAW_SLIP] + walked + run.slip_shift[piece]
+    piece = run.counts.piece
+    slip = run.state.law_slip + walked + run.slip_shift[piece]
     call_guards(run.guards_at[piece], constants_of(run, piece), slip, rate, state, out)
 
 
 @kernel
 def follow_step(run: Run, h: float, way: Floats) -> None:
-    """Put law slip (m, since the start), slip rate and state at the start, the points and the places between them into rows."""
-    chi = run.k[at.K_CHI] * h
+    """Put law slip (m, since the start), slip rate and state at the start, the points and the places between them one by one."""
+    chi = run.k.chi * h
     for point in range(POINTS):
         walked = 0.0
         for j in range(POINTS):
             walked += INTEGRAL[point, j] * run.stage_rate[j]
-        way[2 * point] = chi * walked, run.stage_rate[point], run.stage_state[point]
+        here = ahead(way, 6 * point)
+        here[0], here[1], here[2] = chi * walked, run.stage_rate[point], run.stage_state[point]
     for i in range(STAGES):
         row = ahead(run.matrix, TERMS * i)
-        way[2 * i + 1] = chi * row[WALKED], row[RATE], row[STATE]
+        between = ahead(way, 6 * i + 3)
+        between[0], between[1], between[2] = chi * row[WALKED], row[RATE], row[STATE]
 
 
-@inlined
+@kernel
 def rise(first: float, climb: float, last: float, descent: float) -> float:
     """Return how far a concave function rises above its start, from its values and its slopes at both ends of [0, 1]."""
     if climb > 0.0 and descent < 0.0:
@@ -288,21 +306,27 @@ def stays_in_sight(run: Run, h: float) -> float:
     of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts. A
     narrow part may lie between two places: there its argument goes up and down again, which its slopes at both of them show.
     """
-    n = run.guard_count[run.counts[at.PIECE]]
+    n = run.guard_count[run.counts.piece]
     if n == 0:
         return 0.0
-    way, used, seen = np.empty((2 * POINTS - 1, 3)), np.zeros(n), np.empty((len(CHORD), 2 * n))
+    room, used = np.empty(3 * (2 * POINTS - 1) + 2 * n * PLACES_ON_CHORD), np.zeros(n)
+    way = floats(room.ctypes.data)
+    seen = ahead(way, 3 * (2 * POINTS - 1))
     follow_step(run, h, way)
     for i in range(2 * STAGES):
-        for k in range(len(CHORD)):
-            walked, rate, state = way[i] + CHORD[k] * (way[i + 1] - way[i])
-            look_at_guards(run, walked, rate, state, floats(seen.ctypes.data + 16 * n * k))
+        begin, end = ahead(way, 3 * i), ahead(way, 3 * i + 3)
+        for k in range(PLACES_ON_CHORD):
+            walked, rate = begin[0] + CHORD[k] * (end[0] - begin[0]), begin[1] + CHORD[k] * (end[1] - begin[1])
+            look_at_guards(run, walked, rate, begin[2] + CHORD[k] * (end[2] - begin[2]), ahead(seen, 2 * n * k))
         for j in range(n):
-            pull = seen[0, 2 * j + 1]  # as it is at this place: one that rises from zero has no room there, and soon enough
-            first, last = pull * seen[0, 2 * j], pull * seen[3, 2 * j]
-            climb, descent = pull * seen[1, 2 * j] - first, last - pull * seen[2, 2 * j]
+            pull = seen[2 * j + 1]  # as it is at this place: one that rises from zero has no room there, and soon enough
+            first, last = pull * seen[2 * j], pull * seen[6 * n + 2 * j]
+            climb, descent = pull * seen[2 * n + 2 * j] - first, last - pull * seen[4 * n + 2 * j]
             used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
-    return max(used)
+    hardest = 0.0
+    for j in range(n):
+        hardest = max(hardest, used[j])
+    return hardest
 
 
 @kernel
@@ -318,12 +342,12 @@ def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
         by_load, by_change = yielding(run, h)
         for nudge in (-NUDGE, NUDGE):
             contact_between(run, i, h, nudge)
-            lost = max(lost, abs(run.value[MU] - friction) * run.par[at.NORMAL] * by_load)
+            lost = max(lost, abs(run.value[MU] - friction) * run.par.normal * by_load)
             lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
     return lost, lost_state
 
 
-@inlined
+@kernel
 def larger(x: float, y: float) -> float:
     """Return the larger of two numbers, and infinity where the second is none."""
     return math.inf if math.isnan(y) else max(x, y)

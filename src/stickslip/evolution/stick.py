@@ -15,7 +15,7 @@ from stickslip.evolution.branch import (
     rest_limit,
     towards,
 )
-from stickslip.evolution.compiled import ahead, inlined
+from stickslip.evolution.compiled import ahead, kernel
 from stickslip.evolution.implicit import forgotten, stick_with_state
 from stickslip.evolution.layout import Floats
 from stickslip.evolution.polynomial import evaluate, fill, restrict, scale
@@ -26,37 +26,37 @@ TOUCH = 10.0
 """Rests up to the root of this many local tolerances (the root of `rtol`), in rows, are touches of rest in passing."""
 
 
-@inlined
+@kernel
 def arrive(run: Run) -> None:
     """A new piece of load begins: does the contact stick or slip under it, which way, on which branch?"""
     load = run.load[0]
-    if run.counts[at.STICKS] == 0:
-        if run.counts[at.HAS_INERTIA] == 0 and load != -run.par[at.REFERENCE]:
-            run.counts[at.MODE] = 1 if load > -run.par[at.REFERENCE] else -1
+    if run.counts.sticks == 0:
+        if run.counts.has_inertia == 0 and load != -run.par.reference:
+            run.counts.mode = 1 if load > -run.par.reference else -1
         return
     limit = rest_limit(run)
-    mode = run.counts[at.MODE]
-    if mode != 0 and run.counts[at.FOLDS_MOVE] == 1 and run.counts[at.ARRIVING] == at.NO_CAUSE:
+    mode = run.counts.mode
+    if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == at.NO_CAUSE:
         pass  # the load goes on as it was, and so does the slip rate
-    elif mode != 0 and run.counts[at.IS_ALGEBRAIC] == 1:
-        seen, branch = towards(run, load, mode), run.counts[at.BRANCH]
+    elif mode != 0 and run.counts.is_algebraic == 1:
+        seen, branch = towards(run, load, mode), run.counts.branch
         if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
             leave_branch(run, seen)
-    elif mode != 0 and run.counts[at.HAS_INERTIA] == 0:
-        friction_at(run, run.state[at.LAW_SLIP], 0.0, run.value)
+    elif mode != 0 and run.counts.has_inertia == 0:
+        friction_at(run, run.state.law_slip, 0.0, run.value)
         if towards(run, load, mode) < run.value[0]:
-            run.counts[at.MODE] = 0
-    if run.counts[at.MODE] == 0 and run.counts[at.EDGE] == 0:
+            run.counts.mode = 0
+    if run.counts.mode == 0 and run.counts.edge == 0:
         for direction in (1, -1):
             if towards(run, load, direction) > limit:
-                run.counts[at.MODE] = direction
+                run.counts.mode = direction
                 choose_branch(run, towards(run, load, direction))
-    if run.counts[at.MODE] == 0:
-        note_jump(run, 0.0, run.counts[at.ARRIVING])
-        run.state[at.RATE_NOW] = 0.0
+    if run.counts.mode == 0:
+        note_jump(run, 0.0, run.counts.arriving)
+        run.state.rate_now = 0.0
 
 
-@inlined
+@kernel
 def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
     """Where on [0, 1] of a stretch of load rest ends, and in which direction; NONE if it lasts."""
     strength = run.jet
@@ -65,80 +65,80 @@ def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
     return onset_of_slip(run, load, strength)
 
 
-@inlined
+@kernel
 def is_arrest(run: Run, lasting: float) -> bool:
     """Whether rest that lasts so long (s, without healing) is more than a touch of rest in passing.
 
     A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
     the order of its root. A contact without mass stops because the load falls, and stays.
     """
-    return run.counts[at.HAS_INERTIA] == 0 or lasting > math.sqrt(TOUCH * run.par[at.TOLERANCE]) * run.par[at.ROW_TIME]
+    return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.par.tolerance) * run.par.row_time
 
 
-@inlined
+@kernel
 def heal(run: Run, load: float) -> None:
     """A law that remembers slip since the last arrest forgets it: friction is that of the start. Slip at once if it cannot hold."""
     before = rest_limit(run)
-    run.state[at.LAW_SLIP], run.counts[at.PIECE] = 0.0, int(run.par[at.HEALED_PIECE])
+    run.state.law_slip, run.counts.piece = 0.0, int(run.par.healed_piece)
     limit = rest_limit(run)
     if limit == before:
         return
-    run.counts[at.EDGE] = 0
-    if run.counts[at.FOLDS_MOVE] == 1:
+    run.counts.edge = 0
+    if run.counts.folds_move == 1:
         return  # the branches at the healed slip have to be found first
     for direction in (1, -1):
         beyond = towards(run, load, direction) - limit
-        if abs(beyond) <= SAME_LEVEL * run.par[at.NORMAL]:
-            run.counts[at.EDGE] = direction  # how the load goes on decides, and not its rounding
+        if abs(beyond) <= SAME_LEVEL * run.par.normal:
+            run.counts.edge = direction  # how the load goes on decides, and not its rounding
         elif beyond > 0.0:
-            run.counts[at.MODE] = direction
-            if run.counts[at.HAS_INERTIA] == 0:
-                note_jump(run, direction * beyond / run.par[at.IMPEDANCE], at.HEALING)
+            run.counts.mode = direction
+            if run.counts.has_inertia == 0:
+                note_jump(run, direction * beyond / run.par.impedance, at.HEALING)
 
 
-@inlined
+@kernel
 def stick(run: Run, xi_to: float) -> None:
     """Stay at rest until the load leaves what friction can hold."""
-    if run.counts[at.HAS_STATE] == 1 and run.state[at.STATE_NOW] != 0.0 and not forgotten(run):
+    if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
         stick_with_state(run, xi_to)
         return
-    width, load = xi_to - run.state[at.XI], ahead(run.stored_load, at.TERMS * run.counts[at.LENGTH])
-    restrict(run.load, run.state[at.XI], width, load)
+    width, load = xi_to - run.state.xi, ahead(run.stored_load, at.TERMS * run.counts.length)
+    restrict(run.load, run.state.xi, width, load)
     onset, direction = end_of_rest(run, load)
-    if run.par[at.HEALED_PIECE] >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state[at.SPEED]):
+    if run.par.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
         heal(run, load[0])
-        stale = run.counts[at.FOLDS_MOVE] == 1 and run.state[at.TABLE_SLIP] != run.state[at.LAW_SLIP]
-        if run.counts[at.MODE] != 0 or stale:
+        stale = run.counts.folds_move == 1 and run.state.table_slip != run.state.law_slip
+        if run.counts.mode != 0 or stale:
             return
         onset, direction = end_of_rest(run, load)
     slips = onset <= 1.0 - TIE
     if slips:
         scale(load, onset)
-    fill(ahead(run.stored_rate, at.TERMS * run.counts[at.LENGTH]), 0.0)
-    if run.counts[at.HAS_STATE] == 1:
-        fill(ahead(run.stored_state, at.TERMS * run.counts[at.LENGTH]), 0.0)
-    record(run, run.state[at.XI] + onset * width if slips else xi_to)
-    run.counts[at.EDGE] = 0
+    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
+    if run.counts.has_state == 1:
+        fill(ahead(run.stored_state, at.TERMS * run.counts.length), 0.0)
+    record(run, run.state.xi + onset * width if slips else xi_to)
+    run.counts.edge = 0
     if slips:
-        run.counts[at.MODE], run.counts[at.EDGE] = direction, direction
-        run.counts[at.STIFF] = run.counts[at.STEPS] = 0
+        run.counts.mode, run.counts.edge = direction, direction
+        run.counts.stiff = run.counts.steps = 0
         choose_branch(run, rest_limit(run))
 
 
-@inlined
+@kernel
 def come_to_rest(run: Run) -> None:
     """The slip rate has reached zero: rest, or slip the other way where the load is beyond the strength there."""
-    before = run.counts[at.MODE]
-    run.state[at.RATE_NOW] = 0.0
-    if run.counts[at.STICKS] == 0:
-        run.counts[at.MODE] = -before
+    before = run.counts.mode
+    run.state.rate_now = 0.0
+    if run.counts.sticks == 0:
+        run.counts.mode = -before
         return
-    run.counts[at.MODE] = 0
-    if run.counts[at.HAS_INERTIA] == 0:
-        run.counts[at.EDGE] = before if run.par[at.STATIC_EXCESS] == 0.0 else 0
+    run.counts.mode = 0
+    if run.counts.has_inertia == 0:
+        run.counts.edge = before if run.par.static_excess == 0.0 else 0
         return
-    load = evaluate(run.load, run.state[at.XI])
+    load = evaluate(run.load, run.state.xi)
     limit = rest_limit(run)
     for direction in (1, -1):
         if towards(run, load, direction) > limit:
-            run.counts[at.MODE] = direction
+            run.counts.mode = direction

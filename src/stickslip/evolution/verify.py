@@ -13,7 +13,7 @@ from stickslip.evolution.branch import constants_of
 from stickslip.evolution.compiled import call_value, inlined, kernel
 from stickslip.evolution.layout import TERMS, Floats
 from stickslip.evolution.polynomial import moment, multiply, powers_of, total
-from stickslip.evolution.workspace import DEGREE, Run
+from stickslip.evolution.workspace import Run
 
 ALLOWED = 10.0
 """Defect of the contact equation, in units of the local tolerance, beyond which a step is made shorter (1): on smooth laws it is
@@ -30,6 +30,8 @@ TRIFLE = 2.0**-30
 """Share of a step (1) that is so short that nothing happens in it."""
 EXTRA = 10.0
 """How much larger (1) rounding may be at one place of a step than at another."""
+LOST = 1e-6
+"""Share of the terms of the contact equation (1) that is more than rounding in any law: the step does not even begin on the law."""
 CLOSE = 0.01
 """How well (1) the longest step within all guards is found, relative to its length."""
 
@@ -85,10 +87,10 @@ def slope_at_end(rate: Floats) -> float:
 @inlined
 def load_at_end(run: Run) -> float:
     """Return the load at the end of a step, as seen in the direction of slip, minus the reference; `run.powers` are the step's."""
-    if run.counts[DEGREE] <= 1:
+    if run.counts.degree <= 1:
         return run.seen[0] + run.powers[1] * run.seen[1]
     load = run.seen[0]
-    for k in range(1, run.counts[DEGREE] + 1):
+    for k in range(1, run.counts.degree + 1):
         load += run.powers[k] * run.seen[k]
     return load
 
@@ -96,17 +98,17 @@ def load_at_end(run: Run) -> float:
 @inlined
 def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> bool:
     """Return True if a step (of so many guesses) obeys the contact equation at its end, to the tolerance or to rounding."""
-    moves = run.counts[at.HAS_INERTIA] == 1
+    moves = run.counts.has_inertia == 1
     missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if moves else 0.0)
     allowed = ALLOWED_SLOPE if moves else ALLOWED
-    return missing <= allowed * run.par[at.TOLERANCE] * largest_rate(rate, rate_end) + rounding + run.state[at.ROUNDED]
+    return missing <= allowed * run.par.tolerance * largest_rate(rate, rate_end) + rounding + run.state.rounded
 
 
 @inlined
 def is_negative(run: Run) -> bool:
     """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
-    friction = run.value[0] + run.offset[run.counts[at.PIECE]]
-    return run.par[at.REFERENCE] + run.par[at.NORMAL] * friction < -NEGLIGIBLE * run.par[at.NORMAL]
+    friction = run.value[0] + run.offset[run.counts.piece]
+    return run.par.reference + run.par.normal * friction < -NEGLIGIBLE * run.par.normal
 
 
 @inlined
@@ -117,18 +119,18 @@ def defect(run: Run, lasting: float, grown: float, rate: float, slope: float) ->
     to there, in guesses; slope: of the slip rate there, by the same unit. A step that leaves rest begins by definition without a
     net force: what the equation lacks there it lacks at every place.
     """
-    par, value, piece = run.par, run.value, run.counts[at.PIECE]
-    dx, load = run.k[at.K_SLIP] + run.k[at.K_CHI] * grown, load_at_end(run)
+    par, value, piece = run.par, run.value, run.counts.piece
+    dx, load = run.k.slip + run.k.chi * grown, load_at_end(run)
     call_value(run.value_at[piece], constants_of(run, piece), dx, rate, value)
-    friction, impedance, normal = value[0] + run.offset[piece], par[at.IMPEDANCE], par[at.NORMAL]
-    missing = load - impedance * rate - normal * friction - run.state[at.UNBALANCED]
+    friction, impedance, normal = value[0] + run.offset[piece], par.impedance, par.normal
+    missing = load - impedance * rate - normal * friction - run.state.unbalanced
     # value[1] and value[2] are the slopes of the coefficient with slip rate and slip: their places are rounded, too
-    terms = par[at.REFERENCE] + abs(load) + normal * (abs(friction) + abs(value[1] * rate) + abs(value[2] * dx))
-    if run.counts[at.HAS_INERTIA] == 0:
+    terms = par.reference + abs(load) + normal * (abs(friction) + abs(value[1] * rate) + abs(value[2] * dx))
+    if run.counts.has_inertia == 0:
         resistance = impedance + normal * max(value[1], 0.0)
         return abs(missing) / resistance, ROUNDING * terms / resistance
-    missing -= par[at.STIFFNESS] * grown
-    pace = (run.k[at.K_SPEED] + run.k[at.K_BEND] * lasting) * lasting / par[at.INERTIA]
+    missing -= par.stiffness * grown
+    pace = (run.k.speed + run.k.bend * lasting) * lasting / par.inertia
     return abs(missing * pace - slope), ROUNDING * terms * pace
 
 
@@ -140,33 +142,37 @@ def note_rounding(run: Run, length: float) -> None:
     """
     powers_of(TRIFLE * length, run.powers)
     multiply(run.jet, run.powers, run.part)
-    grown = run.k[at.K_SPEED] * TRIFLE * length * moment(run.part, 1)
-    grown += run.k[at.K_BEND] * (TRIFLE * length) ** 2 * moment(run.part, 2)
-    missing, _ = defect(run, TRIFLE * length, grown, total(run.part), slope_at_end(run.part))
-    run.state[at.ROUNDED] = EXTRA * missing
+    grown = run.k.speed * TRIFLE * length * moment(run.part, 1)
+    grown += run.k.bend * (TRIFLE * length) ** 2 * moment(run.part, 2)
+    missing, rounding = defect(run, TRIFLE * length, grown, total(run.part), slope_at_end(run.part))
+    run.state.rounded = EXTRA * missing
+    if missing * ROUNDING > LOST * rounding:
+        run.counts.breach = at.OFF_THE_LAW
 
 
 @kernel
 def note_rough_step(run: Run, rate: Floats, rate_end: float) -> None:
     """Count the step if rounding in the law has made it miss the contact equation by more than the tolerance allows."""
-    share = run.state[at.ROUNDED] / largest_rate(rate, rate_end)
-    if share > (ALLOWED_SLOPE if run.counts[at.HAS_INERTIA] == 1 else ALLOWED) * run.par[at.TOLERANCE]:
-        run.counts[at.ROUGH] += 1
-        run.state[at.ROUGHEST] = max(run.state[at.ROUGHEST], share)
+    share = run.state.rounded / largest_rate(rate, rate_end)
+    if share > (ALLOWED_SLOPE if run.counts.has_inertia == 1 else ALLOWED) * run.par.tolerance:
+        run.counts.rough += 1
+        run.state.roughest = max(run.state.roughest, share)
 
 
 @inlined
 def begin_verification(run: Run) -> None:
     """Nothing is known yet of the step at hand: no ignored force, no rounding."""
-    run.state[at.UNBALANCED] = run.state[at.ROUNDED] = 0.0
-    if run.k[at.K_FREE] == 0.0:
+    run.state.unbalanced = run.state.rounded = 0.0
+    if run.k.free == 0.0 and run.counts.is_algebraic == 0:  # an algebraic contact solves its equation where it starts, too
         note_unbalanced(run)
 
 
 @kernel
 def note_unbalanced(run: Run) -> None:
     """Note the force that a step ignores at its start, because it leaves rest and has no net force by definition."""
-    piece = run.counts[at.PIECE]
-    call_value(run.value_at[piece], constants_of(run, piece), run.k[at.K_SLIP], 0.0, run.value)
-    balance = run.seen[0] - run.par[at.NORMAL] * (run.value[0] + run.offset[piece])
-    run.state[at.UNBALANCED] = balance - run.k[at.K_FORCE]
+    piece = run.counts.piece
+    call_value(run.value_at[piece], constants_of(run, piece), run.k.slip, 0.0, run.value)
+    balance = run.seen[0] - run.par.normal * (run.value[0] + run.offset[piece])
+    run.state.unbalanced = balance - run.k.force
+    if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.par.tolerance) * run.par.normal:
+        run.counts.breach = at.OFF_THE_LAW  # a massless contact has no force to spare: no solution begins here

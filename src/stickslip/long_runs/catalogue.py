@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.errors import InputError
-from stickslip.evolution import layout as at
 from stickslip.evolution.creep.conditions import check_creep_rtol
 from stickslip.evolution.drive import drive
 from stickslip.evolution.event_stream import EventStream, Look, Place
@@ -92,7 +91,7 @@ def check_energies(creep_rtol: float | None, energies: bool, where: str, options
 
 def stream_of(run: RunInProgress, event_rate: float, energies: bool) -> EventStream:
     """The events of a run from its start."""
-    return EventStream(run.problem, event_rate, float(run.setup.par[at.RAMP]), energies=energies)
+    return EventStream(run.problem, event_rate, float(run.setup.par.ramp), energies=energies)
 
 
 def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None, energies: bool = False) -> Catalogue:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from stickslip.errors import InputError
-from stickslip.evolution import layout as at
 from stickslip.evolution.checkpoint import engine
 from stickslip.evolution.event_stream import EventStream
 from stickslip.evolution.in_progress import RunInProgress
@@ -81,7 +80,7 @@ def events_wanted(stopped: Solution, events: int | None) -> int | None:
 
 def events_in(run: RunInProgress) -> int:
     """Events that are over in the history of a run."""
-    stream = EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par[at.RAMP]))
+    stream = EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
     return len(stream.look(run.store, run.length).known_by)
 
 

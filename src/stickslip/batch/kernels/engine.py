@@ -17,8 +17,8 @@ ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types
 @cache
 def engine_address() -> int:
     """Where the machine code of `engine.advance` is; compiles it where no single run has done so."""
-    advance.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
-    compiled = advance.overloads[ARGUMENTS]  # type: ignore[attr-defined]
+    advance.entry.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
+    compiled = advance.entry.overloads[ARGUMENTS]  # type: ignore[attr-defined]
     return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
 
 

@@ -10,20 +10,24 @@ from __future__ import annotations
 
 import math
 
-from stickslip.evolution import layout as at
 from stickslip.evolution.branch import constants_of
 from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, kernel
 from stickslip.evolution.engine import ROOM
 from stickslip.evolution.implicit import judge_stiffness
 from stickslip.evolution.lanes import WIDTH, lanes_at
-from stickslip.evolution.layout import TERMS, Floats, Integers
+from stickslip.evolution.layout import TERMS, Floats, Integers, Series
 from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
+from stickslip.evolution.records import numbers_of
 from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
 from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.evolution.verify import begin_verification, is_negative, obeys_contact
-from stickslip.evolution.workspace import DEGREE, PLACES, Run, borrow
+from stickslip.evolution.workspace import PLACES, Run, borrow
 
-SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (at.K_FORCE + 1 + n * TERMS for n in range(7))
+K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE = (
+    Series.places[name].first for name in ("speed", "bend", "slip", "rate", "free", "force")
+)
+SERIES = Series.total
+SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (Series.total + n * TERMS for n in range(7))
 LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
 CONSTANTS = TOLERANCE + 1
 """Rows of the block, of `WIDTH` numbers each: behind those of `run.k`; a law's constants fill the last ones."""
@@ -49,7 +53,7 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
 @inlined
 def piece_of(table: Integers, lane: int) -> int:
     """The piece of the law under which the member in a lane slips."""
-    return borrow(ahead(table, lane * PLACES)).counts[at.PIECE]
+    return borrow(ahead(table, lane * PLACES)).counts.piece
 
 
 @kernel
@@ -74,17 +78,17 @@ def step_under(address: int, table: Integers, waits: Integers, jets: Integers, b
 @inlined
 def put_in(run: Run, own: Floats, fresh: bool) -> None:
     """What a run's series is made of into its column of the block."""
-    guess = first_guess(run, run.state[at.TARGET] - run.state[at.XI])
+    guess = first_guess(run, run.state.target - run.state.xi)
     prepare_series(run, guess)
     own[WIDTH * GUESS] = guess
-    for k in (at.K_SPEED, at.K_BEND, at.K_SLIP, at.K_RATE, at.K_FREE, at.K_FORCE):
-        own[WIDTH * k] = run.k[k]
-    last = run.counts[DEGREE]
+    for k in (K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE):
+        own[WIDTH * k] = numbers_of(run.k)[k]
+    last = run.counts.degree
     if fresh:
-        constants, last = constants_of(run, run.counts[at.PIECE]), TERMS - 1
-        for k in range(at.K_FORCE + 1):
-            own[WIDTH * k] = run.k[k]
-        own[WIDTH * TOLERANCE] = run.par[at.TOLERANCE]
+        constants, last = constants_of(run, run.counts.piece), TERMS - 1
+        for k in range(SERIES):
+            own[WIDTH * k] = numbers_of(run.k)[k]
+        own[WIDTH * TOLERANCE] = run.par.tolerance
         for k in range(run.size):
             own[WIDTH * (CONSTANTS + k)] = constants[k]
     for k in range(last + 1):
@@ -99,12 +103,12 @@ def take_length(run: Run, own: Floats) -> None:
     if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # not for lanes
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
-        usable = usable_length(run.jet, run.par[at.TOLERANCE])
-    if run.guard_count[run.counts[at.PIECE]] > 0:
+        usable = usable_length(run.jet, run.par.tolerance)
+    if run.guard_count[run.counts.piece] > 0:
         for k in range(TERMS):
             run.reach[k] = own[WIDTH * (REACH + k)]
-    own[WIDTH * LAST_STEP] = run.state[at.LAST_STEP]
-    length, reached = choose_length(run, run.state[at.TARGET], own[WIDTH * GUESS], usable)
+    own[WIDTH * LAST_STEP] = run.state.last_step
+    length, reached = choose_length(run, run.state.target, own[WIDTH * GUESS], usable)
     own[WIDTH * LENGTH], own[WIDTH * REACHED] = length, 1.0 if reached else 0.0
 
 
@@ -115,8 +119,8 @@ def calculate(rows: Floats) -> None:
     powers_of(length, powers)
     multiply(ahead(rows, JET), powers, rate)
     multiply(ahead(rows, LOCAL), powers, ahead(rows, LOAD))
-    straight = rows[at.K_SPEED] * length * moment(rate, 1)
-    rows[GROWN] = straight + rows[at.K_BEND] * length * length * moment(rate, 2)
+    straight = rows[K_SPEED] * length * moment(rate, 1)
+    rows[GROWN] = straight + rows[K_BEND] * length * length * moment(rate, 2)
     rows[LAST] = total(rate)
     rows[BOUND] = bound_below(rate)
 
@@ -124,12 +128,12 @@ def calculate(rows: Floats) -> None:
 @inlined
 def take_out(run: Run, own: Floats) -> int:
     """Keep the step in the run's history, if that is all there is to do; says what the lane waits for then."""
-    length, target = own[WIDTH * LENGTH], run.state[at.TARGET]
-    rate = ahead(run.stored_rate, TERMS * run.counts[at.LENGTH])
-    load = ahead(run.stored_load, TERMS * run.counts[at.LENGTH])
+    length, target = own[WIDTH * LENGTH], run.state.target
+    rate = ahead(run.stored_rate, TERMS * run.counts.length)
+    load = ahead(run.stored_load, TERMS * run.counts.length)
     for k in range(TERMS):
         rate[k] = own[WIDTH * (RATE + k)]
-    if run.counts[DEGREE] == 1:
+    if run.counts.degree == 1:
         fill(load, 0.0)
         load[0], load[1] = own[WIDTH * LOAD], own[WIDTH * (LOAD + 1)]
     else:
@@ -142,13 +146,13 @@ def take_out(run: Run, own: Floats) -> int:
         begin_verification(run)
         simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
-        run.state[at.LAST_STEP] = own[WIDTH * LAST_STEP]
+        run.state.last_step = own[WIDTH * LAST_STEP]
         return ALONE
     run.jet[0] = own[WIDTH * JET]
     note_shock(run)
-    to = target if own[WIDTH * REACHED] == 1.0 else run.state[at.XI] + length * own[WIDTH * GUESS]
+    to = target if own[WIDTH * REACHED] == 1.0 else run.state.xi + length * own[WIDTH * GUESS]
     move(run, rate, length, grown, rate_end, to)
-    if run.counts[at.HAS_INERTIA] == 1:
+    if run.counts.has_inertia == 1:
         judge_stiffness(run)
-    goes_on = run.state[at.XI] < target and run.counts[at.STALLED] == 0 and run.counts[at.STIFF] == 0
-    return SLIPPING if goes_on and run.counts[at.LENGTH] + ROOM <= run.capacity else AWAY
+    goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0
+    return SLIPPING if goes_on and run.counts.length + ROOM <= run.capacity else AWAY

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.evolution.compiled import ahead, floats, inlined, integers
+from stickslip.evolution.compiled import ahead, floats, integers, kernel
 from stickslip.evolution.layout import TERMS, Floats, Integers, Store
 from stickslip.evolution.workspace import REAL, WHOLE
 
@@ -18,32 +18,32 @@ class Pieces(NamedTuple):
     rate: Floats
 
 
-@inlined
+@kernel
 def pieces_of(store: Store) -> Pieces:
     """The pieces of a history; the caller keeps it alive."""
     tables = store.real.ctypes.data, store.load.ctypes.data, store.rate.ctypes.data
     return Pieces(integers(store.whole.ctypes.data), floats(tables[0]), floats(tables[1]), floats(tables[2]))
 
 
-@inlined
+@kernel
 def whole_of(store: Pieces, n: int) -> Integers:
     """Row of a piece in `Store.whole`."""
     return ahead(store.whole, WHOLE * n)
 
 
-@inlined
+@kernel
 def real_of(store: Pieces, n: int) -> Floats:
     """Row of a piece in `Store.real`."""
     return ahead(store.real, REAL * n)
 
 
-@inlined
+@kernel
 def load_of(store: Pieces, n: int) -> Floats:
     """Its load as a polynomial."""
     return ahead(store.load, TERMS * n)
 
 
-@inlined
+@kernel
 def rate_of(store: Pieces, n: int) -> Floats:
     """Its slip rate as a polynomial."""
     return ahead(store.rate, TERMS * n)

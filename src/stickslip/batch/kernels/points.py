@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.evolution.compiled import inlined
+from stickslip.evolution.compiled import kernel
 from stickslip.evolution.events import NOT_YET, count_pulses, highest, turning_points
 from stickslip.evolution.layout import Floats, Integers, Store
 
@@ -33,7 +33,7 @@ def new_points(capacity: int) -> Points:
     return Points(whole[0], np.empty(capacity), np.empty(capacity), *whole[1:])
 
 
-@inlined
+@kernel
 def put_in_order(points: Points, found: int) -> None:
     """By piece, place in it, and at one place first what rises: as `events.walk`, whose order of pieces is right already."""
     for n in range(1, found):
@@ -45,20 +45,20 @@ def put_in_order(points: Points, found: int) -> None:
         points.piece[k + 1], points.xi[k + 1], points.rate[k + 1], points.kind[k + 1] = piece, xi, rate, kind
 
 
-@inlined
+@kernel
 def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
     """Whether a point comes behind another one of the same piece."""
     return xi > other_xi or (xi == other_xi and xi < 1.0 and kind < other_kind)
 
 
-@inlined
+@kernel
 def move(points: Points, source: int, target: int) -> None:
     """A point to another place in the order."""
     points.piece[target], points.xi[target] = points.piece[source], points.xi[source]
     points.rate[target], points.kind[target] = points.rate[source], points.kind[source]
 
 
-@inlined
+@kernel
 def find_events(store: Store, length: int, threshold: float, points: Points) -> int:
     """Slip events: where each begins, is fastest and ends among the points. Returns how many; NOT_YET if there is no room."""
     found = turning_points(store, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)

@@ -12,7 +12,7 @@ from stickslip.batch.kernels.pieces import Pieces, load_of, pieces_of, rate_of, 
 from stickslip.batch.kernels.points import Points
 from stickslip.evolution import layout as at
 from stickslip.evolution.branch import friction_of
-from stickslip.evolution.compiled import floats, inlined, kernel
+from stickslip.evolution.compiled import floats, kernel
 from stickslip.evolution.events import rises_over
 from stickslip.evolution.history import ROUNDING
 from stickslip.evolution.layout import Floats, Store
@@ -65,7 +65,7 @@ OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, REC
 # ---- places in a history ----------------------------------------------------------------------------------------------------
 
 
-@inlined
+@kernel
 def offset_at(store: Pieces, piece: int, xi: float) -> float:
     """Offset in the row (s) of a place in a piece: as `History.placed`."""
     real = real_of(store, piece)
@@ -74,20 +74,20 @@ def offset_at(store: Pieces, piece: int, xi: float) -> float:
     return real[at.S_THETA_FROM] + xi * (real[at.S_SPEED] + xi * real[at.S_BEND])
 
 
-@inlined
+@kernel
 def time_between(store: Pieces, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
     """From one place to another, s."""
     rows = whole_of(store, later)[at.S_ROW] - whole_of(store, piece)[at.S_ROW]
     return rows * row_time + (offset_at(store, later, later_xi) - offset_at(store, piece, xi))
 
 
-@inlined
+@kernel
 def time_at(store: Pieces, row_time: float, piece: int, xi: float) -> float:
     """Of a place, since the start of the run, s."""
     return whole_of(store, piece)[at.S_ROW] * row_time + offset_at(store, piece, xi)
 
 
-@inlined
+@kernel
 def place_of(store: Pieces, piece: int, local: float) -> float:
     """Place in [0, 1] of a time `local` s after the start of a piece: as `History.xi`."""
     speed, bend = real_of(store, piece)[at.S_SPEED], real_of(store, piece)[at.S_BEND]
@@ -141,13 +141,13 @@ def slipped_between(store: Pieces, piece: int, xi: float, later: int, later_xi: 
 def friction_in(run: Run, store: Pieces, piece: int, xi: float) -> float:
     """Friction minus the reference strength at a place in slip or at rest: as `History.friction`."""
     excess, rate, mode = evaluate(load_of(store, piece), xi), evaluate(rate_of(store, piece), xi), whole_of(store, piece)[at.S_MODE]
-    if run.counts[at.HAS_INERTIA] == 0:
-        return excess - run.par[at.IMPEDANCE] * rate
+    if run.counts.has_inertia == 0:
+        return excess - run.par.impedance * rate
     if mode == 0:
         return excess
-    walked = grown(store, piece, xi) * (1 if run.par[at.COUNTS_NET] == 1.0 else mode)
+    walked = grown(store, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
     friction_of(run, whole_of(store, piece)[at.S_PIECE], real_of(store, piece)[at.S_LAW_SLIP] + walked, abs(rate), run.value)
-    return run.value[0] if mode > 0 else -run.value[0] - 2.0 * run.par[at.REFERENCE]
+    return run.value[0] if mode > 0 else -run.value[0] - 2.0 * run.par.reference
 
 
 @kernel
@@ -155,7 +155,7 @@ def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float
     """Its left limit where a piece starts: at rest before the first one, or behind rows that nothing was recorded of."""
     if piece == 0:
         return excess
-    row_time, last = run.par[at.ROW_TIME], piece - 1
+    row_time, last = run.par.row_time, piece - 1
     if not time_between(store, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
         return friction_in(run, store, last, 1.0)
     row, phase = whole_of(store, piece)[at.S_ROW], real_of(store, piece)[at.S_THETA_FROM]
@@ -168,8 +168,8 @@ def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float
     xi, trips = place_of(store, last, phase - real_of(store, last)[at.S_THETA_FROM]), row - whole_of(store, last)[at.S_ROW]
     if trips == 0:
         return friction_in(run, store, last, xi)
-    load = evaluate(load_of(store, last), xi) + trips * run.par[at.RAMP]
-    return load if run.counts[at.IS_BLOCK] == 1 else load - 2.0 * run.par[at.IMPEDANCE] * evaluate(rate_of(store, last), xi)
+    load = evaluate(load_of(store, last), xi) + trips * run.par.ramp
+    return load if run.counts.is_block == 1 else load - 2.0 * run.par.impedance * evaluate(rate_of(store, last), xi)
 
 
 @kernel
@@ -197,7 +197,7 @@ def fold_events(run: Run, store: Pieces, points: Points, events: int, out: Float
         out[column] = math.nan
     if events == 0:
         return
-    row_time, fastest = run.par[at.ROW_TIME], points.top[0]
+    row_time, fastest = run.par.row_time, points.top[0]
     for n in range(events):
         out[PULSES] += points.pulses[n]
         if points.rate[points.top[n]] > points.rate[fastest]:
@@ -228,7 +228,7 @@ def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: flo
     """Numbers of the first event: as `tables.event_rows`."""
     a, b = points.begin[0], points.past[0] - 1
     piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
-    row_time = run.par[at.ROW_TIME]
+    row_time = run.par.row_time
     out[FIRST_START] = time_at(store, row_time, piece, xi)
     if points.kind[b] == -1:
         out[FIRST_END] = time_at(store, row_time, last, last_xi)

@@ -17,13 +17,14 @@ from stickslip.batch.kernels.pieces import Pieces
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, fold_whole
 from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, floats, inlined, integers, kernel
+from stickslip.evolution.compiled import ahead, floats, integers, kernel
 from stickslip.evolution.events import NOT_YET
 from stickslip.evolution.lanes import WIDTH
 from stickslip.evolution.layout import Floats, Integers, Store
 from stickslip.evolution.moving_branches import OUT_OF_BUDGET
+from stickslip.evolution.records import numbers_of, whole_numbers_of
 from stickslip.evolution.status import BAD_PARAMETERS
-from stickslip.evolution.workspace import BRANCHES, PLACES, Run, borrow
+from stickslip.evolution.workspace import ADDRESSES, PLACES, Run, borrow
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups
@@ -83,7 +84,7 @@ def run_group(
         step_side_by_side(first.table, first.waits, jets, block)
 
 
-@inlined
+@kernel
 def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
     """The first lane."""
     flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
@@ -92,41 +93,48 @@ def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
     return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code)
 
 
-@inlined
+@kernel
 def nth(lane: Lane, n: int) -> Lane:
     """The lane n places further on."""
-    table, base = ahead(lane.table, n * PLACES), ahead(lane.base, n * PLACES)
+    table, base = ahead(lane.table, n * PLACES), ahead(lane.base, n * ADDRESSES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
     return Lane(table, base, lane.stride, stage, waits, member, code)
 
 
-@inlined
+@kernel
 def point_at(lane: Lane, setups: Setups, n: int) -> None:
     """The engine's table for the member n."""
-    for k in range(PLACES):
+    for k in range(ADDRESSES):
         lane.table[k] = lane.base[k] + n * lane.stride[k]
-    lane.table[BRANCHES] = setups.branches[n]
+    run = borrow(lane.table)
+    run.branches = setups.branches[n]
+    run.rate_to, run.keep_from = ahead(run.rate_from, run.branches), ahead(run.rate_from, 2 * run.branches)
+    run.keep_to, run.excess_from = ahead(run.rate_from, 3 * run.branches), ahead(run.rate_from, 4 * run.branches)
+    run.excess_to = ahead(run.rate_from, 5 * run.branches)
 
 
-@inlined
-def start_member(run: Run, setups: Setups) -> None:
+@kernel
+def start_member(run: Run, setups: Setups, n: int) -> None:
     """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
+    par, state, counts = numbers_of(run.par), numbers_of(run.state), whole_numbers_of(run.counts)
+    for k in range(setups.par.shape[1]):
+        par[k] = setups.par[n if len(setups.par) > 1 else 0, k]
     for k in range(len(setups.state)):
-        run.state[k] = setups.state[k]
+        state[k] = setups.state[k]
     for k in range(len(setups.counts)):
-        run.counts[k] = setups.counts[k]
-    run.counts[at.TO_THE_END], run.counts[at.WAITS] = 1, 1 if len(setups.jets) > 0 else 0
+        counts[k] = setups.counts[k]
+    run.counts.to_the_end, run.counts.waits = 1, 1 if len(setups.jets) > 0 else 0
 
 
-@inlined
+@kernel
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
     """Let the engine run the lane's member until it is to take a step with others, ends or pauses, has no room, or all stops."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
     if lane.waits[0] == ALONE:
         counts = borrow(lane.table).counts
-        counts[at.WAITS] = 0
+        counts.waits = 0
         code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
-        counts[at.WAITS] = 1
+        counts.waits = 1
     while code == OUT_OF_BUDGET and stop[0] == 0:
         code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
@@ -153,9 +161,9 @@ def bring_on(
         n = lane.member[0]
         if lane.stage[0] == AT_END:
             run = borrow(lane.table)
-            codes[n] = lane.code[0] if run.counts[at.LENGTH] > 0 else BAD_PARAMETERS
+            codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
             member = ahead(numbers, n * len(COLUMNS))
-            if run.counts[at.LENGTH] > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
+            if run.counts.length > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
                 return False
             lane.stage[0] = FREE
         n = work.upcoming[0]
@@ -166,16 +174,16 @@ def bring_on(
             codes[n] = BAD_PARAMETERS
             continue
         point_at(lane, setups, n)
-        start_member(borrow(lane.table), setups)
+        start_member(borrow(lane.table), setups, n)
         lane.stage[0], lane.member[0] = UNDER_WAY, n
         advance_member(engine, lane, setups, stop)
     return lane.code[0] == at.SLIPS
 
 
-@inlined
+@kernel
 def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Floats) -> bool:
     """Fold a run that has ended with a code; False where there is no room for its turning points."""
-    pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts[at.LENGTH]
+    pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts.length
     if wants_events:
         events = find_events(store_of(work, lane), length, setups.threshold[n], work.points)
         if events == NOT_YET:
@@ -183,11 +191,11 @@ def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wa
         fold_events(run, pieces, work.points, events, out)
         if events > 0:
             fold_first(run, pieces, length, work.points, setups.excess[n], setups.stiffness[n], out)
-    fold_whole(pieces, length, run.par[at.ROW_TIME], setups.duration[n], code, out)
+    fold_whole(pieces, length, run.par.row_time, setups.duration[n], code, out)
     return True
 
 
-@inlined
+@kernel
 def store_of(work: Workspace, lane: int) -> Store:
     """The history in a lane."""
     store = work.store

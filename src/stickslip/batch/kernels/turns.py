@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.evolution.compiled import ahead, bits_of, call_value, float_of, floats, inlined, kernel
+from stickslip.evolution.compiled import ahead, bits_of, call_value, float_of, floats, kernel
 from stickslip.evolution.layout import Floats, Integers
 
 MOST_BRANCHES = 4
@@ -31,21 +31,21 @@ OCTAVE, STEPS = 2**52, 16
 """A factor of two between slip rates, by their bits, and steps of false position behind which the bits are halved again."""
 
 
-@inlined
+@kernel
 def slope_at(address: int, c: Any, impedance: float, normal: float, rate: float, out: Any) -> float:
     """g'(s)."""
     call_value(address, c, 0.0, rate, out)
     return impedance + normal * out[1]
 
 
-@inlined
+@kernel
 def excess_at(address: int, c: Any, impedance: float, normal: float, start: float, rate: float, out: Any) -> float:
     """g(s) minus the static strength."""
     call_value(address, c, 0.0, rate, out)
     return impedance * rate + normal * out[0] + start
 
 
-@inlined
+@kernel
 def turn_between(
     address: int, c: Any, impedance: float, normal: float, low: float, high: float, at_low: float, at_high: float, out: Any
 ) -> float:
@@ -72,7 +72,7 @@ def turn_between(
     return float_of(before) if rises else float_of(behind)
 
 
-@inlined
+@kernel
 def share_kept(value: float, last: float) -> float:
     """What false position leaves of the value at the end that stays where it is for a second time."""
     share = 1.0 - value / last

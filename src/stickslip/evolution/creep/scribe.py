@@ -11,7 +11,7 @@ from stickslip.evolution import layout as at
 from stickslip.evolution.creep.averaged import AveragedCreep
 from stickslip.evolution.creep.landing import Piece
 from stickslip.evolution.creep.plan import Plan, hermite
-from stickslip.evolution.layout import TERMS, Floats, Integers, Store
+from stickslip.evolution.layout import TERMS, Counts, Floats, State, Store
 from stickslip.problem import Problem
 
 
@@ -32,8 +32,8 @@ class Scribe:
     row_time: float
     direction: int
     sign: float  # change of the law's slip with slip in that direction
-    state: Floats  # where the leap begins
-    count: Integers
+    state: State  # where the leap begins
+    count: Counts
 
     def write_way(self, n: int, row: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
         """From `row` on the averaged slip, as cubics from state to state, up to `last_slip` (m). Returns the next free piece.
@@ -71,8 +71,8 @@ class Scribe:
 
     def _write(self, n: int, row: int, piece: Piece) -> None:
         store, state = self.store, self.state
-        slip, law_slip = state[at.SLIP_NOW] + self.direction * piece.slip, state[at.LAW_SLIP] + self.sign * piece.slip
-        store.whole[n] = row, self.direction * piece.slips, self.count[at.PIECE], 0, 0, -1
+        slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
+        store.whole[n] = row, self.direction * piece.slips, self.count.piece, 0, 0, -1
         store.real[n] = piece.theta_from, piece.theta_to, piece.speed, piece.bend, slip, law_slip, np.nan, np.nan
         store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
         store.rate[n] = self.direction * piece.rate
