@@ -14,17 +14,17 @@ import numpy as np
 from benchmarks import ours
 from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.evolution import layout, workspace
-from stickslip.evolution.generate import SIGNATURES, FormulaWriter
-from stickslip.evolution.records import FLOATS, Record
-from stickslip.friction.expression import Expression
+from stickslip.engine.codegen.records import FLOATS, Record
+from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
+from stickslip.engine.state import layout, workspace
+from stickslip.friction.formula.expression import Expression
 
 SOURCE = Path(__file__).parent / "c_kernel" / "taylor.c"
 FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenmp", "-Wl,-Bsymbolic")
 
 
 SINES = ("#define sine(e) (2.0 * sin(0.5 * (e)) * cos(0.5 * (e)))", "#define versine(e) (2.0 * sin(0.5 * (e)) * sin(0.5 * (e)))")
-"""What `evolution.sines` does, by the C library: the compiler makes one call of all."""
+"""What `engine.series.sine` does, by the C library: the compiler makes one call of all."""
 
 NAMES = ("#define abs(x) fabs(x)", "#define max(x, y) fmax(x, y)")
 """What the statements call otherwise than C."""

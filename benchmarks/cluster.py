@@ -14,10 +14,10 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING
 
-from stickslip.sweeps.axis import Values
-from stickslip.sweeps.chunk import Work, run_chunk
-from stickslip.sweeps.cluster import cluster, stream
-from stickslip.sweeps.plan import make_plan
+from stickslip.sweeps.design.axis import Values
+from stickslip.sweeps.execution.chunk import Work, run_chunk
+from stickslip.sweeps.execution.cluster import cluster, stream
+from stickslip.sweeps.execution.plan import make_plan
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -26,8 +26,8 @@ import h5py
 import numpy as np
 
 import stickslip as ss
-from stickslip import netcdf
-from stickslip.sweeps.store import open_store
+from stickslip.foundation import netcdf_file
+from stickslip.sweeps.results.store import open_store
 
 LIMIT = 60.0
 """Seconds after which a worker hangs."""
@@ -143,7 +143,7 @@ def damage(path: Path, rng: np.random.Generator, *, may_vanish: bool) -> str:
 
 def edit(path: Path, rng: np.random.Generator) -> str:
     """Change one number of one table, its shape, or an attribute, and give the file a checksum that fits."""
-    path.write_bytes(path.read_bytes()[: -netcdf.SEAL])
+    path.write_bytes(path.read_bytes()[: -netcdf_file.SEAL])
     with h5py.File(path, "r+") as file:
         names = [name for name in file if name.startswith(("engine_", "history_")) and isinstance(file[name], h5py.Dataset)]
         name = str(rng.choice([name for name in names if file[name].dtype.kind in "if" and file[name].size]))
@@ -163,7 +163,7 @@ def edit(path: Path, rng: np.random.Generator) -> str:
             del file[name]
             if how == "longer":
                 file.create_dataset(name, data=np.concatenate([values, values]))
-    netcdf.seal(path)
+    netcdf_file.seal(path)
     return f"{how} of {name}"
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from rich.progress import track
 
-from stickslip.errors import InputError
+from stickslip.foundation.errors import InputError
 from stickslip.friction import FromExpression
 from stickslip.scenarios import load_scenario
 from stickslip.scenarios.library import names, text

@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.inflow import steady_inflow
-from stickslip.evolution.simulate import simulate
+from stickslip.engine_input.forcing import steady_inflow
 from stickslip.friction import SinusoidalSlip
+from stickslip.run.simulate import simulate
 
 try:
     with warnings.catch_warnings():

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 SOURCE = Path("src/stickslip")
-PACKAGES = ("contact", "observables", "evolution")
+PACKAGES = ("contact", "observables", "engine", "engine_input", "trajectory", "creep", "solution", "run")
 
 
 @dataclass(frozen=True)
@@ -45,61 +45,61 @@ class Named:
 
 
 NAMED = (
-    Named("echo-sign", "evolution/engine.py", "par.reflection * (2.0 *", "-par.reflection * (2.0 *"),
+    Named("echo-sign", "engine/loop.py", "par.reflection * (2.0 *", "-par.reflection * (2.0 *"),
     Named(
         "factor-two-in-the-echo",
-        "evolution/engine.py",
+        "engine/loop.py",
         "* (2.0 * par.impedance * rate[k]",
         "* (1.0 * par.impedance * rate[k]",
     ),
     Named(
         "factor-two-in-the-tree",
-        "evolution/echoes.py",
+        "engine/waves/echo_queue.py",
         "- 2.0 * run.par.impedance * rate[k]",
         "- run.par.impedance * rate[k]",
     ),
-    Named("a-row-too-early", "evolution/engine.py", "run.whole[WHOLE * n + at.S_ROW] - 1", "run.whole[WHOLE * n + at.S_ROW]"),
+    Named("a-row-too-early", "engine/loop.py", "run.whole[WHOLE * n + at.S_ROW] - 1", "run.whole[WHOLE * n + at.S_ROW]"),
     Named(
         "wrong-side-of-a-fold",
-        "evolution/fold.py",
+        "engine/contact_step/fold.py",
         "if abs(level - run.keep_to[branch]) < abs(",
         "if abs(level - run.keep_to[branch]) > abs(",
     ),
     Named(
         "fold-outrun-backwards",
-        "evolution/fold.py",
+        "engine/contact_step/fold.py",
         "return direction * run.part[1] > run.value[2]",
         "return direction * run.part[1] < run.value[2]",
     ),
-    Named("tolerance-times-1000", "evolution/setup.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
-    Named("no-verification", "evolution/verify.py", "return missing <= allowed", "return True or missing <= allowed"),
+    Named("tolerance-times-1000", "engine_input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
+    Named("no-verification", "engine/contact_step/verify.py", "return missing <= allowed", "return True or missing <= allowed"),
     Named(
         "no-guards",
-        "evolution/verify.py",
+        "engine/contact_step/verify.py",
         "    if not used_up(run.reach, run.powers) > 1.0:\n        return length\n",
         "    return length\n",
     ),
     Named(
         "left-and-right-exchanged",
-        "evolution/history.py",
+        "trajectory/history.py",
         'side="left" if side == "left" else "right") - 1',
         'side="right" if side == "left" else "left") - 1',
     ),
     Named(
         "heat-without-slip-rate",
-        "observables/energy.py",
+        "observables/energy/balance.py",
         "return lambda at: traction(at) * np.abs(history.rate(at))",
         "return lambda at: traction(at) * history.rate(at)",
     ),
     Named(
         "heat-at-zero-rate",
-        "observables/energy.py",
+        "observables/energy/balance.py",
         "law.coefficient(slip, np.abs(history.rate(at)), history",
         "law.coefficient(slip, 0.0 * np.abs(history.rate(at)), history",
     ),
     Named(
         "no-kinetic-energy-of-the-block",
-        "observables/energy.py",
+        "observables/energy/balance.py",
         '"stored": spring + 0.5 * body.mass * rate**2',
         '"stored": spring + 0.0 * body.mass * rate**2',
     ),

@@ -11,16 +11,29 @@ from benchmarks.mutants import SOURCE, Mutant
 Key = tuple[str, str]
 """Module and name."""
 REGISTERED = (
-    "evolution/lanes.py",
-    "evolution/compiled.py",
-    "evolution/one_module.py",
-    "evolution/records.py",
-    "evolution/layout.py",
-    "evolution/workspace.py",
-    "evolution/sines.py",
+    "engine/codegen/simd.py",
+    "engine/codegen/compiler.py",
+    "engine/codegen/one_module.py",
+    "engine/codegen/records.py",
+    "engine/state/layout.py",
+    "engine/state/workspace.py",
+    "engine/series/sine.py",
 )
 """Files that give types and operations to the compiler, or that generated modules import: no name leads to their users."""
-FOLDERS = ("evolution", "batch", "friction", "contact", "observables", "bodies", "loading")
+FOLDERS = (
+    "engine",
+    "engine_input",
+    "trajectory",
+    "creep",
+    "solution",
+    "run",
+    "batch",
+    "friction",
+    "contact",
+    "observables",
+    "bodies",
+    "loading",
+)
 
 
 def depends_on_no_cache(path: str) -> bool:

@@ -220,7 +220,7 @@ def import_changed(mutant: Mutant) -> None:
     if must_compile(TREE, mutant):  # all that is called from Python; the machine code of formulas comes from the disk
         from numba.core.caching import NullCache
 
-        from stickslip.evolution import one_module
+        from stickslip.engine.codegen import one_module
 
         one_module.SealedCache = lambda function: NullCache()  # type: ignore[assignment, misc]
 

@@ -1,6 +1,6 @@
 """Do the tests notice? Wrong versions of the source, one at a time, and what the tests say to each.
 
-    python -m benchmarks.mutation_map tests/contact tests/observables tests/evolution ... --map reach.jsonl     # once
+    python -m benchmarks.mutation_map tests/contact tests/observables tests/engine ... --map reach.jsonl     # once
     python -m benchmarks.mutations --map reach.jsonl --named                                                     # mistakes by name
     python -m benchmarks.mutations --map reach.jsonl --count 40 --seed 1 --only contact --results mutations.jsonl
 
@@ -30,12 +30,12 @@ LIMITS = {"exchanged": 25.0, "imported": 25.0, "compiled": 90.0}
 FIRST_SECONDS = {"exchanged": 4.0, "imported": 6.0, "compiled": 50.0}
 """Seconds of processor time for the tests of one mutant, and for those before the hashes; the last test that began may end."""
 ENGINE_TESTS = (
-    "tests/evolution/test_verified_numbers.py",
-    "tests/evolution/test_event_sequences.py",
+    "tests/engine/test_verified_numbers.py",
+    "tests/engine/test_event_sequences.py",
     "tests/adversarial/test_known_failures.py",
-    "tests/evolution/test_located_events.py",
-    "tests/evolution/test_solution.py",
-    "tests/evolution/test_guards.py",
+    "tests/engine/test_located_events.py",
+    "tests/engine/test_solution.py",
+    "tests/engine/test_guards.py",
     "tests/reference",
 )
 """Where mistakes in compiled code show soonest."""
@@ -77,7 +77,7 @@ class Campaign:
         """The tests for a mutant in their order, with their usual seconds."""
         function = function_around((TREE / SOURCE / mutant.path).read_bytes(), mutant)
         if kind == "compiled":
-            tests = self.reach.of("evolution/drive.py", None)
+            tests = self.reach.of("run/run_loop.py", None)
         else:
             tests = self.reach.of(mutant.path, function if kind == "exchanged" else None)
         near = tests if kind == "imported" else set()

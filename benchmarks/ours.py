@@ -7,16 +7,16 @@ from collections.abc import Callable
 
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
-from stickslip.evolution import layout as at
-from stickslip.evolution.drive import split_time
-from stickslip.evolution.echoes import new_echoes
-from stickslip.evolution.engine import advance
-from stickslip.evolution.history import History
-from stickslip.evolution.inflow import row_time
-from stickslip.evolution.setup import prepare
-from stickslip.evolution.solution import Solution
-from stickslip.evolution.status import STATUSES
-from stickslip.evolution.workspace import counts_in, lend, memory_of
+from stickslip.engine.loop import advance
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.workspace import counts_in, lend, memory_of
+from stickslip.engine.waves.echo_queue import new_echoes
+from stickslip.engine_input.forcing import row_time
+from stickslip.engine_input.prepare import prepare
+from stickslip.run.run_loop import split_time
+from stickslip.solution.solution import Solution
+from stickslip.trajectory.history import History
+from stickslip.trajectory.status import STATUSES
 
 CAPACITY = 2048
 BUDGET = 1_000_000

@@ -36,7 +36,7 @@ FIRST_RUN = """
 import time
 start = time.perf_counter(), time.process_time()
 from benchmarks.problems import TRANSIT, EVENT, SHOCKS
-from stickslip.evolution.simulate import simulate
+from stickslip.run.simulate import simulate
 imported = time.perf_counter(), time.process_time()
 for case in (TRANSIT, EVENT, SHOCKS):
     simulate(case.problem, case.duration)
@@ -99,7 +99,7 @@ def show(console: Console, unit: Callable[[float], str]) -> None:
     table.add_section()
     table.add_row("building one small pandas.DataFrame", unit(median(lambda: pd.DataFrame(TABLE))))
     table.add_section()
-    for module in ("numba", "stickslip", "stickslip.evolution.simulate", "pandas"):
+    for module in ("numba", "stickslip", "stickslip.run.simulate", "pandas"):
         table.add_row(f"import {module}", unit(imported(module)))
     table.add_section()
     compiled = first_compile()

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.evolution.simulate import simulate
+from stickslip.run.simulate import simulate
 
 Floats = NDArray[np.float64]
 

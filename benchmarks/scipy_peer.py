@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from benchmarks.problems import Case, Floats
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.inflow import steady_inflow
+from stickslip.engine_input.forcing import steady_inflow
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 
 Function = Callable[[float], float]

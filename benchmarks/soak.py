@@ -19,7 +19,7 @@ from typing import Any
 
 from benchmarks.soak_checks import Outcome, run
 from benchmarks.soak_problems import draw
-from stickslip.errors import InputError
+from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
 
 LIMIT = 5.0

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from benchmarks.soak_problems import Draw
-from stickslip.errors import InputError
-from stickslip.evolution.moving_branches import folds_move
-from stickslip.evolution.setup import SLOWEST
-from stickslip.observables.energy import energies, epochs, heat
+from stickslip.engine_input.branch_table import folds_move
+from stickslip.engine_input.prepare import SLOWEST
+from stickslip.foundation.errors import InputError
+from stickslip.observables.energy.balance import energies, epochs, heat
 from stickslip.observables.waves import Waves
 
 TIMES = 101

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 import stickslip as ss
-from stickslip.errors import InputError
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
-from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
-from stickslip.quantities import Quantity
-from stickslip.selection import SELECTION_RULES
+from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 EXTREME = 0.15
 """Share of problems whose numbers are drawn from many decades."""

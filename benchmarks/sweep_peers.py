@@ -17,14 +17,14 @@ from benchmarks import c_peer, scipy_peer
 from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
 from stickslip.batch import run_members
-from stickslip.batch.conditions import QUANTITIES
+from stickslip.batch.batch_support import QUANTITIES
 from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.runs import run_group
-from stickslip.batch.many import member
 from stickslip.batch.setups import set_up
+from stickslip.batch.vectorised_problem import member
 from stickslip.batch.workspace import new_workspace, table_of
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.lanes import WIDTH
+from stickslip.engine.codegen.simd import WIDTH
 from stickslip.friction import SinusoidalSlip
 from stickslip.scenarios.scenario import Scenario
 

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip import files, netcdf
-from stickslip.evolution.checkpoint import Checkpoint
-from stickslip.evolution.layout import Counts, State
-from stickslip.files import DRAFT, STALE, held, write_atomically
-from stickslip.storage import save_checkpoint
+from stickslip.engine.state.layout import Counts, State
+from stickslip.foundation import atomic_write, netcdf_file
+from stickslip.foundation.atomic_write import DRAFT, STALE, held, write_atomically
+from stickslip.io.netcdf import save_checkpoint
+from stickslip.trajectory.checkpoint import Checkpoint
 
 PROBLEM = ss.load_scenario("cycles-block").problem
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs locks and limits of POSIX")
@@ -39,10 +39,10 @@ def refused(act: Callable[[], object], *words: str) -> None:
 
 def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
     """Edit a file, and give it a checksum that fits: what only somebody who means it does."""
-    path.write_bytes(path.read_bytes()[: -netcdf.SEAL])
+    path.write_bytes(path.read_bytes()[: -netcdf_file.SEAL])
     with h5py.File(path, "r+") as file:
         edit(file)
-    netcdf.seal(path)
+    netcdf_file.seal(path)
 
 
 def test_no_single_bit_flip_passes(run: ss.Solution, tmp_path: Path) -> None:
@@ -164,7 +164,7 @@ def test_a_checkpoint_on_a_full_disk_does_not_end_the_run(
 
     save_checkpoint(run, tmp_path / "run.nc")
     before = (tmp_path / "run.nc").read_bytes()
-    monkeypatch.setattr(files, "sync", full)
+    monkeypatch.setattr(atomic_write, "sync", full)
     with pytest.warns(RuntimeWarning, match=r"run\.nc: cannot be written: No space left on device; the run goes on"):
         save_checkpoint(run, tmp_path / "run.nc")
     assert (tmp_path / "run.nc").read_bytes() == before

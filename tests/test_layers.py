@@ -1,4 +1,4 @@
-"""Imports point down: each folder knows only what lies below it, and only figures, paper and storage know their libraries."""
+"""Imports point down: each folder knows only what lies below it, and only some know the heavy libraries."""
 
 from __future__ import annotations
 
@@ -15,76 +15,204 @@ import stickslip
 PACKAGE = Path(stickslip.__file__).parent
 
 LAYERS = (
-    ("errors",),
-    ("files",),
-    ("netcdf",),
-    ("quantities", "selection", "units"),
+    ("foundation",),
     ("friction",),
-    ("bodies", "loading"),
+    ("bodies", "engine", "loading"),
     ("problem",),
-    ("parameters",),
     ("contact", "reference"),
-    ("evolution",),
-    ("observables",),
-    ("studies",),
-    ("scenarios",),
+    ("engine_input",),
+    ("scenarios", "trajectory"),
+    ("creep", "observables"),
+    ("solution",),
+    ("io",),
+    ("run",),
     ("batch",),
-    ("soundness",),
-    ("storage",),
-    ("long_runs",),
-    ("exports", "side_by_side"),
-    ("sweeps",),
+    ("studies", "sweeps"),
     ("figures",),
     ("paper",),
     ("cli",),
 )
-HEIGHT = {name: height for height, names in enumerate(LAYERS) for name in names}
+"""Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
+ROOMS = {
+    "friction": (
+        ("formula", "parameters"),
+        ("law",),
+        ("memory", "composite", "piecewise", "slopes"),
+        ("laws", "custom"),
+        ("registry",),
+    ),
+    "engine": (("codegen",), ("state",), ("series",), ("contact_step",), ("moving_folds", "waves"), ("loop",)),
+    "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
+    "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
+    "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
+    "reference": (("bisection", "rate_and_state"), ("block", "slab"), ("method_of_steps",)),
+    "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
+}
+"""The same inside some folders."""
+LAZY_DOORS = {"solution/accessors.py"}
+"""Files that may import upwards inside functions: the one place where a solution reaches figures and files."""
 
 ALLOWED = {
     "matplotlib": {"figures", "paper"},
     "jinja2": {"paper"},
     "typer": {"cli"},
-    "xarray": {"netcdf", "observables", "storage", "long_runs", "sweeps", "figures", "paper"},
+    "xarray": {"foundation", "observables", "io", "run", "sweeps", "figures", "paper"},
 }
 
 
-def imports(path: Path) -> Iterator[str]:
-    """Modules imported when a file is imported: not those inside functions nor for type checkers."""
-
-    def walk(nodes: list[ast.stmt]) -> Iterator[str]:
-        for node in nodes:
-            if isinstance(node, ast.Import):
-                yield from (alias.name for alias in node.names)
-            elif isinstance(node, ast.ImportFrom) and node.module:
-                yield node.module
-            elif (isinstance(node, ast.If) and "TYPE_CHECKING" not in ast.unparse(node.test)) or isinstance(
-                node, ast.ClassDef | ast.Try | ast.With
-            ):
-                yield from walk(node.body)
-
-    yield from walk(ast.parse(path.read_text()).body)
+def heights(layers: tuple[tuple[str, ...], ...]) -> dict[str, int]:
+    """Return the number of each name's layer."""
+    return {name: height for height, names in enumerate(layers) for name in names}
 
 
-def layer(path: Path) -> str:
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+HEIGHT = heights(LAYERS)
+ROOM_HEIGHT = {package: heights(rooms) for package, rooms in ROOMS.items()}
 
 
-FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if layer(path) not in ("__init__", "__main__")]
+def imports(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield what a file imports as dotted names, each with "eager", "later" (inside a function) or "types" (for type checkers)."""
+
+    def walk(node: ast.AST, kind: str) -> Iterator[tuple[str, str]]:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.Import):
+                yield from ((kind, alias.name) for alias in child.names)
+            elif isinstance(child, ast.ImportFrom) and child.module:
+                yield from ((kind, f"{child.module}.{alias.name}") for alias in child.names)
+            elif isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+                yield from walk(ast.Module(child.body, []), "types")
+                yield from walk(ast.Module(child.orelse, []), kind)
+            else:
+                inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+                yield from walk(child, "later" if inside and kind == "eager" else kind)
+
+    yield from walk(ast.parse(path.read_text(encoding="utf-8")), "eager")
+
+
+def parts(path: Path) -> tuple[str, ...]:
+    """Return folder, room and so on of a file."""
+    return path.relative_to(PACKAGE).with_suffix("").parts
+
+
+def points_up(own: tuple[str, ...], other: list[str]) -> bool:
+    """Return True if a file in `own` must not import `other` (parts of a dotted name without that of the package)."""
+    if other[0] not in HEIGHT or own[0] not in HEIGHT:
+        return False  # a name of the package itself; every folder has its place: see below
+    if other[0] != own[0]:
+        return HEIGHT[other[0]] >= HEIGHT[own[0]]
+    rooms = ROOM_HEIGHT.get(own[0], {})
+    if len(own) < 2 or len(other) < 2 or own[1] not in rooms or other[1] not in rooms or own[1] == other[1]:
+        return False
+    return rooms[other[1]] >= rooms[own[1]]
+
+
+def upward(path: Path) -> dict[str, set[str]]:
+    """Return what a file imports from above, by when; a folder, or a room of the file's own folder."""
+    own = parts(path)
+    found: dict[str, set[str]] = {"eager": set(), "later": set(), "types": set()}
+    for kind, name in imports(path):
+        root, *other = name.split(".")
+        if root == "stickslip" and other and points_up(own, other):
+            found[kind].add(other[0] if other[0] != own[0] else ".".join(other[:2]))
+    return found
+
+
+FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in ("__init__", "__main__")]
+
+# ---- lists that may only become shorter ------------------------------------------------------------------------------------
+
+UPWARD_IN_FUNCTIONS: dict[str, set[str]] = {
+    "scenarios/scenario.py": {"run"},
+    "solution/evaluation.py": {"figures", "io"},
+    "solution/solution.py": {"figures", "io"},
+    "solution/window.py": {"figures", "io"},
+    "studies/analogy.py": {"figures"},
+    "studies/compare.py": {"figures"},
+    "studies/ensemble.py": {"figures"},
+    "studies/regularise.py": {"figures"},
+    "trajectory/tables.py": {"observables"},
+}
+"""Files that still import from above inside functions, and from where."""
+UPWARD_FOR_TYPES: dict[str, set[str]] = {
+    "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
+    "creep/stepper.py": {"run"},
+    "observables/energy/balance.py": {"solution"},
+    "observables/field.py": {"solution"},
+    "observables/predictability.py": {"solution"},
+    "observables/rule_influence.py": {"solution"},
+    "problem/selection_rule.py": {"contact"},
+    "scenarios/scenario.py": {"run", "solution"},
+    "sweeps/execution/cluster.py": {"sweeps.sweep"},
+}
+"""Files that name something from above in an annotation only."""
 
 
 def test_every_folder_has_its_place() -> None:
-    assert {layer(path) for path in FILES} <= set(HEIGHT)
+    assert {parts(path)[0] for path in FILES} == set(HEIGHT)
+    for package, rooms in ROOM_HEIGHT.items():
+        assert {parts(path)[1] for path in FILES if parts(path)[0] == package} - {"__init__"} == set(rooms), package
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_imports_point_down(path: Path) -> None:
-    own = layer(path)
-    for module in imports(path):
-        root, _, rest = module.partition(".")
-        if root == "stickslip" and rest:
-            other = rest.split(".")[0]
-            assert other == own or HEIGHT[other] < HEIGHT[own], f"{own} imports {module}"
-        assert own in ALLOWED.get(root, {own}), f"{own} imports {root}"
+    found = upward(path)
+    assert found["eager"] == set()
+    name = str(path.relative_to(PACKAGE))
+    if name not in LAZY_DOORS:
+        assert found["later"] == UPWARD_IN_FUNCTIONS.get(name, set())
+    assert found["types"] == UPWARD_FOR_TYPES.get(name, set())
+
+
+def test_lists_of_upward_imports_name_files_that_exist() -> None:
+    names = {str(path.relative_to(PACKAGE)) for path in FILES}
+    assert set(UPWARD_IN_FUNCTIONS) | set(UPWARD_FOR_TYPES) <= names
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_heavy_libraries_are_known_to_few(path: Path) -> None:
+    own = parts(path)[0]
+    for kind, name in imports(path):
+        root = name.split(".")[0]
+        assert kind != "eager" or own in ALLOWED.get(root, {own}), f"{own} imports {root}"
+
+
+def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
+    """Each file with compiled functions, and each file from which such functions take a name."""
+    from stickslip.engine.codegen.cache import NOT_COMPILED, compiled_sources
+
+    covered = set(compiled_sources())
+    assert all(path.is_file() for path in covered)
+    for path in FILES:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        origin = {
+            alias.asname or alias.name: (node.module, alias.name)
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("stickslip")
+            for alias in node.names
+        }
+        kernels = [
+            node
+            for node in ast.walk(tree)
+            if isinstance(node, ast.FunctionDef) and any(_is_compiler(one) for one in node.decorator_list)
+        ]
+        if kernels and path.name not in NOT_COMPILED:
+            assert path in covered, f"{path} is compiled"
+        for kernel in kernels:
+            body = [one for statement in kernel.body for one in ast.walk(statement)]
+            for name in {one.id for one in body if isinstance(one, ast.Name)} & set(origin):
+                module, wanted = origin[name]
+                file = _file(f"{module}.{wanted}") or _file(module)
+                assert file in covered, f"{path}: {kernel.name} uses {name}"
+
+
+def _is_compiler(decorator: ast.expr) -> bool:
+    node = decorator.func if isinstance(decorator, ast.Call) else decorator
+    word = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
+    return word in ("kernel", "inlined", "njit", "intrinsic", "sealed_cfunc", "overload", "register_jitable")
+
+
+def _file(module: str) -> Path | None:
+    path = PACKAGE.joinpath(*module.split(".")[1:])
+    return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
 
 
 def test_importing_the_package_is_light() -> None:

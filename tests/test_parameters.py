@@ -6,7 +6,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.friction import LAWS
-from stickslip.parameters import parameter, parameters
+from stickslip.problem.parameters import parameter, parameters
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
 

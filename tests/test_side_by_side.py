@@ -9,9 +9,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.figures.side_by_side import data
+from stickslip.figures.studies.compare import data
 from stickslip.paper.claims import CLAIMS, Outcome, Runs
-from stickslip.side_by_side import COLUMNS, Comparison, compare, distinct
+from stickslip.studies.compare import COLUMNS, Comparison, compare, distinct
 
 FIG6 = ("fig6-block-reconstructed", "fig6-slab")
 

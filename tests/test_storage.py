@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from tests.evolution.test_verified_numbers import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
+from tests.engine.test_verified_numbers import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
 
 RUNS = {
     "slab, rate law, leap": (rate_law_slab(), 480 * ss.YEAR),

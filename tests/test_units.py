@@ -7,7 +7,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import InputError
-from stickslip.units import COMMON_UNITS, si_factor, split_quantity, to_si
+from stickslip.foundation.units import COMMON_UNITS, si_factor, split_quantity, to_si
 
 
 @pytest.mark.parametrize(

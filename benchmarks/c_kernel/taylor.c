@@ -1,6 +1,6 @@
 /* The engine's algorithm in C: one Taylor step after the other, cut at the first event.
 
-   It works in the same memory as the engine (`stickslip.evolution.workspace.Run`) and writes the same history. `law.h`
+   It works in the same memory as the engine (`stickslip.engine.state.workspace.Run`) and writes the same history. `law.h`
    (the records and codes of the engine, and the law's `value` and `jet` from the same recurrences) is written by `benchmarks.c_peer`.
    Left out, since the benchmark's problems do not meet them: folds reached from a slipping branch, knots of a law, leaps, and what
    is done where a step turns out to be wrong: that it is not is verified at the end of every step, as in the engine. */

@@ -14,24 +14,26 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from stickslip import friction, loading, parameters, selection
+from stickslip import friction, loading
 from stickslip.bodies import ElasticSlab, SpringBlock
-from stickslip.errors import InputError
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem import parameters
+from stickslip.problem import selection_rule as selection
+from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from stickslip.contact.critical import critical_value
     from stickslip.contact.uniqueness import uniqueness
-    from stickslip.evolution.simulate import simulate
-    from stickslip.evolution.solution import Solution
-    from stickslip.figures.sweep import plot_sweep
-    from stickslip.long_runs.catalogue import catalogue, resume_catalogue
-    from stickslip.long_runs.resume import resume
+    from stickslip.figures.sweeps.sweep import plot_sweep
+    from stickslip.io.netcdf import load, save
     from stickslip.observables.statistics import catalogue_statistics
+    from stickslip.run.catalogue import catalogue, resume_catalogue
+    from stickslip.run.resume import resume
+    from stickslip.run.simulate import simulate
     from stickslip.scenarios import load_scenario
-    from stickslip.side_by_side import Comparison, compare
-    from stickslip.storage import load, save
+    from stickslip.solution.solution import Solution
     from stickslip.studies.analogy import Analogy, analogy
+    from stickslip.studies.compare import Comparison, compare
     from stickslip.studies.ensemble import Ensemble, ensemble
     from stickslip.studies.regularise import Regularisation, regularise
     from stickslip.sweeps.refine import refine
@@ -44,26 +46,26 @@ YEAR = 31_557_600.0
 
 _LATER = {
     "Analogy": "stickslip.studies.analogy",
-    "Comparison": "stickslip.side_by_side",
+    "Comparison": "stickslip.studies.compare",
     "Ensemble": "stickslip.studies.ensemble",
     "Regularisation": "stickslip.studies.regularise",
-    "Solution": "stickslip.evolution.solution",
+    "Solution": "stickslip.solution.solution",
     "analogy": "stickslip.studies.analogy",
-    "catalogue": "stickslip.long_runs.catalogue",
+    "catalogue": "stickslip.run.catalogue",
     "catalogue_statistics": "stickslip.observables.statistics",
-    "compare": "stickslip.side_by_side",
+    "compare": "stickslip.studies.compare",
     "critical_value": "stickslip.contact.critical",
     "ensemble": "stickslip.studies.ensemble",
-    "load": "stickslip.storage",
+    "load": "stickslip.io.netcdf",
     "load_scenario": "stickslip.scenarios",
-    "plot_sweep": "stickslip.figures.sweep",
+    "plot_sweep": "stickslip.figures.sweeps.sweep",
     "predictability": "stickslip.observables.predictability",
     "refine": "stickslip.sweeps.refine",
     "regularise": "stickslip.studies.regularise",
-    "resume": "stickslip.long_runs.resume",
-    "resume_catalogue": "stickslip.long_runs.catalogue",
-    "save": "stickslip.storage",
-    "simulate": "stickslip.evolution.simulate",
+    "resume": "stickslip.run.resume",
+    "resume_catalogue": "stickslip.run.catalogue",
+    "save": "stickslip.io.netcdf",
+    "simulate": "stickslip.run.simulate",
     "sweep": "stickslip.sweeps.sweep",
     "uniqueness": "stickslip.contact.uniqueness",
 }

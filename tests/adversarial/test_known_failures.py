@@ -96,7 +96,7 @@ def test_tanh_far_from_where_slip_begins_keeps_its_digits(start: float) -> None:
     assert run.status.ok
     slip = np.linspace(start, 2.0, 301)
     plain = 0.1 * (np.tanh((slip - 1.0) / 0.02) - np.tanh((start - 1.0) / 0.02))
-    from stickslip.friction.difference import difference
+    from stickslip.friction.formula.differences import difference
 
     found, _ = difference(law.trees()[0], law.numbers(), start, slip - start, 0.0)
     assert found == pytest.approx(plain, rel=0.0, abs=3e-16)

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import stickslip as ss
-from stickslip.batch.many import Values, member
-from stickslip.evolution.solution import Solution
+from stickslip.batch.vectorised_problem import Values, member
 from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.solution import Solution
 
 MEMBERS = 8
 PULL = 0.05 / ss.YEAR

@@ -10,9 +10,9 @@ import pytest
 
 from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.workspace import Workspace, new_workspace
-from stickslip.errors import InputError
-from stickslip.evolution.layout import FINISHED
-from stickslip.evolution.status import BAD_PARAMETERS, STATUSES
+from stickslip.engine.state.layout import FINISHED
+from stickslip.foundation.errors import InputError
+from stickslip.trajectory.status import BAD_PARAMETERS, STATUSES
 
 from .cases import CASES, SLAB, Case, by_solution, one
 

@@ -9,17 +9,17 @@ import pytest
 
 import stickslip as ss
 from stickslip.batch import why_not
-from stickslip.batch.kernels.turns import RULES
-from stickslip.batch.many import groups
+from stickslip.batch.kernels.branch_search import RULES
 from stickslip.batch.setups import Setups, set_up
-from stickslip.evolution import layout as at
-from stickslip.evolution.automatic import wait_for_creep
-from stickslip.evolution.drive import split_time
-from stickslip.evolution.layout import Params
-from stickslip.evolution.setup import prepare, row_time
-from stickslip.evolution.tables import default_event_rate
+from stickslip.batch.vectorised_problem import groups
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Params
+from stickslip.engine_input.automatic import wait_for_creep
+from stickslip.engine_input.prepare import prepare, row_time
 from stickslip.friction import LAWS
+from stickslip.run.run_loop import split_time
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.tables import default_event_rate
 
 from .cases import CASES, PULL, SLAB, Case, one
 

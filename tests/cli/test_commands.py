@@ -237,7 +237,7 @@ def test_run_draws_where_the_energy_is(command, tmp_path: Path):
 
 
 def test_pictures_of_the_slabs_inside(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.figures.animation.FRAMES", 3)
+    monkeypatch.setattr("stickslip.figures.runs.animation.FRAMES", 3)
     out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif", "--figure", "run.png").out
     assert out.endswith("written: run.png\nwritten: waves.svg\nwritten: slab.gif\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.png", "slab.gif", "waves.svg"]

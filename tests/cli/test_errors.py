@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.evolution.status import STATUSES
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.status import STATUSES
 
 CASES = [
     (["rn"], "No such command 'rn'. Did you mean 'run'?"),
@@ -132,7 +132,7 @@ def test_one_line_and_nothing_written(command, tmp_path: Path, arguments: list[s
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.cli.files.os.access", lambda *_: False)
+    monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda *_: False)
     monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
     shown = command("run", "fig6-slab", "--out", "a.nc")
     assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: the folder . is not writable\n")

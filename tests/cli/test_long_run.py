@@ -13,9 +13,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.cli.show import so_far
-from stickslip.evolution.report import Progress, Report
-from stickslip.long_runs.rows import read_table
+from stickslip.cli.output.show import so_far
+from stickslip.io.catalogue_rows import read_table
+from stickslip.run.progress import Progress, Report
 from tests.long_runs.problems import differences
 
 
@@ -129,8 +129,8 @@ def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPa
     def interrupting(_: str) -> Iterator[Progress]:
         yield lambda report: signal.raise_signal(signal.SIGINT) if report.events >= 2 else None
 
-    monkeypatch.setattr("stickslip.evolution.drive.LARGEST_BUDGET", 1000)  # so that it does not end before anybody can interrupt
-    monkeypatch.setattr("stickslip.evolution.drive.FIRST_BUDGET", 1000)
+    monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 1000)  # so that it does not end before anybody can interrupt
+    monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 1000)
     with monkeypatch.context() as patch:
         patch.setattr("stickslip.cli.long_run.progress", interrupting)
         shown = command("run", "rate-and-state-block", *option)
@@ -172,7 +172,7 @@ def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
 
 
 def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.evolution.keeper.MAX_PIECES", 500)
+    monkeypatch.setattr("stickslip.run.monitor.MAX_PIECES", 500)
     arguments = "run", "fig5-slab-printed", "--until", "10 minutes", "--out", "run.nc"
     shown = command(*arguments)
     assert shown.code == 1

@@ -6,8 +6,8 @@ import pytest
 import xarray as xr
 from typer import Context
 
+from stickslip.cli.commands.sweep import so_far
 from stickslip.cli.names import complete_design, complete_quantity, complete_vary
-from stickslip.cli.sweep import so_far
 from stickslip.sweeps.sweep import Report
 
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]

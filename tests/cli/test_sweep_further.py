@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from stickslip.sweeps import cluster
+from stickslip.sweeps.execution import cluster
 
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
 

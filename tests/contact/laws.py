@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import stickslip as ss
-from stickslip.friction.expression import cos, exp
-from stickslip.quantities import quantity
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.formula.expression import cos, exp
 
 SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
 """The paper's slab."""

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.branches import branches, branches_of, rate_on, rates_at
-from stickslip.contact.resistance import resistance
+from stickslip.contact.equation import resistance
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem
 

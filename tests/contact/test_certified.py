@@ -11,15 +11,16 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact import branches as searching
-from stickslip.contact import certified
 from stickslip.contact.branches import branches_of
-from stickslip.contact.certified import certificate
 from stickslip.contact.critical import critical_normal_stress, critical_value, margin
-from stickslip.contact.lowest import lowest_slope, proven_regime
-from stickslip.contact.resistance import resistance
+from stickslip.contact.equation import resistance
+from stickslip.contact.folds import certified
+from stickslip.contact.folds.certified import certificate
+from stickslip.contact.folds.lowest import lowest_slope, proven_regime
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.evolution.moving_branches import branch_rows
-from stickslip.friction import LAWS, FromExpression, enclosure
+from stickslip.engine_input.branch_table import branch_rows
+from stickslip.friction import LAWS, FromExpression
+from stickslip.friction.formula import enclosure
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
 from tests.friction.drawn import laws

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.contact.branches import branches_of
 from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
-from stickslip.contact.resistance import resistance
+from stickslip.contact.equation import resistance
 from stickslip.contact.roots import sign_change
 
 from .laws import S, Z, hyperbolic, slab_problem

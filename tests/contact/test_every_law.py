@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.resistance import resistance
-from stickslip.contact.selection import selection_table
+from stickslip.contact.equation import resistance
+from stickslip.contact.rules.selection import selection_table
 from stickslip.friction import LAWS
-from stickslip.selection import SELECTION_RULES
+from stickslip.problem.selection_rule import SELECTION_RULES
 from tests.friction.drawn import laws
 
 from .laws import S, Z, slab_problem

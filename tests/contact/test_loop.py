@@ -7,7 +7,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact.branches import rate_on
-from stickslip.selection import SELECTION_RULES
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem
 

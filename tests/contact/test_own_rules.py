@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.branches import Branch
-from stickslip.contact.resistance import resistance
-from stickslip.contact.selection import flaw, selection_table
-from stickslip.selection import SELECTION_RULES, SelectionTable, registered
+from stickslip.contact.equation import resistance
+from stickslip.contact.rules.selection import flaw, selection_table
+from stickslip.problem.selection_rule import SELECTION_RULES, SelectionTable, registered
 
 from .laws import Wavy, hyperbolic, slab_problem
 
@@ -67,7 +67,7 @@ def test_a_registered_rule_is_named_in_scenarios(tmp_path: Path):
 
 
 def test_a_name_may_be_given_anew_and_the_next_run_follows(tmp_path: Path):
-    from stickslip.contact.selection import maximal, minimal
+    from stickslip.contact.rules.selection import maximal, minimal
 
     scenario = ss.load_scenario("fig4-loop")
     times = []

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import stickslip as ss
-from stickslip.selection import SELECTION_RULES
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import S, Z, slab_problem
 

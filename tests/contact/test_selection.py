@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.branches import branches_of, rate_on
-from stickslip.contact.maxwell import area
-from stickslip.contact.resistance import resistance
-from stickslip.contact.selection import RULES, selection_table
-from stickslip.selection import SELECTION_RULES
+from stickslip.contact.equation import resistance
+from stickslip.contact.rules.maxwell import area
+from stickslip.contact.rules.selection import RULES, selection_table
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Z, hyperbolic, q_of, slab_problem
 from .test_branches import wavy_laws

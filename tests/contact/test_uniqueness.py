@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.selection import SELECTION_RULES
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
 

@@ -18,8 +18,8 @@ import matplotlib as mpl
 import pytest
 
 import stickslip
+from stickslip.problem.selection_rule import registered
 from stickslip.scenarios.library import names
-from stickslip.selection import registered
 from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, missing_lines, run_command
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
@@ -126,10 +126,10 @@ def test_a_law_is_one_file_and_one_line(tmp_path: Path) -> None:
     blocks = [block for block in blocks_of(page) if block.language in ("python", "toml")]
     law = next(block.text for block in blocks if "class PowerSlipWeakening" in block.text)
     scenario = next(block.text for block in blocks if block.language == "toml")
-    (package / "friction" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
+    (package / "friction" / "laws" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
     registry = package / "friction" / "registry.py"
     text = registry.read_text(encoding="utf-8").replace(
-        "LAWS: dict", "from stickslip.friction.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
+        "LAWS: dict", "from stickslip.friction.laws.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
     )
     registry.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        PowerSlipWeakening,\n", text), encoding="utf-8")
     (tmp_path / "mine.toml").write_text(scenario, encoding="utf-8")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.exports.sampling import sample
+from stickslip.io.sampling import sample
 
 RUN = ss.load_scenario("fig6-slab").run()
 HEIGHT = 1e4

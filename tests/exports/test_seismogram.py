@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.exports.seismogram import band
+from stickslip.io.seismogram import band
 
 RUN = ss.load_scenario("fig6-slab").run()
 TIME = np.arange(601) / 50.0

@@ -10,10 +10,10 @@ import pytest
 from matplotlib.figure import Figure
 
 import stickslip as ss
-from stickslip.figures import catalogue
-from stickslip.figures.run import plot_run
+from stickslip.figures.runs import catalogue
+from stickslip.figures.runs.run import plot_run
 from stickslip.figures.style import time_unit
-from tests.evolution.test_verified_numbers import SLAB, rate_law_slab
+from tests.engine.test_verified_numbers import SLAB, rate_law_slab
 
 mpl.use("Agg")
 

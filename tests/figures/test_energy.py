@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.figures import energy
+from stickslip.figures.runs import energy
 from tests.figures.test_figures import BLOCK_PROBLEM, SLAB_PROBLEM
 from tests.observables.test_energy import worst
 from tests.observables.test_event_energy import RUNS

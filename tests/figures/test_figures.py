@@ -16,8 +16,10 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
-from stickslip.figures import admissible, comparison, ensemble, hysteresis, laws, regimes, regularise, resistance, systems
-from stickslip.figures.run import plot_run
+from stickslip.figures.contact import admissible, hysteresis, laws, regimes, resistance, systems
+from stickslip.figures.runs import comparison
+from stickslip.figures.runs.run import plot_run
+from stickslip.figures.studies import ensemble, regularise
 from stickslip.figures.style import STYLE
 from stickslip.paper.files import image
 

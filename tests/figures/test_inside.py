@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import stickslip as ss
-from stickslip.figures import animation, snapshots, space_time
+from stickslip.figures.runs import animation, snapshots, space_time
 from stickslip.paper.files import image
 from tests.figures.test_figures import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM, labels
 

@@ -10,7 +10,7 @@ import pytest
 from matplotlib import pyplot
 
 import stickslip as ss
-from stickslip.figures.run import plot_run
+from stickslip.figures.runs.run import plot_run
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 
 mpl.use("Agg")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from stickslip.figures.style import INK, PALE
-from stickslip.figures.varied import is_logarithmic
+from stickslip.figures.sweeps.varied import is_logarithmic
 
 mpl.use("Agg")
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from stickslip import InputError
-from stickslip.evolution.generate import FormulaWriter
+from stickslip.engine.codegen.taylor_series import FormulaWriter
+from stickslip.foundation.quantities import Quantity
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
-from stickslip.friction.expression import Expression
-from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
-from stickslip.quantities import Quantity
+from stickslip.friction.formula.expression import Expression
+from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 
 SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0), "s": (1e-3, 1.0)}
 """Plausible values by unit."""
@@ -27,7 +27,7 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-KEPT, NOT_KEPT = "from stickslip.evolution.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
+KEPT, NOT_KEPT = "from stickslip.engine.codegen.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
 """A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from stickslip.friction import LAWS, expression
-from stickslip.friction.difference import difference
-from stickslip.friction.expression import RATE, SLIP, Parameter, as_expression
+from stickslip.friction import LAWS
+from stickslip.friction.formula import expression
+from stickslip.friction.formula.differences import difference
+from stickslip.friction.formula.expression import RATE, SLIP, Parameter, as_expression
 
 mpmath = pytest.importorskip("mpmath")
 

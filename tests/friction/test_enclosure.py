@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip.friction import interval as iv
-from stickslip.friction.enclosure import NotEnclosedError, enclose
-from stickslip.friction.expression import (
+from stickslip.friction.formula import interval as iv
+from stickslip.friction.formula.enclosure import NotEnclosedError, enclose
+from stickslip.friction.formula.expression import (
     FUNCTIONS,
     OPERATIONS,
     RATE,

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from stickslip import InputError
 from stickslip.friction import FromExpression, HyperbolicRate
-from stickslip.friction.expression import FUNCTIONS, OPERATIONS, RATE, SLIP, Expression, Parameter, as_expression
-from stickslip.friction.parse import parse
-from stickslip.friction.text import to_text
+from stickslip.friction.formula.expression import FUNCTIONS, OPERATIONS, RATE, SLIP, Expression, Parameter, as_expression
+from stickslip.friction.formula.parse import parse
+from stickslip.friction.formula.text import to_text
 
 HYPERBOLIC = "mu_d + (mu_s - mu_d)/(1 + alpha*v)"
 
@@ -46,7 +46,7 @@ def test_an_expression_is_the_built_in_law_to_the_last_digit() -> None:
     ],
 )
 def test_reading(text: str, u: float, v: float, value: float) -> None:
-    from stickslip.friction.expression import evaluate
+    from stickslip.friction.formula.expression import evaluate
 
     assert float(evaluate(parse(text, ()), {}, np.float64(u), np.float64(v))) == pytest.approx(value, rel=1e-15)
 

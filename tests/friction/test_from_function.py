@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip import InputError
 from stickslip.friction import FromFunction, HyperbolicRate
-from stickslip.friction.expression import RATE, SLIP
+from stickslip.friction.formula.expression import RATE, SLIP
 
 
 def hyperbolic(u: Any, v: Any, static: float, dynamic: float, alpha: float = 1.0) -> Any:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, Problem
 from stickslip.friction import LAWS, Coulomb, FrictionLaw
-from stickslip.friction.difference import difference
+from stickslip.friction.formula.differences import difference
 from stickslip.friction.slopes import slopes
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.scenarios.templates import template

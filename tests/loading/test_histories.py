@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.friction.fields import fields_of
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.parameters import fields_of
 from stickslip.loading import HISTORIES, HoldAndSlide, LoadingHistory, PiecewiseLinear, Segment, Sinusoidal, Steps, Tone
 from stickslip.loading.contract import VARYING
-from stickslip.quantities import quantity
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 LOSSY = replace(SLAB, driver_impedance=2e6)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import stickslip as ss
-from tests.evolution.test_moving_folds import KINKED, MATCHED, hardening
-from tests.evolution.test_moving_folds import SLAB as THIN
+from tests.engine.test_moving_folds import KINKED, MATCHED, hardening
+from tests.engine.test_moving_folds import SLAB as THIN
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)

@@ -15,15 +15,15 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from stickslip.evolution.drive import drive
-from stickslip.evolution.event_stream import EventStream
-from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.keeper import Orders
-from stickslip.evolution.report import Report
-from stickslip.evolution.tables import ENERGY_COLUMNS, default_event_rate
-from stickslip.long_runs import catalogue as module
-from stickslip.long_runs.catalogue import CatalogueKeeper
-from stickslip.long_runs.rows import RowsInMemory
+from stickslip.io.catalogue_rows import RowsInMemory
+from stickslip.run import catalogue as module
+from stickslip.run.catalogue import CatalogueKeeper
+from stickslip.run.monitor import Orders
+from stickslip.run.progress import Report
+from stickslip.run.run_loop import drive
+from stickslip.run.session import RunInProgress
+from stickslip.trajectory.event_stream import EventStream
+from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
 from tests.long_runs.problems import RUNS, SLOW, bundled
 from tests.long_runs.test_resume import killed
 
@@ -40,7 +40,7 @@ def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_it_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", capacity)
-    monkeypatch.setattr("stickslip.evolution.in_progress.FIRST_CAPACITY", capacity)
+    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", capacity)
     problem, duration = RUNS[name]
     for rate in (None, 0.0):
         table = ss.catalogue(problem, duration, event_rate=rate)
@@ -145,7 +145,7 @@ def test_progress_counts_what_was_forgotten(monkeypatch: pytest.MonkeyPatch) -> 
 LONG = """
 import signal, time
 import stickslip as ss
-import stickslip.evolution.drive as drive
+import stickslip.run.run_loop as drive
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
 drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
 problem = ss.load_scenario("cycles-slab").problem

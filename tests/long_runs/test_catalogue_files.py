@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.long_runs import catalogue as module
-from stickslip.long_runs.catalogue import checkpoint_of
-from stickslip.long_runs.rows import Rows
-from stickslip.netcdf import write
-from stickslip.storage import CATALOGUE, read
+from stickslip.foundation.netcdf_file import write
+from stickslip.io.catalogue_rows import Rows
+from stickslip.io.netcdf import CATALOGUE, read
+from stickslip.run import catalogue as module
+from stickslip.run.catalogue import checkpoint_of
 from tests.long_runs.problems import RUNS
 
 PROBLEM, DURATION = RUNS["slab that heals"]

@@ -13,23 +13,23 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.evolution import layout as at
-from stickslip.evolution.drive import split_time
-from stickslip.evolution.history import Epoch
-from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.inflow import row_time
-from stickslip.evolution.keeper import Orders, as_solution
-from stickslip.evolution.layout import Counts
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET
-from stickslip.evolution.report import Report
-from stickslip.evolution.simulate import go_on
-from stickslip.evolution.status import UNDER_WAY
-from stickslip.evolution.window import Window
-from stickslip.long_runs import catalogue as module
-from stickslip.long_runs.resume import taken_up
-from stickslip.storage import save_checkpoint
-from tests.evolution.creep_truth import ROUND, printed
-from tests.evolution.test_creep import SLAB
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts
+from stickslip.engine_input.branch_table import OUT_OF_BUDGET
+from stickslip.engine_input.forcing import row_time
+from stickslip.io.netcdf import save_checkpoint
+from stickslip.run import catalogue as module
+from stickslip.run.monitor import Orders, as_solution
+from stickslip.run.progress import Report
+from stickslip.run.resume import taken_up
+from stickslip.run.run_loop import split_time
+from stickslip.run.session import RunInProgress
+from stickslip.run.simulate import go_on
+from stickslip.solution.window import Window
+from stickslip.trajectory.history import Epoch
+from stickslip.trajectory.status import UNDER_WAY
+from tests.engine.creep_truth import ROUND, printed
+from tests.engine.test_creep import SLAB
 from tests.long_runs.problems import differences as differences_of_runs
 from tests.long_runs.test_resume import killed
 
@@ -138,7 +138,7 @@ def test_events_stop_it(events: int, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", RUNS)
 def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", 64)
-    monkeypatch.setattr("stickslip.evolution.in_progress.FIRST_CAPACITY", 64)
+    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", 64)
     problem, duration, rtol = RUNS[name]
     for rate in (None, 0.0):
         table = ss.catalogue(problem, duration, creep_rtol=rtol, event_rate=rate)
@@ -154,7 +154,7 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
 CREEPING = """
 import signal, time
 import stickslip as ss
-import stickslip.evolution.drive as drive
+import stickslip.run.run_loop as drive
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
 drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
 problem = ss.load_scenario("fig5-slab-printed").problem

@@ -14,17 +14,17 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.evolution import layout as at
-from stickslip.evolution.checkpoint import Checkpoint
-from stickslip.evolution.drive import split_time
-from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.inflow import row_time
-from stickslip.evolution.keeper import Orders, as_solution
-from stickslip.evolution.layout import State
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET
-from stickslip.evolution.report import Report
-from stickslip.evolution.status import UNDER_WAY
-from stickslip.storage import save_checkpoint
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import State
+from stickslip.engine_input.branch_table import OUT_OF_BUDGET
+from stickslip.engine_input.forcing import row_time
+from stickslip.io.netcdf import save_checkpoint
+from stickslip.run.monitor import Orders, as_solution
+from stickslip.run.progress import Report
+from stickslip.run.run_loop import split_time
+from stickslip.run.session import RunInProgress
+from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.trajectory.status import UNDER_WAY
 from tests.long_runs.problems import RUNS, SLOW, differences
 
 
@@ -173,7 +173,7 @@ def test_bad_arguments(arguments: dict[str, float], message: str, tmp_path: Path
 LONG = """
 import signal, time
 import stickslip as ss
-import stickslip.evolution.drive as drive
+import stickslip.run.run_loop as drive
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
 drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
 problem = ss.load_scenario("rate-and-state-block").problem

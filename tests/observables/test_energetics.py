@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.evolution.history import History
-from stickslip.observables.energetics import ENERGETICS_COLUMNS
-from stickslip.observables.pulses import PULSE_COLUMNS
-from tests.evolution.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
+from stickslip.observables.energy.energetics import ENERGETICS_COLUMNS
+from stickslip.observables.energy.pulses import PULSE_COLUMNS
+from stickslip.trajectory.history import History
+from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
 from tests.observables.test_event_energy import LOSSY, RUNS
 
 F = ss.friction

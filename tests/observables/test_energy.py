@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.evolution.history import History
-from tests.evolution import problems
-from tests.evolution.test_against_method_of_steps import KINDS
-from tests.evolution.test_verified_numbers import (
+from stickslip.trajectory.history import History
+from tests.engine import problems
+from tests.engine.test_against_method_of_steps import KINDS
+from tests.engine.test_verified_numbers import (
     IMPEDANCE,
     MODULUS,
     RATE_LAW,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.evolution.history import History
-from tests.evolution.test_verified_numbers import CRITICAL, IMPEDANCE, ROUND, SLAB, rate_law_slab, slip_law_slab
+from stickslip.trajectory.history import History
+from tests.engine.test_verified_numbers import CRITICAL, IMPEDANCE, ROUND, SLAB, rate_law_slab, slip_law_slab
 
 F = ss.friction
 HEAVY = replace(SLAB, contact_mass=1e6)

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 import stickslip as ss
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.observables.field import Field
-from tests.evolution import problems
-from tests.evolution.test_properties import few, ran
-from tests.evolution.test_properties import problems as random_problems
+from tests.engine import problems
+from tests.engine.test_properties import few, ran
+from tests.engine.test_properties import problems as random_problems
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13

@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.observables.field import Field
-from tests.evolution.test_verified_numbers import (
+from tests.engine.test_verified_numbers import (
     IMPEDANCE,
     MODULUS,
     ROUND,

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from tests.evolution.test_verified_numbers import SLAB, rate_law_slab
+from tests.engine.test_verified_numbers import SLAB, rate_law_slab
 
 TABLE = pd.DataFrame(
     {

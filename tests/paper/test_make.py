@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from stickslip.files import write_atomically
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.paper import make
 from stickslip.paper.claims import STATEMENTS
 from stickslip.paper.files import save_text

@@ -8,13 +8,13 @@ from scipy.integrate import quad, solve_ivp
 
 import stickslip as ss
 from stickslip.reference.bisection import bisect
-from stickslip.reference.coulomb_block import CoulombBlock
-from stickslip.reference.coulomb_slab import CoulombSlab
-from stickslip.reference.growth_rate import growth_rate
-from stickslip.reference.hyperbolic_folds import HyperbolicFolds
-from stickslip.reference.linear_block import LinearBlock
-from stickslip.reference.pulse_period import PulseTrain
-from stickslip.reference.stuck_slab import StuckSlab
+from stickslip.reference.block.coulomb import CoulombBlock
+from stickslip.reference.block.linear import LinearBlock
+from stickslip.reference.slab.coulomb import CoulombSlab
+from stickslip.reference.slab.growth_rate import growth_rate
+from stickslip.reference.slab.hyperbolic_folds import HyperbolicFolds
+from stickslip.reference.slab.pulse_period import PulseTrain
+from stickslip.reference.slab.stuck import StuckSlab
 
 mpmath = pytest.importorskip("mpmath")
 

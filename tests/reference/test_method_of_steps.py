@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.reference.coulomb_block import CoulombBlock
-from stickslip.reference.coulomb_slab import CoulombSlab
-from stickslip.reference.linear_block import LinearBlock
+from stickslip.reference.block.coulomb import CoulombBlock
+from stickslip.reference.block.linear import LinearBlock
 from stickslip.reference.method_of_steps import method_of_steps
-from stickslip.reference.pulse_period import PulseTrain
-from stickslip.reference.stuck_slab import StuckSlab
+from stickslip.reference.slab.coulomb import CoulombSlab
+from stickslip.reference.slab.pulse_period import PulseTrain
+from stickslip.reference.slab.stuck import StuckSlab
 
 V = 0.05 / 31_557_600.0
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

@@ -8,7 +8,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis
-from stickslip.figures import analogy as figure
+from stickslip.figures.studies import analogy as figure
 from stickslip.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
 
 CASE = ss.load_scenario("block-or-slab")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.fold_passage import fold_delay
-from stickslip.reference.hyperbolic_folds import HyperbolicFolds
-from stickslip.studies.differences import passage
-from stickslip.studies.kinds import KINDS, regularised
+from stickslip.reference.slab.fold_passage import fold_delay
+from stickslip.reference.slab.hyperbolic_folds import HyperbolicFolds
+from stickslip.studies.regularisations import KINDS, regularised
 from stickslip.studies.regularise import Regularisation, regularise
+from stickslip.studies.run_distance import passage
 
 LOOP = ss.load_scenario("fig4-loop")
 SECOND = ss.load_scenario("second-event-perfect-delay")

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.sweeps.cells import Lattice, Refined, apart, refine_cells
+from stickslip.sweeps.design.adaptive_grid import Lattice, Refined, apart, refine_cells
 
 Floats = NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from urllib.request import urlopen
 import pytest
 
 import stickslip as ss
-from stickslip.sweeps.cluster import ChunksLostError, cluster, on_cluster, stream
-from stickslip.sweeps.plan import Plan, make_plan
-from stickslip.sweeps.security import own_security
+from stickslip.sweeps.execution.cluster import ChunksLostError, cluster, on_cluster, stream
+from stickslip.sweeps.execution.plan import Plan, make_plan
+from stickslip.sweeps.execution.security import own_security
 from stickslip.sweeps.sweep import Report, carry_out
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def test_few_chunks_are_in_flight(two_workers: Client) -> None:
 
 
 def test_a_worker_of_another_version_is_refused(two_workers: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.cluster.engine", lambda: "another")
+    monkeypatch.setattr("stickslip.sweeps.execution.cluster.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="another version of stickslip"):
         list(stream(two_workers, square, [(1, 1)]))
 
@@ -162,7 +162,7 @@ def _alive(session: int) -> bool:
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nowhere"])
 def test_a_scheduler_that_does_not_answer(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.cluster.PATIENCE", 0.2)
+    monkeypatch.setattr("stickslip.sweeps.execution.cluster.PATIENCE", 0.2)
     with pytest.raises(ss.InputError, match=f"no dask scheduler answers at {address}"):
         ss.sweep("fig6-slab", VARY, scheduler=address)
 

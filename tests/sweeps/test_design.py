@@ -11,9 +11,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.sweeps.design import read_design
-from stickslip.sweeps.keys import key_named, keys_of
-from stickslip.sweeps.plan import make_plan, tile_of
+from stickslip.sweeps.design.design import read_design
+from stickslip.sweeps.design.parameter_paths import key_named, keys_of
+from stickslip.sweeps.execution.plan import make_plan, tile_of
 
 SLAB = load_scenario("fig6-slab")
 NESTED = load_scenario("block-or-slab")

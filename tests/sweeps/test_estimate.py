@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stickslip.sweeps.changes import Change, cases, changes
 from stickslip.sweeps.estimate import estimate
-from stickslip.sweeps.plan import make_plan
+from stickslip.sweeps.execution.plan import make_plan
+from stickslip.sweeps.results.changes import Change, cases, changes
 from stickslip.sweeps.sweep import carry_out, on_threads
 
 

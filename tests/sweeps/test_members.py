@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.energy import energy
+from stickslip.observables.energy.balance import energy
 from stickslip.scenarios.scenario import load_scenario, read_scenario
-from stickslip.sweeps.chunk import Work, one_by_one, run_chunk
-from stickslip.sweeps.outcome import BAD_PARAMETERS, ERROR, MEANINGS
-from stickslip.sweeps.plan import make_plan
-from stickslip.sweeps.quantities import QUANTITIES, quantities_named
+from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
+from stickslip.sweeps.execution.chunk import Work, one_by_one, run_chunk
+from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, ERROR, MEANINGS
+from stickslip.sweeps.execution.plan import make_plan
 
 PULSES = load_scenario("fig5-slab-reconstructed")
 RATE = load_scenario("fig6-slab")
@@ -149,7 +149,7 @@ def test_failures_are_recorded_and_stop_nobody() -> None:
 
 
 def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.sweeps.chunk.MAX_PIECES", 600)
+    monkeypatch.setattr("stickslip.sweeps.execution.chunk.MAX_PIECES", 600)
     plan = make_plan(PULSES, "thickness=100 m,10 km", quantities="slip")
     found = one_by_one(plan.work, plan.values(0))
     assert [MEANINGS[code] for code in found.status] == ["too_many_pieces", "finished"]

@@ -12,7 +12,7 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.contact.critical import margin
-from stickslip.sweeps.recipe import cells_of
+from stickslip.sweeps.results.refinement_spec import cells_of
 from stickslip.sweeps.sweep import Report
 
 ALPHA, STRESS = "friction.alpha", "body.normal_stress"

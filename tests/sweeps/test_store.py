@@ -17,10 +17,10 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.evolution.in_progress import RunInProgress
-from stickslip.sweeps.outcome import BAD_PARAMETERS, NOT_RUN
-from stickslip.sweeps.plan import make_plan
-from stickslip.sweeps.store import ResultStore, open_store
+from stickslip.run.session import RunInProgress
+from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
+from stickslip.sweeps.execution.plan import make_plan
+from stickslip.sweeps.results.store import ResultStore, open_store
 from stickslip.sweeps.sweep import Report, carry_out, on_threads
 
 VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": "5km..20km:6"}
@@ -257,7 +257,7 @@ def test_another_scenario_and_another_version_are_refused(tmp_path: Path, monkey
     sweep(path)
     with pytest.raises(ss.InputError, match="was made from another scenario"):
         ss.sweep("second-event-maxwell", VARY, out=path, **KEPT)
-    monkeypatch.setattr("stickslip.sweeps.layout.engine", lambda: "another")
+    monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
         sweep(path)
 
@@ -291,7 +291,7 @@ def test_the_command_goes_on_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(tmp_path)
     command = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..2:4", "--out", "map.zarr", "--chunk", "1"]
     stop = Stop(2)
-    monkeypatch.setattr("stickslip.cli.sweep.so_far", lambda report: stop(report) or "")
+    monkeypatch.setattr("stickslip.cli.commands.sweep.so_far", lambda report: stop(report) or "")
     with pytest.raises(SystemExit) as ended:
         main(command)
     assert ended.value.code == 130

@@ -1,6 +1,6 @@
 """Batches: many members of one scenario in compiled code, in parallel threads, each folded into a few numbers."""
 
-from stickslip.batch.conditions import QUANTITIES, why_not
+from stickslip.batch.batch_support import QUANTITIES, why_not
 from stickslip.batch.run import Members, run_members
 
 __all__ = ["QUANTITIES", "Members", "run_members", "why_not"]

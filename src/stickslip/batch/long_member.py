@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.batch.kernels import reduction as of
-from stickslip.evolution.drive import drive
-from stickslip.evolution.event_stream import EventStream
-from stickslip.evolution.in_progress import RunInProgress
-from stickslip.evolution.inflow import row_time
-from stickslip.evolution.layout import Floats, Integers, Store
-from stickslip.evolution.status import INTERRUPTED
-from stickslip.evolution.tables import default_event_rate
+from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.engine_input.forcing import row_time
+from stickslip.run.run_loop import drive
+from stickslip.run.session import RunInProgress
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.event_stream import EventStream
+from stickslip.trajectory.status import INTERRUPTED
+from stickslip.trajectory.tables import default_event_rate
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,7 +64,7 @@ class Fold:
 
 @dataclass
 class Folding:
-    """Looks after the run (`drive.Watch`)."""
+    """Looks after the run (`run_loop.Watch`)."""
 
     stream: EventStream
     fold: Fold
@@ -73,11 +73,11 @@ class Folding:
     """Pieces whose shocks are counted."""
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
-        """See `drive.Watch`."""
+        """See `run_loop.Watch`."""
         return INTERRUPTED if self.stop[0] != 0 else None
 
     def make_room(self, run: RunInProgress) -> bool:
-        """See `drive.Watch`: what is known is folded, what stands nowhere is forgotten."""
+        """See `run_loop.Watch`: what is known is folded, what stands nowhere is forgotten."""
         self.count_shocks(run.store, run.length)
         look = self.stream.look(run.store, run.length)
         self.fold.add(look.table())

@@ -9,19 +9,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.batch.conditions import why_not
+from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
 from stickslip.batch.kernels.runs import AT_END, FREE, run_group
 from stickslip.batch.long_member import run_alone
-from stickslip.batch.many import Values, are_fine, groups, member
 from stickslip.batch.setups import Alike, alike, set_up
+from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
-from stickslip.errors import InputError
-from stickslip.evolution.lanes import WIDTH
-from stickslip.evolution.layout import PAUSED, Floats, Integers
-from stickslip.evolution.status import BAD_PARAMETERS, INTERRUPTED
+from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.state.layout import PAUSED, Floats, Integers
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED
 
 CHUNK = 8192
 """Members that are set up together: enough for numpy, few enough for the cache."""
@@ -37,7 +37,7 @@ class Members(NamedTuple):
     results: dict[str, Floats]
     """By quantity: one number a member; NaN for a member that made no problem."""
     status: Integers
-    """What ended each run: codes of `stickslip.evolution.status.STATUSES`."""
+    """What ended each run: codes of `stickslip.trajectory.status.STATUSES`."""
     reason: dict[int, str]
     """Of members with bad parameters, by their place: why, in one line."""
 

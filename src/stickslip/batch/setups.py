@@ -1,4 +1,4 @@
-"""From the numbers of many members to what the engine works on: `evolution.setup`, with a row a member."""
+"""From the numbers of many members to what the engine works on: `engine_input.prepare`, with a row a member."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.kernels.constants import fill_constants
-from stickslip.batch.kernels.turns import MOST_BRANCHES, RULES, branch_tables
-from stickslip.batch.many import Values, many, member, shared
+from stickslip.batch.vectorised_problem import Values, many, member, shared
 from stickslip.bodies import ElasticSlab
-from stickslip.evolution.automatic import set_lumping, wait_for_creep
-from stickslip.evolution.compiled import CompiledFormula, compile_formula
-from stickslip.evolution.layout import Counts, Floats, Integers, Params, State
-from stickslip.evolution.moving_branches import branch_rows, has_inertia, is_algebraic
-from stickslip.evolution.setup import addresses_of, first_load, parameters_of, set_tolerance, start_of, together
-from stickslip.evolution.tables import default_event_rate
+from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
+from stickslip.engine_input.automatic import set_lumping, wait_for_creep
+from stickslip.engine_input.branch_table import branch_rows, has_inertia, is_algebraic
+from stickslip.engine_input.prepare import addresses_of, first_load, parameters_of, set_tolerance, start_of, together
+from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
-from stickslip.problem import Problem
-from stickslip.quantities import quantities_of
+from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.tables import default_event_rate
 
 LOADING = Lock()
 """Threads must not load a formula twice: the code of which the other has the address would go."""
 FASTEST = 1e9
-"""Rates beyond so many times the contact's own scale do not matter: as `contact.resistance`."""
+"""Rates beyond so many times the contact's own scale do not matter: as `contact.equation`."""
 
 
 class Setups(NamedTuple):
@@ -63,7 +63,7 @@ class Alike(NamedTuple):
 
 
 def alike(scenario: Scenario, values: Values) -> Alike:
-    """What the members of one group (`many.groups`) have in common. Compiles the law's formulas if they are new."""
+    """What the members of one group (`vectorised_problem.groups`) have in common. Compiles the law's formulas if they are new."""
     problem = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
     law = problem.friction
     with LOADING:
@@ -78,7 +78,7 @@ def alike(scenario: Scenario, values: Values) -> Alike:
 
 
 def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Setups:
-    """Members of one group (`many.groups`); `group` is what they have in common, where that is known."""
+    """Members of one group (`vectorised_problem.groups`); `group` is what they have in common, where that is known."""
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
     problem = many(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
@@ -124,7 +124,7 @@ def spread(numbers: Any, count: int) -> Floats:
 
 
 def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
-    """As `evolution.drive.split_time`."""
+    """As `run.run_loop.split_time`."""
     whole = np.floor(time / row)
     offset = time - whole * row
     back = (offset <= 0.0) & (whole > 0)
@@ -135,7 +135,7 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 
 
 def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
-    """Constants of the law's functions, and shifts, offsets and knots: as in `evolution.setup`."""
+    """Constants of the law's functions, and shifts, offsets and knots: as in `engine_input.prepare`."""
     law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
     references = near if law.knot_variable == "slip" else [start] * pieces

@@ -11,12 +11,12 @@ from stickslip.batch.kernels.lanes import AWAY, CONSTANTS
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import FREE
 from stickslip.batch.setups import Setups
-from stickslip.evolution import layout as at
-from stickslip.evolution.echoes import Echoes, new_echoes
-from stickslip.evolution.lanes import WIDTH
-from stickslip.evolution.layout import Floats, Integers, Params, Setup, Store
-from stickslip.evolution.setup import NOT_VARYING
-from stickslip.evolution.workspace import ADDRESSES, PLACES, Run, lend
+from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats, Integers, Params, Setup, Store
+from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
+from stickslip.engine.waves.echo_queue import Echoes, new_echoes
+from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Pieces of history for which a lane has room; a member that needs more is run by itself."""

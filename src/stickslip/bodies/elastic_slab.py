@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
-from stickslip.errors import InputError
-from stickslip.quantities import check_quantities, quantity
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import check_quantities, quantity
 
 
 @dataclass(frozen=True)

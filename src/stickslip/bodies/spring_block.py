@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.quantities import check_quantities, quantity
+from stickslip.foundation.quantities import check_quantities, quantity
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,16 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.files import check_target
-from stickslip.errors import InputError
+from stickslip.cli.output.files import check_target
+from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.cli.pictures import Pictures
-    from stickslip.evolution.report import Progress
-    from stickslip.evolution.solution import Solution
-    from stickslip.long_runs.catalogue import Catalogue
-    from stickslip.problem import Problem
+    from stickslip.cli.output.pictures import Pictures
+    from stickslip.problem.problem import Problem
+    from stickslip.run.catalogue import Catalogue
+    from stickslip.run.progress import Progress
     from stickslip.scenarios.scenario import Scenario
+    from stickslip.solution.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Request:
         if self.energies and self.catalog is None:
             raise InputError("run: --energies belongs to --catalog FILE")
         if self.catalog is not None:
-            from stickslip.long_runs.rows import SUFFIXES, check_catalogue
+            from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
 
             check_target(self.catalog, "--catalog", SUFFIXES)
             check_catalogue(self.catalog, "--catalog")
@@ -65,7 +65,7 @@ class Request:
         """Whether slip events are all that is kept."""
         if self.resume is None:
             return self.catalog is not None
-        from stickslip.storage import is_catalogue
+        from stickslip.io.netcdf import is_catalogue
 
         return is_catalogue(self.resume)
 
@@ -89,11 +89,11 @@ class Request:
 
     def scenario(self) -> Scenario:
         """The scenario with what the options change. Raises InputError."""
-        from stickslip.evolution.creep.conditions import check_creep_rtol
-        from stickslip.evolution.lumping import check_shortest_event
+        from stickslip.engine_input.creep_limits import check_creep_rtol
+        from stickslip.engine_input.lumping_limits import check_shortest_event
+        from stickslip.problem.selection_rule import names, unknown
         from stickslip.scenarios.scenario import load_scenario
         from stickslip.scenarios.schema import SHORTEST_EVENT, check_rtol, read_duration
-        from stickslip.selection import names, unknown
 
         assert self.name is not None
         loaded = load_scenario(self.name)
@@ -119,9 +119,9 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
-    from stickslip.long_runs.resume import resume
+    from stickslip.io.netcdf import load
+    from stickslip.run.resume import resume
     from stickslip.scenarios.scenario import Scenario
-    from stickslip.storage import load
 
     check_same(request, load(request.resume).problem)
     with progress(request.resume.stem) as report:
@@ -132,9 +132,9 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run without a history, from the start or from where it stopped. Raises InputError."""
-    from stickslip.evolution.in_progress import RunInProgress
-    from stickslip.evolution.keeper import Orders
-    from stickslip.long_runs.catalogue import Paused, begin, check_energies, leaps_with
+    from stickslip.run.catalogue import Paused, begin, check_energies, leaps_with
+    from stickslip.run.monitor import Orders
+    from stickslip.run.session import RunInProgress
     from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
@@ -169,7 +169,7 @@ def check_same(request: Request, problem: Problem) -> None:
 @contextmanager
 def progress(name: str) -> Iterator[Progress]:
     """Says on a terminal how far the run is."""
-    from stickslip.cli.show import progress_to, so_far
+    from stickslip.cli.output.show import progress_to, so_far
 
     with progress_to(f"{name}:") as report:
         yield lambda about: report(so_far(about))

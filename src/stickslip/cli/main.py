@@ -9,17 +9,17 @@ from typing import Annotated
 import typer
 from typer.exceptions import TyperException
 
-from stickslip.cli.analogy import analogy
-from stickslip.cli.check import check
-from stickslip.cli.compare import compare
-from stickslip.cli.ensemble import ensemble
-from stickslip.cli.export import export
-from stickslip.cli.new import new
-from stickslip.cli.paper import paper
-from stickslip.cli.regularise import regularise
-from stickslip.cli.run import run
-from stickslip.cli.sweep import sweep
-from stickslip.errors import InputError
+from stickslip.cli.commands.analogy import analogy
+from stickslip.cli.commands.check import check
+from stickslip.cli.commands.compare import compare
+from stickslip.cli.commands.ensemble import ensemble
+from stickslip.cli.commands.export import export
+from stickslip.cli.commands.new import new
+from stickslip.cli.commands.paper import paper
+from stickslip.cli.commands.regularise import regularise
+from stickslip.cli.commands.run import run
+from stickslip.cli.commands.sweep import sweep
+from stickslip.foundation.errors import InputError
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
 

@@ -58,23 +58,23 @@ def complete_pull(incomplete: str) -> list[str]:
 
 def complete_rule(incomplete: str) -> list[str]:
     """Selection rules."""
-    from stickslip.selection import SELECTION_RULES
+    from stickslip.problem.selection_rule import SELECTION_RULES
 
     return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]
 
 
 def complete_regularisation(incomplete: str) -> list[str]:
     """What `stickslip regularise --by` knows."""
-    from stickslip.studies.kinds import KINDS
+    from stickslip.studies.regularisations import KINDS
 
     return [kind for kind in KINDS if kind.startswith(incomplete)]
 
 
 def complete_vary(context: Context, incomplete: str) -> list[str]:
     """Keys of the scenario on the command line that a sweep can vary."""
-    from stickslip.errors import InputError
+    from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
-    from stickslip.sweeps.keys import keys_of
+    from stickslip.sweeps.design.parameter_paths import keys_of
 
     try:
         found = keys_of(load_scenario(context.params["scenario"]))
@@ -85,13 +85,13 @@ def complete_vary(context: Context, incomplete: str) -> list[str]:
 
 def complete_quantity(incomplete: str) -> list[str]:
     """Quantities that a sweep keeps."""
-    from stickslip.sweeps.quantities import QUANTITIES
+    from stickslip.sweeps.design.quantities import QUANTITIES
 
     return [name for name in QUANTITIES if name.startswith(incomplete)]
 
 
 def complete_design(incomplete: str) -> list[str]:
     """Designs of a sweep."""
-    from stickslip.sweeps.design import KINDS
+    from stickslip.sweeps.design.design import KINDS
 
     return [kind for kind in KINDS if kind.startswith(incomplete)]

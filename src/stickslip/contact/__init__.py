@@ -1,0 +1,1 @@
+"""The contact equation: its branches and folds, selection rules, and whether its solution is unique."""

@@ -11,10 +11,10 @@ import numpy as np
 
 from stickslip.contact.critical import Regime, margin
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw
-from stickslip.friction.fields import NamedNumbers, Part, Series, fields_of
-from stickslip.problem import Problem
-from stickslip.quantities import Quantity
+from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
+from stickslip.problem.problem import Problem
 
 _POINTS = 65
 _UNKNOWN = 10.0

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.certified import Certificate, certificate
-from stickslip.contact.resistance import Resistance, resistance
+from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.folds.certified import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
-from stickslip.errors import InputError
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
 
 _POINTS_PER_DECADE = 64
 _EVEN_POINTS, _EVEN_REACH = 2001, 10.0

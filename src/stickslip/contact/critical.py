@@ -15,13 +15,13 @@ from typing import Literal
 import numpy as np
 
 from stickslip.contact.branches import search_grid
-from stickslip.contact.certified import Verdict
-from stickslip.contact.lowest import bounded, lowest_slope, proven_regime
-from stickslip.contact.resistance import Resistance, resistance
+from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.folds.certified import Verdict
+from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.roots import sign_change
-from stickslip.errors import InputError
-from stickslip.parameters import Parameter, parameter
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.problem import Problem
 
 Regime = Literal["regular", "irregular"]
 

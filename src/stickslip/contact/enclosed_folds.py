@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stickslip.contact.branches import within
-from stickslip.contact.certified import Certificate, Interval, sign_of
-from stickslip.contact.resistance import Resistance
-from stickslip.contact.slope_bounds import FASTEST, Cells, SlopeBounds
+from stickslip.contact.equation import Resistance
+from stickslip.contact.folds.certified import Certificate, Interval, sign_of
+from stickslip.contact.folds.slope_bounds import FASTEST, Cells, SlopeBounds
 
 _HALVINGS = np.exp2(np.arange(-52.0, 0.0))
 """Relative distances from a fold at which the sign of g' is proven, the smallest first."""

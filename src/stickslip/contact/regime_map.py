@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from stickslip.contact.critical import margin
 from stickslip.contact.roots import sign_change
-from stickslip.errors import InputError
-from stickslip.parameters import parameter
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem.parameters import parameter
+from stickslip.problem.problem import Problem
 
 Floats = NDArray[np.float64]
 

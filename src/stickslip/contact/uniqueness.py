@@ -13,16 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import Branch, branches_of, rates_at
-from stickslip.contact.certified import Certificate, Verdict, certificate
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
-from stickslip.contact.loop import Jump, Loop, jumps_of, loop_of
-from stickslip.contact.lowest import lowest_slope, normal_stress_between
-from stickslip.contact.resistance import Plateau, Resistance, resistance
-from stickslip.contact.selection import table_of
-from stickslip.errors import InputError
-from stickslip.parameters import parameter
-from stickslip.problem import Problem
+from stickslip.contact.equation import Plateau, Resistance, resistance
+from stickslip.contact.folds.certified import Certificate, Verdict, certificate
+from stickslip.contact.folds.lowest import lowest_slope, normal_stress_between
+from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
+from stickslip.contact.rules.selection import table_of
+from stickslip.foundation.errors import InputError
+from stickslip.problem.parameters import parameter
+from stickslip.problem.problem import Problem
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Figures; each module makes its data, draws it, or both."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, Literal
 
-from stickslip.errors import InputError
-from stickslip.friction.contract import Formula, FrictionLaw
-from stickslip.friction.fields import Part, declare
+from stickslip.foundation.errors import InputError
+from stickslip.friction.law import Formula, FrictionLaw
+from stickslip.friction.parameters import Part, declare
 
 PREFIXES = ("slip_", "rate_")
 """Put before the names of the parts' parameters."""

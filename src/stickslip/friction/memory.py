@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from stickslip.errors import InputError
-from stickslip.friction.contract import FrictionLaw
-from stickslip.friction.fields import Choice, declare
+from stickslip.foundation.errors import InputError
+from stickslip.friction.law import FrictionLaw
+from stickslip.friction.parameters import Choice, declare
 
 
 @dataclass(frozen=True, kw_only=True)

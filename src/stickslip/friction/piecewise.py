@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.errors import InputError
-from stickslip.friction.contract import Formula, FrictionLaw
+from stickslip.foundation.errors import InputError
+from stickslip.friction.law import Formula, FrictionLaw
 
 
 def along_slip(law: Any, u: Any, v: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.friction.contract import FrictionLaw
+from stickslip.friction.law import FrictionLaw
 
 
 def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:

@@ -12,8 +12,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.errors import InputError
-from stickslip.friction.fields import check_fields
+from stickslip.foundation.errors import InputError
+from stickslip.friction.parameters import check_fields
 
 VARYING = "m/s or Pa"
 """Unit of what varies: m/s for a pull rate, Pa for a far stress."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from stickslip.friction.fields import Series, declare
+from stickslip.foundation.quantities import Quantity, quantity
+from stickslip.friction.parameters import Series, declare
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
-from stickslip.quantities import Quantity, quantity
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from stickslip.errors import InputError
-from stickslip.friction.fields import Series, declare
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.friction.parameters import Series, declare
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
-from stickslip.quantities import Quantity
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from stickslip.foundation.quantities import quantity
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
-from stickslip.quantities import quantity
 
 
 @dataclass(frozen=True)

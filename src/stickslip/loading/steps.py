@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from stickslip.errors import InputError
-from stickslip.friction.fields import Series, declare
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.friction.parameters import Series, declare
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
-from stickslip.quantities import Quantity
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""What is calculated from the history of a run."""

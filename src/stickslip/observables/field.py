@@ -12,17 +12,19 @@ slab holds now, and a longer run says the same.
 
 from __future__ import annotations
 
-from typing import NamedTuple, get_args
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.bodies import ElasticSlab
-from stickslip.errors import InputError
-from stickslip.evolution.history import Floats, Side
-from stickslip.evolution.readings import Readings
-from stickslip.observables.stretch import Stretch, rounding
+from stickslip.foundation.errors import InputError
+from stickslip.observables.wave_interval import Stretch, rounding
 from stickslip.observables.waves import Waves
+from stickslip.trajectory.history import Floats, Side
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Readings
 
 ROUNDS = 8
 """Round trips that are read together."""

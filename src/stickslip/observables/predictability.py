@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
-from stickslip.errors import InputError
-from stickslip.evolution.moving_branches import folds_move, is_algebraic
-from stickslip.evolution.setup import SAFETY
-from stickslip.problem import Problem
+from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.engine_input.prepare import SAFETY
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from stickslip.evolution.solution import Solution
+    from stickslip.solution.solution import Solution
 
 Floats = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.evolution.history import History, Moments
+from stickslip.trajectory.history import History, Moments
 
 Floats = NDArray[np.float64]
 Integrand = Callable[[Moments], Floats]

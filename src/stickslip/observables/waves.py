@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.errors import InputError
-from stickslip.evolution.history import START, Epoch, History, Moments
-from stickslip.evolution.inflow import inflow_of
+from stickslip.engine_input.forcing import inflow_of
+from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
+from stickslip.trajectory.history import START, Epoch, History, Moments
 
 Floats = NDArray[np.float64]
 OfWave = Callable[[Floats, Floats], Floats]

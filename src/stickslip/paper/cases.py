@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import stickslip as ss
-from stickslip.evolution.solution import Solution
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
 from stickslip.scenarios import load_scenario
+from stickslip.solution.solution import Solution
 
 READINGS = {
     "fig4-loop": "our run: dead load",

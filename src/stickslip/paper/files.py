@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.files import write_atomically
+from stickslip.foundation.atomic_write import write_atomically
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,7 @@ def save_table(path: Path, table: pd.DataFrame) -> Path:
 
 def save_data(path: Path, dataset: xr.Dataset) -> Path:
     """netCDF-4, with a checksum at its end."""
-    from stickslip.netcdf import write
+    from stickslip.foundation.netcdf_file import write
 
     return write(dataset, path)
 

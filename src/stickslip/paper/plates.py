@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.figures import comparison, hysteresis, laws, resistance, systems
+from stickslip.figures.contact import hysteresis, laws, resistance, systems
+from stickslip.figures.runs import comparison
 from stickslip.friction import FrictionLaw, HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import Runs, problem
 

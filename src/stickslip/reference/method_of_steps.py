@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.errors import InputError
-from stickslip.friction.difference import difference
+from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.differences import difference
 from stickslip.loading import LoadingHistory
-from stickslip.problem import Problem
-from stickslip.reference.quadratic import fast_rate, fast_room
+from stickslip.problem.problem import Problem
+from stickslip.reference.slab.quadratic import fast_rate, fast_room
 
 Load = Callable[[float, float], float]
 _MAX_PIECES = 20_000

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from stickslip.contact.regime_map import Axis
-from stickslip.errors import InputError
-from stickslip.parameters import parameter
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem.parameters import parameter
+from stickslip.problem.problem import Problem
 from stickslip.scenarios.values import read_quantity, show
 
 _AXIS = re.compile(r"(?P<name>[^=]+)=(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,6}))?(?P<log>:log)?")

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from stickslip.errors import InputError
-from stickslip.friction.fields import Choice, Field, Named, NamedNumbers, Part, Series, Text, fields_of
-from stickslip.friction.from_expression import named_value
-from stickslip.quantities import Quantity
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.friction.custom.from_expression import named_value
+from stickslip.friction.parameters import Choice, Field, Named, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.scenarios.values import describe as describe_quantity
 from stickslip.scenarios.values import read_quantity, show
 

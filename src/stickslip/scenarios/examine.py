@@ -10,15 +10,15 @@ from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
-from stickslip.evolution.creep.conditions import PATIENCE, creep_tolerance
-from stickslip.evolution.lumping import MOST_PIECES, automatic_length, lumps_by_itself
+from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
+from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
+from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
-from stickslip.friction.fields import Choice, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.loading import LoadingHistory
-from stickslip.parameters import parameter
-from stickslip.problem import Problem
-from stickslip.quantities import Quantity
-from stickslip.reference.pulse_period import PulseTrain
+from stickslip.problem.parameters import parameter
+from stickslip.problem.problem import Problem
+from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import in_unit, quantities_in

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from importlib.resources.abc import Traversable
 
-from stickslip.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest
 
 
 def _folder() -> Traversable:

@@ -12,10 +12,10 @@ import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from stickslip.errors import InputError, nearest
-from stickslip.files import read_bounded
-from stickslip.friction.fields import LARGEST_SERIES
-from stickslip.problem import MAY_VARY
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.parameters import LARGEST_SERIES
+from stickslip.problem.problem import MAY_VARY
 from stickslip.scenarios.values import show
 
 LARGEST = 5_000_000

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
-from stickslip.errors import InputError, nearest
-from stickslip.evolution.creep.conditions import check_creep_rtol
-from stickslip.evolution.lumping import check_shortest_event
-from stickslip.files import read_bounded
+from stickslip.engine_input.creep_limits import check_creep_rtol
+from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.loading import LoadingHistory
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, build, check_rtol, read_document, without_owner
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
-    from stickslip.evolution.report import Progress
-    from stickslip.evolution.solution import Solution
+    from stickslip.run.progress import Progress
+    from stickslip.solution.solution import Solution
 
 LARGEST = 1_000_000
 """Bytes of the largest scenario file that is read: they are untrusted."""
@@ -67,7 +67,7 @@ class Scenario:
 
     def run(self, progress: Progress | None = None, **keep: Any) -> Solution:
         """Simulate. `progress` and what else is given is handed to `stickslip.simulate`."""
-        from stickslip.evolution.simulate import simulate  # the compiler behind it takes a second to import
+        from stickslip.run.simulate import simulate  # the compiler behind it takes a second to import
 
         how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "events": self.events}
         return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)

@@ -13,19 +13,19 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, create_model
 
 from stickslip.bodies import BODIES
-from stickslip.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.friction import LAWS
-from stickslip.friction.contract import StateVariable
-from stickslip.friction.fields import Field as LawField
-from stickslip.friction.fields import Part, Series, fields_of
+from stickslip.friction.law import StateVariable
+from stickslip.friction.parameters import Field as LawField
+from stickslip.friction.parameters import Part, Series, fields_of
 from stickslip.loading import HISTORIES
 from stickslip.loading.contract import VARYING
-from stickslip.problem import MAY_VARY, Problem
-from stickslip.quantities import Quantity, quantities_of
+from stickslip.problem.problem import MAY_VARY, Problem
+from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.scenarios.entries import Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
 from stickslip.scenarios.values import read_quantity, show
-from stickslip.selection import SELECTION_RULES, names, unknown
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 REGISTERED = KINDS | {"loading": HISTORIES}

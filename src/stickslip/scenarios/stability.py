@@ -6,12 +6,12 @@ import cmath
 import math
 
 from stickslip.bodies import ElasticSlab, SpringBlock
-from stickslip.contact.loop import first_rate
+from stickslip.contact.rules.loop import first_rate
 from stickslip.friction import RateAndState
 from stickslip.friction.slopes import slopes
-from stickslip.problem import Problem
-from stickslip.reference.growth_rate import growth_rate
+from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
+from stickslip.reference.slab.growth_rate import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:

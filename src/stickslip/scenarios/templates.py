@@ -7,16 +7,16 @@ import tomllib
 from dataclasses import MISSING
 from typing import Any
 
-from stickslip.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.contract import StateVariable
-from stickslip.friction.fields import NamedNumbers, Part, fields_of
+from stickslip.friction.law import StateVariable
+from stickslip.friction.parameters import NamedNumbers, Part, fields_of
 from stickslip.loading import HISTORIES
-from stickslip.problem import normal_load
+from stickslip.problem.problem import normal_load
+from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of
 from stickslip.scenarios.schema import KINDS, TABLES, build, columns_of, entries_in, has_kind, kind_of, read_table
-from stickslip.selection import SELECTION_RULES
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Generic starters, and the bundled scenario whose values they show."""

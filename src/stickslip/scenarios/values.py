@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stickslip.errors import InputError
-from stickslip.quantities import Quantity
-from stickslip.units import LONGEST, split_quantity, to_si
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
 
 def read_quantity(value: Any, declared: Quantity, where: str, name: str) -> float:

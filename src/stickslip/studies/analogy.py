@@ -20,12 +20,12 @@ import pandas as pd
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis
-from stickslip.errors import InputError
-from stickslip.evolution.history import Floats
-from stickslip.evolution.simulate import simulate
+from stickslip.foundation.errors import InputError
 from stickslip.friction.slopes import slopes
-from stickslip.parameters import Parameter, parameter
-from stickslip.problem import Problem
+from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.problem import Problem
+from stickslip.run.simulate import simulate
+from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,7 +82,7 @@ class Analogy:
 
     def plot(self) -> Figure:
         """The three ratios, and where the block stands for the slab."""
-        from stickslip.figures.analogy import data, draw
+        from stickslip.figures.studies.analogy import data, draw
 
         return draw(data(self))
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.errors import InputError
-from stickslip.evolution.history import Floats
-from stickslip.problem import Problem
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import Floats
 
 SMALLEST, LARGEST = 1e-15, 1e-2
 """Sizes between which a disturbance is one."""

@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import YEAR
-from stickslip.errors import InputError
-from stickslip.evolution.history import Floats
-from stickslip.evolution.simulate import check_run, simulate
-from stickslip.evolution.solution import Solution
+from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
+from stickslip.run.simulate import check_run, simulate
+from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
-from stickslip.studies.spread import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -206,10 +206,10 @@ class Ensemble:
 
     def save(self, path: str | Path) -> Path:
         """Write the table of events (.csv), or all that is drawn with its provenance (.nc). Raises InputError for other names."""
-        from stickslip.figures.ensemble import data
-        from stickslip.files import write_atomically
-        from stickslip.netcdf import write
-        from stickslip.storage import origin
+        from stickslip.figures.studies.ensemble import data
+        from stickslip.foundation.atomic_write import write_atomically
+        from stickslip.foundation.netcdf_file import write
+        from stickslip.io.netcdf import origin
 
         path = Path(path)
         if path.suffix.lower() == ".csv":
@@ -220,7 +220,7 @@ class Ensemble:
 
     def plot(self) -> Figure:
         """Events of every member, the growth of the disturbance, and the distribution of slips."""
-        from stickslip.figures.ensemble import data, draw
+        from stickslip.figures.studies.ensemble import data, draw
 
         return draw(data(self))
 

@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip import YEAR
-from stickslip.errors import InputError, nearest
-from stickslip.evolution.history import Floats
-from stickslip.evolution.setup import prepare
-from stickslip.evolution.simulate import simulate
-from stickslip.evolution.solution import Solution
-from stickslip.problem import Problem
-from stickslip.selection import SELECTION_RULES, names, unknown
-from stickslip.studies.differences import Difference, difference, passage
-from stickslip.studies.kinds import check_massless, kind_of, regularised
+from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
+from stickslip.run.simulate import simulate
+from stickslip.solution.solution import Solution
+from stickslip.studies.regularisations import check_massless, kind_of, regularised
+from stickslip.studies.run_distance import Difference, difference, passage
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
+from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -164,7 +164,7 @@ class Regularisation:
 
     def plot(self) -> Figure:
         """Errors against size, and the runs approaching a jump."""
-        from stickslip.figures.regularise import data, draw
+        from stickslip.figures.studies.regularise import data, draw
 
         return draw(data(self))
 

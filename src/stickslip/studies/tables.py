@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from stickslip.studies.kinds import kind_of
+from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:
     from stickslip.studies.regularise import Regularisation

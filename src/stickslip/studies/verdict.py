@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.evolution.history import Floats
+from stickslip.trajectory.history import Floats
 
 CLEARLY = 0.25
 """A run is clearly nearer to a rule than to the next one within this share of their distance."""

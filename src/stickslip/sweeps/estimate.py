@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.sweeps.chunk import nothing
-from stickslip.sweeps.outcome import FIRST_FAILURE
-from stickslip.sweeps.plan import Plan
-from stickslip.sweeps.store import ResultStore
+from stickslip.sweeps.execution.chunk import nothing
+from stickslip.sweeps.execution.outcome import FIRST_FAILURE
+from stickslip.sweeps.execution.plan import Plan
+from stickslip.sweeps.results.store import ResultStore
 from stickslip.sweeps.sweep import Runner
 
 LONG_ENOUGH = 2.0

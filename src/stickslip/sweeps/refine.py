@@ -1,4 +1,5 @@
-"""Refine a map where an answer changes: a coarse sweep, then ever smaller cells along the boundary (`stickslip.sweeps.cells`).
+"""Refine a map where an answer changes: a coarse sweep, then ever smaller cells along the boundary
+(`stickslip.sweeps.design.adaptive_grid`).
 
 Each round of the search is a sweep over a list of members, kept like any other: a search that was killed finds its rounds done.
 """
@@ -15,17 +16,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stickslip.errors import InputError
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario, load_scenario
-from stickslip.sweeps.cells import MOST_MEMBERS, Floats, Integers, refine_cells
-from stickslip.sweeps.design import MEMBER, Design, axes_of
-from stickslip.sweeps.keys import Key
-from stickslip.sweeps.layout import REASON, STATUS, attributes
-from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
-from stickslip.sweeps.plan import Plan, make_plan
-from stickslip.sweeps.quantities import DEFAULT, Summary, Wanted, quantities_named
-from stickslip.sweeps.recipe import ATTRIBUTE, Recipe
-from stickslip.sweeps.store import open_store, publish, writing
+from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
+from stickslip.sweeps.design.design import MEMBER, Design, axes_of
+from stickslip.sweeps.design.parameter_paths import Key
+from stickslip.sweeps.design.quantities import DEFAULT, Summary, Wanted, quantities_named
+from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.plan import Plan, make_plan
+from stickslip.sweeps.results.layout import REASON, STATUS, attributes
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, Recipe
+from stickslip.sweeps.results.store import open_store, publish, writing
 from stickslip.sweeps.sweep import Progress, Runner, carry_out, check_out, runner_of
 
 DEPTH = 6
@@ -62,8 +63,8 @@ def refine(
     Ends early rather than run more than `most` members.
 
     Returns the members, in the order in which they were run, along the dimension `member`, with their `level` (0: coarse grid) and
-    the attribute `refinement_complete` (0 where it ended early); `stickslip.sweeps.recipe.cells_of` finds the cells in it again;
-    all else is as for `stickslip.sweep`, also what goes on after a kill. Raises InputError like it.
+    the attribute `refinement_complete` (0 where it ended early); `stickslip.sweeps.results.refinement_spec.cells_of` finds the
+    cells in it again; all else is as for `stickslip.sweep`, also what goes on after a kill. Raises InputError like it.
     """
     chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
     axes, kept = axes_of(chosen, vary, "refine: vary"), _with(quantities, quantity)

@@ -11,14 +11,14 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from stickslip.errors import InputError
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.axis import Values
-from stickslip.sweeps.chunk import ChunkResult, Work, run_chunk
-from stickslip.sweeps.outcome import FIRST_FAILURE, NOT_RUN
-from stickslip.sweeps.plan import SAMPLES, Plan, make_plan
-from stickslip.sweeps.quantities import DEFAULT, Wanted
-from stickslip.sweeps.store import ResultStore
+from stickslip.sweeps.design.axis import Values
+from stickslip.sweeps.design.quantities import DEFAULT, Wanted
+from stickslip.sweeps.execution.chunk import ChunkResult, Work, run_chunk
+from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.plan import SAMPLES, Plan, make_plan
+from stickslip.sweeps.results.store import ResultStore
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,9 +64,9 @@ def sweep(
     with units; or a DataFrame, or the `Path` of a CSV file, with a member a row. design "grid" runs every combination, with a
     dimension a key; "random" and "lhs" (Latin hypercube) draw so many `members` between LOW and HIGH from a seed.
 
-    quantities: names (`stickslip.sweeps.quantities.QUANTITIES`), or (name, unit, function of a `Solution`). series: curves of a
-    solution at so many `samples` of time, kept as `series_...`. `status` says how each member ended; a member that failed has NaN
-    for results and a `reason`.
+    quantities: names (`stickslip.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`). series: curves
+    of a solution at so many `samples` of time, kept as `series_...`. `status` says how each member ended; a member that failed has
+    NaN for results and a `reason`.
 
     With out (a folder, .zarr) results are written there in chunks (of `chunk` members) as they come; called again it runs what is
     missing. Ctrl-C ends the sweep with what is there. Results depend neither on `threads` (default: all cores) nor on the order.
@@ -97,7 +97,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
     if workers is None and scheduler is None:
         yield on_threads(threads), 1
         return
-    from stickslip.sweeps.cluster import cluster, on_cluster
+    from stickslip.sweeps.execution.cluster import cluster, on_cluster
 
     if threads is not None or (workers is not None and scheduler is not None):
         raise InputError(

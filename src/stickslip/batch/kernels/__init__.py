@@ -1,1 +1,1 @@
-"""What of a batch is compiled: any edit here, as in `evolution`, compiles the engine anew."""
+"""What of a batch is compiled: any edit here, as in `engine`, compiles the engine anew."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from stickslip.evolution.compiled import ahead, call_prepare, floats, kernel
-from stickslip.evolution.layout import Floats, Integers
+from stickslip.engine.codegen.compiler import ahead, call_prepare, floats, kernel
+from stickslip.engine.state.layout import Floats, Integers
 
 
 @kernel

@@ -8,15 +8,15 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
-from stickslip.evolution.engine import advance
+from stickslip.engine.loop import advance
 
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
-"""Of `engine.advance`: table, last row, last theta, budget."""
+"""Of `loop.advance`: table, last row, last theta, budget."""
 
 
 @cache
 def engine_address() -> int:
-    """Where the machine code of `engine.advance` is; compiles it where no single run has done so."""
+    """Where the machine code of `loop.advance` is; compiles it where no single run has done so."""
     advance.entry.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
     compiled = advance.entry.overloads[ARGUMENTS]  # type: ignore[attr-defined]
     return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
@@ -24,7 +24,7 @@ def engine_address() -> int:
 
 @intrinsic
 def advance_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
-    """`engine.advance` at its address."""
+    """`loop.advance` at its address."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         convention = context.call_conv

@@ -10,18 +10,18 @@ from __future__ import annotations
 
 import math
 
-from stickslip.evolution.branch import constants_of
-from stickslip.evolution.compiled import ahead, call_jet, floats, inlined, kernel
-from stickslip.evolution.engine import ROOM
-from stickslip.evolution.implicit import judge_stiffness
-from stickslip.evolution.lanes import WIDTH, lanes_at
-from stickslip.evolution.layout import TERMS, Floats, Integers, Series
-from stickslip.evolution.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
-from stickslip.evolution.records import numbers_of
-from stickslip.evolution.slip import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
-from stickslip.evolution.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.evolution.verify import begin_verification, is_negative, obeys_contact
-from stickslip.evolution.workspace import PLACES, Run, borrow
+from stickslip.engine.codegen.compiler import ahead, call_jet, floats, inlined, kernel
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.simd import WIDTH, lanes_at
+from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.contact_step.radau_step import judge_stiffness
+from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
+from stickslip.engine.contact_step.verify import begin_verification, is_negative, obeys_contact
+from stickslip.engine.loop import ROOM
+from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
+from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
+from stickslip.engine.state.layout import TERMS, Floats, Integers, Series
+from stickslip.engine.state.workspace import PLACES, Run, borrow
 
 K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE = (
     Series.places[name].first for name in ("speed", "bend", "slip", "rate", "free", "force")
@@ -114,7 +114,8 @@ def take_length(run: Run, own: Floats) -> None:
 
 @inlined
 def calculate(rows: Floats) -> None:
-    """Slip rate and load over the steps, bounds of the rate, slip and rate at the end: as `slip.stretch` and `slip.keep_step`."""
+    """Slip rate and load over the steps, bounds of the rate, slip and rate at the end: as `taylor_step.stretch` and
+    `taylor_step.keep_step`."""
     length, rate, powers = rows[LENGTH], ahead(rows, RATE), ahead(rows, POWERS)
     powers_of(length, powers)
     multiply(ahead(rows, JET), powers, rate)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.evolution.compiled import ahead, floats, integers, kernel
-from stickslip.evolution.layout import TERMS, Floats, Integers, Store
-from stickslip.evolution.workspace import REAL, WHOLE
+from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
+from stickslip.engine.state.layout import TERMS, Floats, Integers, Store
+from stickslip.engine.state.workspace import REAL, WHOLE
 
 
 class Pieces(NamedTuple):

@@ -1,4 +1,5 @@
-"""Slip events of a run: the points that `evolution.events.turning_points` finds, in order, and where each event begins and ends."""
+"""Slip events of a run: the points that `trajectory.slip_events.turning_points` finds, in order, and where each event begins and
+ends."""
 
 from __future__ import annotations
 
@@ -6,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.evolution.compiled import kernel
-from stickslip.evolution.events import NOT_YET, count_pulses, highest, turning_points
-from stickslip.evolution.layout import Floats, Integers, Store
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.trajectory.slip_events import NOT_YET, count_pulses, highest, turning_points
 
 POINTS_PER_PIECE = 8
 """Turning points for which there is room at first."""
@@ -35,7 +36,7 @@ def new_points(capacity: int) -> Points:
 
 @kernel
 def put_in_order(points: Points, found: int) -> None:
-    """By piece, place in it, and at one place first what rises: as `events.walk`, whose order of pieces is right already."""
+    """By piece, place in it, and at one place first what rises: as `slip_events.walk`, whose order of pieces is right already."""
     for n in range(1, found):
         piece, xi, rate, kind = points.piece[n], points.xi[n], points.rate[n], points.kind[n]
         k = n - 1

@@ -1,6 +1,6 @@
 """What a batch keeps of a run: numbers folded from its history, as the tables of a `Solution` have them.
 
-Slip events are found by the kernels of `evolution.events`. What comes behind them here is `evolution.tables` for one row, in
+Slip events are found by the kernels of `trajectory.slip_events`. What comes behind them here is `trajectory.tables` for one row, in
 compiled code.
 """
 
@@ -10,14 +10,14 @@ import math
 
 from stickslip.batch.kernels.pieces import Pieces, load_of, pieces_of, rate_of, real_of, whole_of
 from stickslip.batch.kernels.points import Points
-from stickslip.evolution import layout as at
-from stickslip.evolution.branch import friction_of
-from stickslip.evolution.compiled import floats, kernel
-from stickslip.evolution.events import rises_over
-from stickslip.evolution.history import ROUNDING
-from stickslip.evolution.layout import Floats, Store
-from stickslip.evolution.polynomial import evaluate, integral
-from stickslip.evolution.workspace import Run
+from stickslip.engine.codegen.compiler import floats, kernel
+from stickslip.engine.contact_step.contact_equation import friction_of
+from stickslip.engine.series.polynomial import evaluate, integral
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats, Store
+from stickslip.engine.state.workspace import Run
+from stickslip.trajectory.history import ROUNDING
+from stickslip.trajectory.slip_events import rises_over
 
 COLUMNS = (
     "events",

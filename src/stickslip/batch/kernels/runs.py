@@ -16,15 +16,15 @@ from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
 from stickslip.batch.kernels.pieces import Pieces
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, fold_whole
-from stickslip.evolution import layout as at
-from stickslip.evolution.compiled import ahead, floats, integers, kernel
-from stickslip.evolution.events import NOT_YET
-from stickslip.evolution.lanes import WIDTH
-from stickslip.evolution.layout import Floats, Integers, Store
-from stickslip.evolution.moving_branches import OUT_OF_BUDGET
-from stickslip.evolution.records import numbers_of, whole_numbers_of
-from stickslip.evolution.status import BAD_PARAMETERS
-from stickslip.evolution.workspace import ADDRESSES, PLACES, Run, borrow
+from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
+from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
+from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
+from stickslip.engine_input.branch_table import OUT_OF_BUDGET
+from stickslip.trajectory.slip_events import NOT_YET
+from stickslip.trajectory.status import BAD_PARAMETERS
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups

@@ -8,11 +8,11 @@ import numpy as np
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab, SpringBlock
-from stickslip.evolution.solution import Solution
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
+from stickslip.solution.solution import Solution
 
 LONG = YEAR
 """What counts as a long rest, in s: a year, against events of seconds."""

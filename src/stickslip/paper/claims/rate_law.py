@@ -8,11 +8,11 @@ import numpy as np
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.evolution.solution import Solution
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Outcome, Verdict, judge, verdict
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
+from stickslip.solution.solution import Solution
 
 SCAN = (1.0001, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0)
 """Multiples of the critical alpha at which claim 13 is measured, besides alpha_c + 1e-6 s/m."""

@@ -11,12 +11,12 @@ from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.roots import sign_change
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
-from stickslip.evolution.solution import Solution
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict
-from stickslip.problem import Problem
-from stickslip.selection import SELECTION_RULES
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.solution.solution import Solution
 
 SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from a physical regularisation are not in this report."
 

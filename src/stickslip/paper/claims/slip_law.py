@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.bodies import ElasticSlab, SpringBlock
-from stickslip.evolution.solution import Solution
 from stickslip.friction import SinusoidalSlip
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Outcome, Verdict, judge, verdict
-from stickslip.problem import Problem
+from stickslip.problem.problem import Problem
+from stickslip.solution.solution import Solution
 
 MUCH = 0.25
 """Share of the initial load that counts as "much of its stress"."""

@@ -1,0 +1,191 @@
+"""Problems of many members: a `Problem` whose numbers are arrays where they are varied, one number a member.
+
+Bodies, laws and setup are written so that their formulas take arrays; only what asks a question of a number cannot. So members are
+first sorted into groups for which all such questions have one answer.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.bodies import ElasticSlab
+from stickslip.engine.state.layout import Floats
+from stickslip.engine_input.forcing import row_time
+from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
+from stickslip.foundation.quantities import LARGEST, SMALLEST, Quantity, quantities_of
+from stickslip.problem.problem import Problem
+from stickslip.run.run_loop import MOST_ROUND_TRIPS, check_round_trips
+from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.schema import DURATION, LARGEST_RTOL, RTOL, check_rtol
+
+Values = Mapping[str, Floats]
+"""By key such as "friction.alpha": numbers in SI, one a member."""
+Booleans = NDArray[np.bool_]
+Places = NDArray[np.intp]
+Owner = TypeVar("Owner")
+
+RUN = {"duration": DURATION, "rtol": RTOL}
+"""What of [run] may be varied."""
+
+
+class Numbers(NamedTuple):
+    """What varies, by the object to which it belongs and the name of its field there."""
+
+    body: dict[str, Any]
+    friction: dict[str, Any]
+    problem: dict[str, Any]
+    run: dict[str, Any]
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Numbers:
+        """Sorted from keys; a load at the start takes the place of an excess, and the other way round."""
+        found = cls({}, {}, {}, {})
+        for key, value in values.items():
+            table, _, name = key.partition(".")
+            if table == "initial":
+                other = {"load": {"initial_excess": None}, "excess": {"initial_load": None}}
+                found.problem.update({f"initial_{name}": value} | other.get(name, {}))
+            else:
+                {"body": found.body, "friction": found.friction, "loading": found.problem, "run": found.run}[table][name] = value
+        return found
+
+
+def declared_at(scenario: Scenario, key: str) -> Quantity | None:
+    """The quantity that a key names, if it is a plain number of the scenario that may be varied."""
+    table, _, name = key.partition(".")
+    problem = scenario.problem
+    if table == "run":
+        return RUN.get(name)
+    if table in ("body", "friction"):
+        owner = quantities_of(type(problem.body if table == "body" else problem.friction))
+        found = owner.get(name)
+        return None if found is None or found.whole else found
+    if table == "loading" and not name.startswith("initial_"):
+        return quantities_of(Problem).get(name)
+    return quantities_of(Problem).get(f"initial_{name}") if table == "initial" else None
+
+
+def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
+    """The scenario of one member. Raises InputError where its numbers make none."""
+    numbers = Numbers.of(values)
+    body, law = replace(scenario.problem.body, **numbers.body), replace(scenario.problem.friction, **numbers.friction)
+    run = {name: RUN[name].check("run", name, value) for name, value in numbers.run.items()}
+    if "rtol" in run:
+        check_rtol(run["rtol"], "run")
+    problem = replace(scenario.problem, body=body, friction=law, **numbers.problem)
+    check_shortest_event(problem, scenario.shortest_event, "run")
+    check_round_trips(run.get("duration", scenario.duration), row_time(problem), "run")
+    return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
+
+
+def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
+    """A body, law or problem with other numbers, arrays too, which nobody checks."""
+    made = copy.copy(owner)
+    vars(made).update(numbers)
+    return made
+
+
+def many(scenario: Scenario, values: Values) -> Problem:
+    """The problem with arrays where it is varied; `strength` and `excess` follow suit."""
+    numbers = Numbers.of(values)
+    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
+    problem = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem)
+    home = int(pieces_at_start(problem).flat[0])
+    static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
+    strength = problem.normal * static
+    return with_numbers(problem, {"strength": strength, "excess": excess_of(problem, strength)})
+
+
+def shared(numbers: Any) -> Any:
+    """A single number where all members have the same one: what is made of it need not be made for each."""
+    found = np.asarray(numbers)
+    return found.flat[0] if found.ndim and (found == found.flat[0]).all() else numbers
+
+
+def excess_of(problem: Problem, strength: Any) -> Any:
+    """As `Problem.excess`."""
+    if problem.initial_excess is not None:
+        return problem.initial_excess
+    load = np.asarray(problem.initial_load)
+    near = 4 * np.spacing(strength)
+    backwards = np.where(np.abs(load + strength) <= near, -strength - strength, load - strength)
+    return np.where(np.abs(load - strength) <= near, 0.0, backwards)
+
+
+def pieces_at_start(problem: Problem) -> Places:
+    """The piece of the law that holds where each member starts."""
+    law = problem.friction
+    if not law.knots or law.knot_variable == "rate":
+        return np.zeros(1, np.intp)
+    knots = np.broadcast_arrays(*law.knots, problem.law_slip)[:-1]
+    return np.asarray(np.sum([knot <= problem.law_slip for knot in knots], axis=0))
+
+
+# ---- who takes part ---------------------------------------------------------------------------------------------------------
+
+
+def allowed(declared: Quantity, value: Floats) -> Booleans:
+    """Which values a quantity takes, as `Quantity.check`."""
+    fine = ~np.isnan(value) if declared.infinite else np.abs(value) <= LARGEST
+    if declared.above is not None:
+        fine &= (value > declared.above) & (value >= declared.above + SMALLEST)
+    if declared.at_least is not None:
+        fine &= value >= declared.at_least
+    return fine
+
+
+def are_fine(scenario: Scenario, values: Values) -> Booleans:
+    """Which members make a problem: what bodies, laws, problems and scenarios check one by one."""
+    numbers = Numbers.of(values)
+    fine = np.ones(len(next(iter(values.values()))), bool)
+    for key, value in values.items():
+        declared = declared_at(scenario, key)
+        assert declared is not None
+        fine &= allowed(declared, value)
+    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
+    fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
+    fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
+    with np.errstate(all="ignore"):  # of numbers that are refused already
+        row = row_time(with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem))
+        fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= MOST_ROUND_TRIPS * np.asarray(row)
+    if isinstance(body, ElasticSlab):
+        if body.p_wave_speed is not None:
+            fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
+        if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
+            fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
+        problem = with_numbers(scenario.problem, numbers.problem)
+        pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
+        fine &= ~(pushed & np.isinf(body.driver_impedance))
+    return fine
+
+
+def driven_rigidly(body: ElasticSlab) -> Booleans:
+    """Which slabs have a driver that sends everything back, turned round (r = -1)."""
+    driver = np.asarray(body.driver_impedance)
+    return np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
+
+
+def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, dict[str, Floats]]]:
+    """Members that are alike but for their numbers: their kind, their places, and their values.
+
+    They are driven rigidly all or none, with mass all or none, and start in the same piece of the law: the kind says so.
+    """
+    numbers, count = Numbers.of(values), len(next(iter(values.values())))
+    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
+    start = pieces_at_start(with_numbers(scenario.problem, {"friction": law} | numbers.problem))
+    kind = np.broadcast_to(4 * start, (count,)).copy()
+    if isinstance(body, ElasticSlab):
+        rigid = driven_rigidly(body)
+        kind += 2 * rigid + (np.asarray(body.contact_mass) > 0.0)
+        if "driver_impedance" in numbers.body:  # what nothing passes is rigid
+            values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
+    for one in np.unique(kind):
+        chosen = np.flatnonzero(kind == one)
+        yield int(one), chosen, {key: value[chosen] for key, value in values.items()}

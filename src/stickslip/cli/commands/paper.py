@@ -1,0 +1,33 @@
+"""`stickslip paper`: the figures, tables and verdicts on the paper's claims."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def paper(
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for figures, tables and the report; made if it is missing.", file_okay=False)
+    ] = Path("paper"),
+) -> None:
+    """Reproduce the paper: Figs 1-7, tables, and a verdict on every claim.
+
+    Runs every case of Campillo, Ionescu, Paumier & Renard (1996) with the
+    constants as printed and in the readings under which the described events
+    appear, and says which claim holds under which.
+
+    \b
+      stickslip paper --out paper
+    """
+    from stickslip.cli.output.files import check_folder
+    from stickslip.cli.output.show import progress_to
+
+    check_folder(out, "--out")
+    from stickslip.paper import make
+
+    with progress_to("paper") as report:
+        written = make(out, report)
+    typer.echo(f"written: {written}")

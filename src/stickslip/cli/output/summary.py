@@ -1,0 +1,93 @@
+"""What happened in a run, for people: what ended it, its slip events, its shocks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from stickslip.cli.output.show import clean, console, number, table, with_unit
+from stickslip.engine_input.creep_limits import creep_tolerance
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from rich.console import Console
+
+    from stickslip.run.catalogue import Catalogue
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.solution.solution import Solution
+
+FIRST = 12
+"""Rows of a table that are shown."""
+LATE = 1e4
+"""Time (s) from which on decimals are shown rather than a number of digits."""
+
+
+def show_solution(scenario: Scenario, solution: Solution) -> None:
+    """Print the summary on standard output."""
+    screen, force = console(), scenario.problem.load_unit
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
+    _say_how(screen, scenario, solution.creep_note, solution.lumping_note)
+    screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
+    units = ("s", "s", "s", "m", "m/s", force, force, "")
+    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
+    _print(screen, "slip event", solution.events[shown], units)
+    _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
+    if solution.trapped_note:
+        screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
+    if solution.horizon_note:
+        screen.print(f"predictability: {solution.horizon_note}\n", soft_wrap=True)
+    if solution.rounding_note:
+        screen.print(f"rounding: {solution.rounding_note}\n", soft_wrap=True)
+
+
+def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
+    """Print on standard output what came of a run of which only its slip events were kept."""
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
+    _say_how(screen, scenario, found.notes.get("creep", ""), found.notes.get("lumping", ""))
+    screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
+    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
+        if name in found.notes:
+            screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
+    for file in found.files:
+        screen.print(f"written: {file}", soft_wrap=True)
+
+
+def _say_how(screen: Console, scenario: Scenario, creep: str, lumping: str) -> None:
+    """Print duration and tolerances, and the leaps over creep and the lumping that were asked for or came by themselves."""
+    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
+        screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
+    if lumping:
+        screen.print(f"shortest_event automatic: {lumping}", soft_wrap=True)
+    if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
+        screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
+    elif creep:
+        tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)
+        screen.print(f"creep_rtol {tolerance:g} (automatic; 0 runs every round trip): {creep}", soft_wrap=True)
+
+
+def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:
+    if rows.empty:
+        screen.print(f"no {what}\n")
+        return
+    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(rows.columns, units, strict=True)]
+    for digits in (8, 5):  # fewer where the terminal is narrow
+        shown = table(*headings, numbers=True)
+        for row in rows.head(FIRST).itertuples(index=False):
+            shown.add_row(*(_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)))
+        if screen.measure(shown).maximum < screen.width:
+            break
+    more = f", the first {FIRST} of them" if len(rows) > FIRST else ""
+    screen.print(f"{len(rows)} {what}{'s' if len(rows) > 1 else ''}{more}")
+    screen.print(shown)
+    screen.print()
+
+
+def _cell(value: Any, unit: str, digits: int) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.{digits - 2}f}" if unit == "s" and LATE <= abs(value) < math.inf else number(value, digits)

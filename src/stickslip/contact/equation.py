@@ -1,0 +1,173 @@
+"""The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, kept as an excess over its static strength."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.bodies import ElasticSlab
+from stickslip.foundation.errors import InputError
+from stickslip.friction import FrictionLaw
+from stickslip.friction.formula.differences import difference
+from stickslip.friction.formula.expression import Expression, evaluate
+from stickslip.problem.problem import Problem
+
+_FASTEST = 1e9
+_FLAT = 1e-9
+"""Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """An interval of slip rates (m/s) on which g does not change, and its excess over the static strength (Pa) there."""
+
+    rate_from: float
+    rate_to: float
+    excess: float
+
+
+@dataclass(frozen=True)
+class Resistance:
+    """g of one contact at one law slip: impedance Z (Pa s/m), normal stress S (Pa), law_slip (m).
+
+    The contact equation, paper eqs (12)-(13), reads excess(s) = load - S mu_static. s >= 0 is the magnitude of the slip rate
+    (m/s); for slip backwards the load changes sign.
+    """
+
+    law: FrictionLaw
+    impedance: float
+    normal: float
+    law_slip: float
+
+    @property
+    def strength(self) -> float:
+        """Static strength S mu_static (Pa)."""
+        return self.normal * float(self.law.static_coefficient(self.law_slip))
+
+    @property
+    def start(self) -> float:
+        """Excess at s = 0+ (Pa): minus the step from static to sliding friction."""
+        return -self.normal * self.law.static_excess if self.law.static_excess else 0.0
+
+    def excess_and_slope(self, rate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """g(s) - S mu_static (Pa) and g'(s) (Pa s/m) at slip rates s >= 0 (m/s; 0 means 0+).
+
+        Near-equal frictions are not subtracted: the excess keeps its digits down to s = 0.
+        """
+        rate = np.asarray(rate, float)
+        piece = self.law.piece_at(self.law_slip, rate)
+        excess, slope = self._by_formula(piece, rate)
+        if self.plateaus:
+            level = self._levels[piece]
+            flat = ~np.isnan(level)
+            excess, slope = np.where(flat, level, excess), np.where(flat, 0.0, slope)
+        return excess, slope
+
+    def _by_formula(self, piece: NDArray[np.intp], rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Excess and slope by the formulas of the pieces: those that share a formula at once, whatever their parameters."""
+        step, slope = np.empty(rate.shape), np.empty(rate.shape)
+        first = int(self.law.piece_at(self.law_slip))
+        home = self._at_rest(self.trees[first], self.law.numbers(first))
+        used, place = np.unique(piece, return_inverse=True)
+        values = np.array([self.law.piece_values(i) for i in used.tolist()])
+        for tree in dict.fromkeys(self.trees[i] for i in used.tolist()):
+            own = np.array([self.trees[i] is tree for i in used.tolist()])
+            chosen = own[place].reshape(rate.shape)
+            numbers = dict(zip(self.law.parameters(), values[place.reshape(rate.shape)[chosen]].T, strict=True))
+            change, slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
+            offset = np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
+            step[chosen] = change + offset
+        return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+
+    @cached_property
+    def rate_knots(self) -> tuple[float, ...]:
+        """Slip rates (m/s) above 0 at which the law changes its formula."""
+        return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
+
+    @cached_property
+    def _levels(self) -> NDArray[np.float64]:
+        """Excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
+
+        Exactly: g varies by no more than its own rounding. Only a piece can be flat, because elsewhere formulas are analytic.
+        """
+        levels = np.full(len(self.trees), np.nan)
+        if not self.rate_knots:
+            return levels
+        edges = np.array((0.0, *self.rate_knots))
+        rates = np.linspace(edges[:-1], edges[1:], 9, axis=1)
+        pieces = self.law.piece_at(self.law_slip, edges[:-1])
+        excess, slope = self._by_formula(np.repeat(pieces[:, None], 9, axis=1), rates)
+        size = abs(self.strength) + np.max(np.abs(excess), axis=1) + self.impedance * edges[1:]
+        still = np.ptp(excess, axis=1) <= 8.0 * np.finfo(float).eps * size
+        for k in np.flatnonzero(still & (np.max(np.abs(slope), axis=1) <= _FLAT * self.impedance)).tolist():
+            before = levels[pieces[k - 1]] if k > 0 else np.nan
+            levels[pieces[k]] = excess[k, 0] if np.isnan(before) else before
+        return levels
+
+    @cached_property
+    def plateaus(self) -> tuple[Plateau, ...]:
+        """Where g is flat, slowest first: every slip rate of such an interval solves the contact equation at its load."""
+        found: list[Plateau] = []
+        for low, high in pairwise((0.0, *self.rate_knots)):
+            level = float(self._levels[int(self.law.piece_at(self.law_slip, low))])
+            if not np.isnan(level):
+                joined = bool(found) and found[-1].rate_to == low
+                start = found.pop().rate_from if joined else low
+                found.append(Plateau(start, high, level))
+        return tuple(found)
+
+    def end_excess(self, rate: float) -> float:
+        """Excess (Pa) at the end of a branch: that of the plateau which begins or ends there, if one does."""
+        level = next((p.excess for p in self.plateaus if rate in (p.rate_from, p.rate_to)), None)
+        return float(self.excess(rate)) if level is None else level
+
+    @cached_property
+    def trees(self) -> tuple[Expression, ...]:
+        """The law's formulas."""
+        return self.law.trees()
+
+    def _at_rest(self, tree: Expression, numbers: Mapping[str, Any]) -> Any:
+        """What the formula of a piece gives at s = 0, even where the piece holds only at higher rates."""
+        return evaluate(tree, numbers, np.float64(self.law_slip), np.float64(0.0))
+
+    def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
+        """g(s) - S mu_static (Pa); see `excess_and_slope`."""
+        return self.excess_and_slope(rate)[0]
+
+    def slope(self, rate: ArrayLike) -> NDArray[np.float64]:
+        """g'(s) (Pa s/m)."""
+        return self.excess_and_slope(rate)[1]
+
+    @cached_property
+    def scales(self) -> tuple[float, ...]:
+        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own.
+
+        Not those so fast that S (variation of mu) is nothing against Z s: there g rises whatever the law does.
+        """
+        own = self.normal * self.law.variation / self.impedance
+        found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
+        return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
+
+    def fastest(self, excess: float) -> float:
+        """A slip rate (m/s) at which g has surely passed the given excess (Pa), because friction is bounded below."""
+        fall = self.strength - self.normal * self.law.range()[0]
+        bound = max(excess + fall, 0.0) / self.impedance
+        return 2.0 * bound + float(np.finfo(float).tiny)
+
+
+def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
+    """The resistance of a slab's contact at a law slip (m; default: where the problem starts).
+
+    A contact mass plays no part in it: g is then what the contact settles to. Raises InputError for a block, whose slip rate
+    is a state and solves no contact equation.
+    """
+    if not isinstance(problem.body, ElasticSlab):
+        raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
+    slip = problem.law_slip if law_slip is None else float(law_slip)
+    return Resistance(problem.friction, problem.body.impedance, problem.normal, slip)

@@ -1,0 +1,1 @@
+"""Folds with proof, by interval arithmetic."""

@@ -1,0 +1,1 @@
+"""The built-in selection rules, and what they do as the load slowly passes."""

@@ -1,0 +1,107 @@
+"""What a selection rule does as the load slowly passes: its jumps, and the loop that it walks up and down.
+
+Source: Campillo et al. 1996, Fig. 4: the paths ODABE and EBCDO of perfect delay.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.contact.branches import Branch, rate_on
+from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.rules.maxwell import area
+from stickslip.contact.rules.selection import selection_table
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SelectionTable
+
+
+@dataclass(frozen=True)
+class Jump:
+    """What the rule does as the load (Pa) slowly passes a level: slip rates (m/s) and tractions (Pa) before and after."""
+
+    rate_before: float
+    rate_after: float
+    load: float
+    direction: Literal["up", "down"]
+    traction_before: float
+    traction_after: float
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The way of a load that slowly rises from far below the folds to far above them, and back.
+
+    `branches` are those walked, in order (-1 is stick, others count from the slowest); `jumps` are the jumps between them.
+    `area` (Pa m/s) is what the loop encloses in the plane of load and slip rate: the integral of (v on the way down - v on the
+    way up) over the load. For a load that rises and falls at the constant rate b (Pa/s), area / b is the slip (m) by which the
+    way down exceeds the way up. It is a power per area by its unit only: heat depends on the time that the load takes.
+    """
+
+    branches: tuple[int, ...]
+    jumps: tuple[Jump, ...]
+    area: float
+
+
+def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> tuple[Jump, ...]:
+    """Every jump that the rule can make, from stick and from each branch that it keeps; handing over without a jump is none."""
+    found: list[Jump] = []
+    for i in range(-1, len(stable)):
+        low, high = (-np.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
+        if low > high:
+            continue
+        if high < np.inf:
+            found.append(_jump(g, stable, (i, table.climb(i, float(np.nextafter(high, np.inf)))), high))
+        if low > -np.inf:
+            found.append(_jump(g, stable, (i, table.descend(i, float(np.nextafter(low, -np.inf)))), low))
+    return tuple(jump for jump in found if jump.rate_before != jump.rate_after)
+
+
+def _jump(g: Resistance, stable: tuple[Branch, ...], way: tuple[int, int], excess: float) -> Jump:
+    """From one branch to another at an excess (Pa)."""
+    before, after = (0.0 if i < 0 else rate_on(g, stable[i], excess) for i in way)
+    load = g.strength + excess
+    sides = (load - g.impedance * before, load - g.impedance * after)
+    return Jump(before, after, load, "up" if way[1] > way[0] else "down", *sides)
+
+
+def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> Loop:
+    """The loop that the rule walks. Between jumps the way up and the way down follow the same g, so that only jumps enclose area.
+
+    Each jump from a to b adds the integral of (load - g) dv from a to b: negative where the rule jumps against it.
+    """
+    walked, levels = [-1], []
+    while walked[-1] < len(stable) - 1:
+        levels.append(table.stick_to if walked[-1] < 0 else table.keep_to[walked[-1]])
+        walked.append(table.climb(walked[-1], float(np.nextafter(levels[-1], np.inf))))
+    while walked[-1] >= 0:
+        levels.append(table.keep_from[walked[-1]])
+        walked.append(table.descend(walked[-1], float(np.nextafter(levels[-1], -np.inf))))
+    jumps = [_jump(g, stable, way, level) for way, level in zip(pairwise(walked), levels, strict=True)]
+    enclosed = sum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))
+    return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed)
+
+
+def _against(g: Resistance, jump: Jump, excess: float) -> float:
+    """Integral of (load - g) dv along a jump (Pa m/s)."""
+    low, high = sorted((jump.rate_before, jump.rate_after))
+    return -area(g, low, high, excess) if jump.direction == "up" else area(g, low, high, excess)
+
+
+def first_rate(problem: Problem) -> float:
+    """The slip rate (m/s) to which a massless contact jumps forwards at t = 0+; 0 where it is stuck, has inertia or a state."""
+    body = problem.body
+    if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0 or problem.friction.state is not None:
+        return 0.0
+    stable, table = selection_table(problem)
+    grows = problem.excess == 0.0 and problem.first_pull_rate > 0.0
+    excess = sys.float_info.min if grows else problem.excess
+    if excess <= table.stick_to:
+        return 0.0
+    rate = rate_on(resistance(problem), stable[table.climb(-1, excess)], excess)
+    return rate if rate > sys.float_info.min else 0.0

@@ -1,0 +1,83 @@
+"""Maxwell's rule: at each load the stable slip rate with the smallest phi(s) = integral from 0 to s of (g - load) ds.
+
+Source: Campillo et al. 1996, section 3. Stick has phi = 0. The faster a branch, the faster its phi falls as the load grows, so
+each branch is the best one on a single interval of loads, and two neighbours change hands where the areas between g and the
+load line are equal. Loads are excesses over the static strength, in Pa.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from stickslip.contact.branches import Branch, rate_on
+from stickslip.contact.equation import Resistance
+from stickslip.contact.roots import bracketed_newton
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_STICK = Branch(0.0, 0.0, -math.inf, 0.0)
+
+
+def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[float, float]]:
+    """Interval of excess on which each branch has the smallest phi, by its index (-1: stick); the others are left out."""
+    candidates = {-1: _STICK, **dict(enumerate(stable))}
+    levels = {end for b in candidates.values() for end in (b.excess_from, b.excess_to) if math.isfinite(end)}
+    levels |= {level for a, b in combinations(candidates.values(), 2) if (level := equal_area_level(g, a, b)) is not None}
+    cuts = [-math.inf, *sorted(levels), math.inf]
+    best: dict[int, tuple[float, float]] = {}
+    for low, high in pairwise(cuts):
+        winner = _winner(g, candidates, _between(low, high))
+        best[winner] = (best.get(winner, (low, high))[0], high)
+    return best
+
+
+def _between(low: float, high: float) -> float:
+    """An excess inside an interval that may be infinite on one side."""
+    if math.isinf(low):
+        return high - 1.0 - abs(high)
+    return low + 1.0 + abs(low) if math.isinf(high) else low + 0.5 * (high - low)
+
+
+def _winner(g: Resistance, candidates: dict[int, Branch], excess: float) -> int:
+    """Index of the candidate with the smallest phi among those that exist at this excess."""
+    alive = {i: b for i, b in candidates.items() if b.excess_from <= excess <= b.excess_to}
+    potential = {i: area(g, 0.0, _rate(g, b, excess), excess) for i, b in alive.items()}
+    return min(potential, key=potential.__getitem__)
+
+
+def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | None:
+    """The excess (Pa) at which two branches have the same phi, to rounding; None where one is the better wherever both exist."""
+    low, high = max(slower.excess_from, faster.excess_from), min(slower.excess_to, faster.excess_to)
+    if not low < high or _gap(g, slower, faster, low)[0] <= 0.0 or _gap(g, slower, faster, high)[0] >= 0.0:
+        return None
+    return bracketed_newton(lambda excess: _gap(g, slower, faster, excess), low, high, high, rising=False)
+
+
+def _gap(g: Resistance, slower: Branch, faster: Branch, excess: float) -> tuple[float, float]:
+    """phi of the faster branch minus phi of the slower one, and its derivative with respect to the excess."""
+    start, end = _rate(g, slower, excess), _rate(g, faster, excess)
+    return area(g, start, end, excess), start - end
+
+
+def _rate(g: Resistance, branch: Branch, excess: float) -> float:
+    return 0.0 if branch is _STICK else rate_on(g, branch, excess)
+
+
+def area(g: Resistance, start: float, end: float, excess: float) -> float:
+    """Integral from start to end (m/s) of g - load, in Pa m/s.
+
+    Gauss's rule on panels that double in width away from rate 0, and end at kinks: a friction law that is smooth in log s between
+    its kinks is met to rounding.
+    """
+    if end <= start:
+        return 0.0
+    first = max(start, min(1e-3 * min(g.scales), end))
+    count = max(1, math.ceil(math.log2(end / first)))
+    inner = first * (end / first) ** (np.arange(count + 1) / count)
+    kinks = [knot for knot in g.rate_knots if start < knot < end]
+    edges = np.unique(np.concatenate(([start], inner, kinks)))
+    half = 0.5 * np.diff(edges)
+    rates = edges[:-1, None] + half[:, None] * (1.0 + _NODES)
+    return float(np.sum(half * ((g.excess(rates) - excess) @ _WEIGHTS)))

@@ -1,0 +1,190 @@
+"""Creep of a slab under a law of slip, averaged over round trips: in closed form.
+
+Under a rigid driver beta(t) = beta(t-R) - 2 Z v(t-R) + 2 Z V is a sum: at each offset theta of the round trip, n round trips
+after one whose load is beta_0(theta),
+
+    tau_n = beta_0 + 2 Z V n - 2 Z C_n,        C_n = sum of v over the round trips before + v_n / 2.
+
+Where it slips tau = S mu(u), where it has not it is below: as slip goes on, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
+whatever echoes are in beta_0, and however v jumps from one round trip to the next (where it slips the contact reflects with a
+change of sign: v_n and v_(n+1) add up to twice their mean; a rate above twice the mean is followed by as much rest as makes up
+for it). Slip over a round trip then obeys, exactly,
+
+    ubar = u_0 + integral of C_n over theta,    ubar the mean of the slips at the start and the end of round trip n.
+
+With S mu(u) at ubar, which has no error of first order in the slip per round trip, ubar and n are explicit functions of the
+*lift* L = 2 Z V n - S mu(ubar):  ubar = u_0 + M(L) / (2 Z),  n = (L + S mu(ubar)) / (2 Z V), where M is the part of beta_0 + L
+above zero and A = M' the share of the round trip, in s, in which the contact slips. dn/dL = room / (2 Z V), with
+room = 1 + S mu'(ubar) A / (2 Z): no room is left where creep turns dynamic.
+
+Terms of second order come from how slip grows within a round trip, u = ubar + ubar' (phi - 1/2) + A vbar' (phi^2 - phi) / 2 with
+phi the share of the slip that has been, ' = d/dn and vbar = V / room the mean rate where it slips:
+
+    2 Z (ubar - u_0) = M + S mu' A^2 vbar' / 12 - S mu'' ubar'^2 A / 24 + [S mu' ubar' (phi - 1/2)]^2 / (2 |dbeta_0/dtheta|),
+
+the last summed over the borders of slip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.creep.pattern import Pattern
+from stickslip.creep.sight import Sight
+from stickslip.engine.state.layout import Floats
+from stickslip.engine_input.branch_table import strength_change
+from stickslip.problem.problem import Problem
+
+COMPLEX_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class Strength:
+    """Friction (Pa) against growing slip x >= 0 (m) from here on, minus the reference strength."""
+
+    problem: Problem
+    law_slip: float  # here, minus that at the start of the run, m
+    sign: float  # change of the law's slip with x
+    step: float  # slip over which a second derivative is seen, m: that of a round trip
+
+    def __call__(self, x: float) -> float:
+        return strength_change(self.problem, self.law_slip + self.sign * x)
+
+    @cached_property
+    def piece(self) -> int:
+        """Piece of the law that holds here."""
+        law = self.problem.friction
+        return int(law.piece_at(self.problem.law_slip + self.law_slip)) if law.knot_variable == "slip" else 0
+
+    @cached_property
+    def sight(self) -> Sight:
+        """What the law may do out of sight of a slip, in the piece that holds here."""
+        law = self.problem.friction
+        return Sight.of(law.trees()[self.piece], law.parameters(), law.piece_values(self.piece), self.problem.law_slip)
+
+    def in_sight(self, x: float, later: tuple[float, ...]) -> bool:
+        """Return True if between x and later slips no part of the law can come into view that leaves no trace at x."""
+        start = self.law_slip + self.sign * x
+        return all(self.sight.used_up(start, self.law_slip + self.sign * end) <= 1.0 for end in later)
+
+    @cached_property
+    def room(self) -> float:
+        """How far x may grow within the piece, m."""
+        knots = (-np.inf, *self.problem.friction.knots, np.inf)
+        here = self.problem.law_slip + self.law_slip
+        return float(knots[self.piece + 1] - here if self.sign > 0 else here - knots[self.piece])
+
+    def slope(self, x: float) -> float:
+        """Its derivative, Pa/m, by a complex step."""
+        slip = complex(self.problem.law_slip + self.law_slip + self.sign * x, self.sign * COMPLEX_STEP)
+        return self.problem.normal * float(np.imag(self.problem.friction.piece_coefficient(self.piece, slip, 0.0))) / COMPLEX_STEP
+
+    def curvature(self, x: float) -> float:
+        """Its second derivative, Pa/m^2, from slopes a little apart."""
+        return (self.slope(x + self.step) - self.slope(x - self.step)) / (2.0 * self.step)
+
+
+@dataclass(frozen=True)
+class Creep:
+    """The averaged state at one lift. Slip is counted from the start of the round trip whose load is the pattern's."""
+
+    lift: float  # Pa
+    trips: float  # round trips since: n
+    slip: float  # ubar, m
+    rate: float  # d ubar / dn, m a round trip
+    bend: float  # d2 ubar / dn2
+    room: float
+    length: float  # of the part of the round trip in which the contact slips, s
+    widening: float  # its change in a round trip, s
+    mean_rate: float  # m/s, where the contact slips
+    mean_bend: float  # its change in a round trip
+    error: float  # of ubar, m
+
+    @property
+    def seen(self) -> float:
+        """Share of an amplitude that the range within two round trips shows at least.
+
+        Slip goes up and down as sin(2 x t / R) where x / tan(x) = 1 - room: twice in four round trips where room is 1, once where
+        it is 1/5, more slowly where it is less, and then 1 - cos(2 x) is what shows.
+        """
+        return min(1.0, 5.0 * self.room)
+
+
+@dataclass(frozen=True)
+class AveragedCreep:
+    """Creep from a round trip with a given load on, driven at `speed` > 0 (m/s), seen in the direction of slip."""
+
+    pattern: Pattern
+    strength: Strength
+    impedance: float
+    speed: float
+
+    @property
+    def gain(self) -> float:
+        """Load gained in a round trip, Pa."""
+        return 2.0 * self.impedance * self.speed
+
+    def at(self, lift: float) -> Creep:
+        """The state at a lift (Pa), with the size of the terms of second order as its error."""
+        above, z2 = self.pattern.above(lift), 2.0 * self.impedance
+        length, border = above.length, above.border
+        slip = above.area / z2
+        slope = self.strength.slope(slip)
+        room = 1.0 + slope * length / z2
+        if room <= 0.0:
+            return Creep(lift, np.inf, slip, np.inf, np.inf, room, length, np.inf, np.inf, np.inf, np.inf)
+        rate, mean_rate = length * self.speed / room, self.speed / room
+        curvature = self.strength.curvature(slip)
+        closing = (curvature * length * length / z2 + slope * border) / z2 / room * self.gain  # d room / dn
+        bend = (border * self.speed * self.gain / room - rate * closing) / room
+        mean_bend = -mean_rate * closing / room
+        terms = (
+            slope * length * length * mean_bend / 12.0,
+            -curvature * rate * rate * length / 24.0,
+            0.5 * (slope * rate) ** 2 * above.spread,
+        )
+        resting = z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
+        slip += sum(terms) / z2 if abs(sum(terms)) < z2 * rate else 0.0  # where an extremum is touched they say nothing
+        trips = (lift + self.strength(slip)) / self.gain
+        error = (sum(abs(term) for term in terms) + resting) / z2 / room
+        return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
+
+    def swing(self, lift: float, creep: Creep, before: Floats) -> float:
+        """Amplitude of slip (m) around its mean, or more: from the range in the first round trip and the one before.
+
+        `lift` is that of the first round trip, the mean that of a creep near there; `before`: offsets (s) of the ends of the pieces
+        of the one before, and slip (m) since its start.
+        """
+        areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
+        ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
+        first = before[1] - creep.mean_rate * np.interp(before[0], ends, lengths)
+        second = first[-1] + areas / self.impedance - creep.mean_rate * lengths
+        return float(np.ptp([0.0, *first, *second])) / creep.seen
+
+    def start(self) -> Creep:
+        """The state at n = 0."""
+        low = high = -self.strength(0.0)
+        while self.at(low).trips > 0.0:
+            low -= self.gain
+        while self.at(high).trips < 0.0:
+            high += self.gain
+        return self.reaching(0.0, low, high, 1e-6 * self.gain)
+
+    def beyond(self, creep: Creep, trips: float) -> tuple[float, float]:
+        """Lifts between which a creep has gone on for so many round trips, if it does."""
+        high = creep.lift + self.gain
+        while (state := self.at(high)).room > 0.0 and state.trips < trips:
+            high += self.gain
+        return creep.lift, high
+
+    def reaching(self, trips: float, low: float, high: float, within: float = 0.0) -> Creep:
+        """The state after so many round trips, between two lifts, by bisection: to rounding, or `within` (Pa)."""
+        while high - low > within and low < (middle := 0.5 * (low + high)) < high:
+            if self.at(middle).trips < trips:
+                low = middle
+            else:
+                high = middle
+        return self.at(0.5 * (low + high))

@@ -1,0 +1,78 @@
+"""Writes a leap over creep into the history: the way, averaged over round trips, and the round trip on which it lands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from stickslip.creep.averaged import AveragedCreep
+from stickslip.creep.landing import Piece
+from stickslip.creep.planner import Plan, hermite
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import TERMS, Counts, Floats, State, Store
+from stickslip.problem.problem import Problem
+
+
+def seen(load: Floats, strength: float, direction: int) -> Floats:
+    """Loads (n, TERMS) in the direction of slip, minus the reference strength; the same turns them back."""
+    turned = direction * load
+    if direction < 0:
+        turned[:, 0] -= 2.0 * strength
+    return turned
+
+
+@dataclass(frozen=True)
+class Scribe:
+    """Turns pieces seen in the direction of slip into rows of the history."""
+
+    store: Store
+    problem: Problem
+    row_time: float
+    direction: int
+    sign: float  # change of the law's slip with slip in that direction
+    state: State  # where the leap begins
+    count: Counts
+
+    def write_way(self, n: int, row: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
+        """From `row` on the averaged slip, as cubics from state to state, up to `last_slip` (m). Returns the next free piece.
+
+        Load and traction are means over a round trip, so that work and heat are those of what the pieces stand for.
+        """
+        whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
+        unload = 2.0 * averaged.impedance / width
+        for (t0, x0, v0), (t1, x1, v1) in pairwise(self._nodes(plan, last_slip)):
+            grown, rate, load = hermite(t1 - t0, x1 - x0, v0, v1), np.zeros(TERMS), np.zeros(TERMS)
+            rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)
+            load[:4] = -unload * grown
+            load[0] += whole / width + averaged.gain * (t0 / self.row_time - 0.5) - unload * x0
+            load[1] += averaged.gain * (t1 - t0) / self.row_time
+            self._write(n, row, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
+            n += 1
+        self.store.real[n - 1, at.S_THETA_TO] += np.spacing((row + plan.trips) * self.row_time)  # no gap before the next row
+        return n
+
+    def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
+        """Time since the start of the leap (s), slip (m) and slip rate (m/s): the mean over a round trip is that in its middle."""
+        first, second, last = plan.states[0], plan.states[1], plan.states[-1]
+        inside = [c for c in plan.states[:-1] if 0.0 < c.trips < plan.trips - 1.0]
+        return [
+            (0.0, 0.0, (first.rate - 0.5 * second.bend) / self.row_time),
+            *(((c.trips + 0.5) * self.row_time, c.slip, c.rate / self.row_time) for c in inside),
+            (plan.trips * self.row_time, last_slip, (last.rate - 0.5 * last.bend) / self.row_time),
+        ]
+
+    def write_landing(self, n: int, row: int, pieces: list[Piece]) -> None:
+        """The round trip on which the leap lands, from piece n on."""
+        for k, piece in enumerate(pieces):
+            self._write(n + k, row, piece)
+            self.store.real[n + k, at.S_THETA_TO] = pieces[k + 1].theta_from if k + 1 < len(pieces) else self.row_time
+
+    def _write(self, n: int, row: int, piece: Piece) -> None:
+        store, state = self.store, self.state
+        slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
+        store.whole[n] = row, self.direction * piece.slips, self.count.piece, 0, 0, -1
+        store.real[n] = piece.theta_from, piece.theta_to, piece.speed, piece.bend, slip, law_slip, np.nan, np.nan
+        store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
+        store.rate[n] = self.direction * piece.rate

@@ -1,0 +1,131 @@
+"""The load of one round trip as a function of the offset in it, and how much of it lies above a level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine.series.polynomial import crossings, restrict
+from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.trajectory.history import horner
+
+SMALLEST = 1e-300
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Monotone parts of a load: polynomials in xi on [0, 1], theta = theta_from + speed xi + bend xi^2."""
+
+    load: Floats  # (n, TERMS), Pa
+    theta_from: Floats  # s
+    speed: Floats
+    bend: Floats
+
+    def theta(self, part: NDArray[np.intp], xi: Floats) -> Floats:
+        """Offset of places in parts, s."""
+        return np.asarray(self.theta_from[part] + xi * (self.speed[part] + xi * self.bend[part]))
+
+    def pace(self, part: NDArray[np.intp], xi: Floats) -> Floats:
+        """d theta / d xi, s."""
+        return np.asarray(self.speed[part] + 2.0 * xi * self.bend[part])
+
+    def integral(self, part: NDArray[np.intp], xi: Floats) -> Floats:
+        """Integral of the load over theta from the start of each part up to xi, Pa s."""
+        powers = np.arange(1, TERMS + 1)
+        straight, bent = (
+            self.speed[part, None] * self.load[part] / powers,
+            2.0 * self.bend[part, None] * self.load[part] / (powers + 1),
+        )
+        return np.asarray(xi * (horner(straight, xi) + xi * horner(bent, xi)))
+
+    def slope(self, part: NDArray[np.intp], xi: Floats) -> Floats:
+        """d load / d theta, Pa/s."""
+        return np.asarray(horner(self.load[part, 1:] * np.arange(1, TERMS), xi) / self.pace(part, xi))
+
+    def crossing(self, part: int, level: float) -> float:
+        """Where in [0, 1] a part that straddles a level (Pa) crosses it."""
+        shifted, places = self.load[part].copy(), np.empty(TERMS)
+        shifted[0] -= level
+        if crossings(shifted, places):
+            return float(places[0])
+        return float(abs(shifted.sum()) < abs(shifted[0]))  # at an end, within rounding
+
+
+def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats) -> Parts:
+    """Pieces of load cut at their extrema."""
+    slope, places = np.zeros(TERMS), np.empty(TERMS)
+    rows: list[tuple[Floats, float, float, float]] = []
+    for p, start, a, b in zip(load, theta_from, speed, bend, strict=True):
+        slope[:-1] = p[1:] * np.arange(1, TERMS)
+        cuts = [0.0, *places[: crossings(slope, places)].tolist(), 1.0]
+        for left, right in pairwise(cuts):
+            part, width = np.empty(TERMS), right - left
+            restrict(p, left, width, part)
+            rows.append((part, start + left * (a + left * b), (a + 2.0 * b * left) * width, b * width * width))
+    return Parts(*(np.array(column) for column in zip(*rows, strict=True)))
+
+
+@dataclass(frozen=True)
+class Above:
+    """Of a load lifted by so much: what lies above zero."""
+
+    area: float  # integral over theta of the part above zero, Pa s
+    length: float  # measure of the offsets above zero, s: d area / d lift
+    border: float  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
+    spread: float  # the same, weighted with the squared distance from the middle of what lies above (1/4 at its ends)
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """The load of one round trip (Pa) in monotone parts."""
+
+    parts: Parts
+
+    @cached_property
+    def ends(self) -> Floats:
+        """(2, parts): lowest and highest load of each part."""
+        ends = np.stack([self.parts.load[:, 0], self.parts.load.sum(axis=1)])
+        return np.stack([ends.min(axis=0), ends.max(axis=0)])
+
+    @cached_property
+    def whole(self) -> Floats:
+        """Integral over theta of each part, Pa s."""
+        return self.parts.integral(np.arange(len(self.parts.speed)), np.ones(len(self.parts.speed)))
+
+    @cached_property
+    def width(self) -> Floats:
+        """Length of each part, s."""
+        return np.asarray(self.parts.speed + self.parts.bend)
+
+    def above(self, lift: float) -> Above:
+        """What lies above zero when the load is lifted by `lift` (Pa)."""
+        part, xi, rises = self._crossings(-lift)
+        areas, lengths = self._shares(lift, part, xi, rises)
+        length, before = float(lengths.sum()), np.cumsum(lengths)
+        steep = 1.0 / np.maximum(np.abs(self.parts.slope(part, xi)), SMALLEST)
+        place = np.clip((before[part] - lengths[part] * rises) / max(length, SMALLEST), 0.0, 1.0)
+        return Above(float(areas.sum()), length, float(steep.sum()), float((steep * (place - 0.5) ** 2).sum()))
+
+    def shares(self, lift: float) -> tuple[Floats, Floats]:
+        """Area (Pa s) and length (s) above zero of each part, when the load is lifted by `lift` (Pa)."""
+        return self._shares(lift, *self._crossings(-lift))
+
+    def _shares(self, lift: float, part: NDArray[np.intp], xi: Floats, rises: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """The same, the crossings known."""
+        inside = self.ends[0] >= -lift
+        areas, lengths = self.whole * inside, self.width * inside
+        covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
+        areas[part] = np.where(rises, self.whole[part] - covered, covered)
+        lengths[part] = np.where(rises, self.width[part] - time, time)
+        return areas + lift * lengths, lengths
+
+    def _crossings(self, level: float) -> tuple[NDArray[np.intp], Floats, NDArray[np.bool_]]:
+        """Parts that cross a level (Pa): which, where, and whether upwards."""
+        low, high = self.ends
+        part = np.flatnonzero((low < level) & (high > level))
+        xi = np.array([self.parts.crossing(k, level) for k in part.tolist()])
+        return part, xi, self.parts.load[part].sum(axis=1) > self.parts.load[part, 0]

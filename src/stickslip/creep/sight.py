@@ -1,0 +1,49 @@
+"""What a law of slip may hide from a place in it, for leaps over creep: the guards of `guards`, asked from Python."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.state.layout import Floats
+from stickslip.friction.formula.expression import Expression
+
+_DOUBLE = ctypes.POINTER(ctypes.c_double)
+_GUARDS = ctypes.CFUNCTYPE(None, _DOUBLE, ctypes.c_double, ctypes.c_double, ctypes.c_double, _DOUBLE)
+
+
+@dataclass(frozen=True)
+class Sight:
+    """The guards of a compiled formula, with its constants at a reference slip."""
+
+    formula: CompiledFormula
+    constants: Floats
+
+    @classmethod
+    def of(cls, tree: Expression, parameters: tuple[str, ...], values: tuple[float, ...], reference: float) -> Self:
+        """Return the guards of a formula with these values of its parameters; slips count from the reference (m)."""
+        formula = compile_formula(tree, parameters)
+        numbers, constants = np.array(values), np.zeros(formula.size)
+        formula.prepare(numbers.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
+        return cls(formula, constants)
+
+    def used_up(self, start: float, end: float) -> float:
+        """Return the share of its room that the hardest pressed guard uses up from one slip to another (m, minus the reference).
+
+        Beyond 1 a part of the formula may have come into view of which nothing is left at the start.
+        """
+        if self.formula.guard_count == 0:
+            return 0.0
+        before, after = self._at(start), self._at(end)
+        return float(np.max(before[:, 1] * (after[:, 0] - before[:, 0])))
+
+    def _at(self, slip: float) -> Floats:
+        """Arguments and pulls of the guards."""
+        out = np.zeros(2 * self.formula.guard_count)
+        call = _GUARDS(self.formula.guards)
+        call(self.constants.ctypes.data_as(_DOUBLE), slip, 0.0, 0.0, out.ctypes.data_as(_DOUBLE))
+        return out.reshape(-1, 2)

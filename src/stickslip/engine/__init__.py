@@ -1,0 +1,1 @@
+"""The compiled engine: it knows numbers and addresses, and never a `Problem`."""

@@ -1,0 +1,328 @@
+"""Taylor recurrences of a formula's nodes: order zero, first derivatives, higher orders, as text.
+
+Names in the text: c[i] the node i at the reference point, e_i its difference from that, n_i_k its k-th Taylor coefficient, x_k
+and s_k those of slip and slip rate, w_i_k k times the coefficient.
+"""
+
+from __future__ import annotations
+
+from stickslip.engine.codegen.guards import guards_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
+
+LARGEST_EXPONENT = 150.0
+"""Exponents beyond this count as this where exp occurs in denominators only (1): e^150 leaves nothing of a quotient, and its
+squares and series stay numbers."""
+NO_LIMIT = 1e308
+"""Of other exponents (1): where exp is infinite the run ends and says so."""
+FRESH = 4
+"""Terms of a sum that wait for the newest coefficients (see `sum_of`)."""
+
+
+def oldest_first(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The pairs of orders in a product's recurrence, those that wait for the newest coefficients last."""
+    return sorted(pairs, key=max)
+
+
+def sum_of(terms: list[str]) -> str:
+    """Sum of terms, oldest first: the old ones as a balanced tree (short, and small in rounding error), the newest added last.
+
+    The processor is done with the old ones before the newest are known: what it waits for is one addition for each of them.
+    """
+    if not terms:
+        return "0.0"
+    old = terms[: max(len(terms) - FRESH, 1)]
+    return " + ".join([_balanced(old), *terms[len(old) :]])
+
+
+def _balanced(terms: list[str]) -> str:
+    if len(terms) == 1:
+        return terms[0]
+    half = len(terms) // 2
+    return f"({_balanced(terms[:half])} + {_balanced(terms[half:])})"
+
+
+def _vanishes(node: Expression) -> bool:
+    """Whether a node is 0 at the reference point, where slip rate and state are 0, whatever the parameters."""
+    if node in (RATE, STATE):
+        return True
+    if node.operation == "mul":
+        return any(_vanishes(argument) for argument in node.arguments)
+    return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
+
+
+def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
+    """Return the nodes that reach the formula through denominators alone, by way of sums and products."""
+    parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
+    for node in nodes:
+        for argument in node.arguments:
+            parents[argument].append(node)
+    below: set[Expression] = set()
+    for node in reversed(nodes):
+        ways = parents[node]
+        if ways and all(
+            _divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways
+        ):
+            below.add(node)
+    return below
+
+
+def _divides(node: Expression, parent: Expression) -> bool:
+    return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
+
+
+class Recurrences:
+    """What is known of a formula's nodes, and the statements that compute them."""
+
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
+        self.formula, self.parameters, self.state_rate = formula, parameters, state_rate
+        self.nodes = self._with_companions(formula)
+        if state_rate is not None:
+            self.nodes = list(dict.fromkeys((*self.nodes, *self._with_companions(state_rate), STATE)))
+        self.index = {node: i for i, node in enumerate(self.nodes)}
+        self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
+        self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
+        self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
+        own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
+        self.guards = guards_of([node for node in self.dynamic if node in own])  # what arcsinh needs besides hides nothing
+        self._only_below = in_denominators_only(self.nodes)
+        self.pending_rate: int | None = None
+        self.size = len(self.nodes) + 1
+
+    @staticmethod
+    def _with_companions(formula: Expression) -> list[Expression]:
+        """Nodes in order of computation, with the partner that a recurrence needs (cos for sin, and so on)."""
+        found: dict[Expression, None] = {}
+        for node in nodes_of(formula):
+            argument = node.arguments[0] if node.arguments else node
+            if node.operation in ("sin", "cos"):
+                found.update(dict.fromkeys((Expression("sin", (argument,)), Expression("cos", (argument,)))))
+            elif node.operation == "arcsinh":
+                found.update(dict.fromkeys(nodes_of(Expression("sqrt", (1.0 + argument * argument,)))))
+            found[node] = None
+            if node.operation == "tanh":
+                found[node * node] = None
+        found.setdefault(SLIP)
+        found.setdefault(RATE)
+        return list(found)
+
+    # ---- names --------------------------------------------------------------------------------------------------------------
+
+    def reference(self, node: Expression) -> str:
+        return f"c[{self.index[node]}]"
+
+    def coefficient(self, node: Expression, k: int) -> str | None:
+        """Name of the k-th Taylor coefficient of a node, or None where it is identically zero."""
+        if not self.varies[node]:
+            return self.reference(node) if k == 0 else None
+        if node == STATE:
+            return "w"
+        if node == RATE:
+            return None if k == self.pending_rate else f"s_{k}"
+        return f"x_{k}" if node == SLIP else f"n{self.index[node]}_{k}"
+
+    def difference(self, node: Expression) -> str | None:
+        if not self.varies[node]:
+            return None
+        return {SLIP: "dx", RATE: "s_0", STATE: "w"}.get(node, f"e{self.index[node]}")
+
+    def slope(self, node: Expression, variable: Expression, tag: str) -> str | None:
+        if not depends_on(node, variable):
+            return None
+        return "1.0" if node == variable else f"{tag}{self.index[node]}"
+
+    def products(self, a: Expression, b: Expression, pairs: list[tuple[int, int]]) -> list[str]:
+        names = [(self.coefficient(a, i), self.coefficient(b, j)) for i, j in oldest_first(pairs)]
+        return [f"{x} * {y}" for x, y in names if x is not None and y is not None]
+
+    # ---- order zero ---------------------------------------------------------------------------------------------------------
+
+    def reference_value(self, node: Expression) -> str:
+        """The node at the reference point, for `prepare`."""
+        arguments = [self.reference(argument) for argument in node.arguments]
+        signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
+        if node.operation in signs:
+            return f"{arguments[0]} {signs[node.operation]} {arguments[1]}"
+        if node.operation == "exp":
+            return f"exp(min({arguments[0]}, {self.largest_exponent(node)}))"
+        if node.arguments:
+            return f"{'asinh' if node.operation == 'arcsinh' else node.operation}({arguments[0]})"
+        if node.operation == "parameter":
+            return f"p[{self.parameters.index(node.name)}]"
+        return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
+
+    def largest_exponent(self, node: Expression) -> float:
+        """Return the exponent beyond which an exp node stays as it is."""
+        return LARGEST_EXPONENT if node in self._only_below else NO_LIMIT
+
+    def order_zero(self) -> list[str]:
+        """Differences from the reference and values of every node at dx, s_0."""
+        lines = [f"x_0 = {self.reference(SLIP)} + dx"]
+        turned_by: set[Expression] = set()
+        for node in self.dynamic:
+            i = self.index[node]
+            if node.operation in ("sin", "cos") and node.arguments[0] not in turned_by:
+                turned_by.add(node.arguments[0])
+                j = self.index[node.arguments[0]]
+                turned = self.difference(node.arguments[0])
+                lines += [f"g{j} = sine({turned})", f"h{j} = versine({turned})"]
+            lines.append(f"e{i} = {self._difference_rule(node)}")
+            lines.append(f"n{i}_0 = {self._value_rule(node)}")
+        return lines
+
+    def _value_rule(self, node: Expression) -> str:
+        """The node's value: from its arguments where that is cheap; reference plus difference loses digits of small values."""
+        sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
+        if node.operation == "exp":
+            a = node.arguments[0]
+            near = f"{self.reference(node)}, e{self.index[node]}, {self.difference(a)}"
+            return f"exp_value({near}, {self.coefficient(a, 0)}, {self.largest_exponent(node)})"
+        if node.operation == "sqrt":
+            return f"sqrt({self.coefficient(node.arguments[0], 0)})"
+        if node.operation == "pow":
+            base, exponent = self.coefficient(node.arguments[0], 0), self.reference(node.arguments[1])
+            return f"power_value({self.reference(node)}, e{self.index[node]}, {base}, {exponent})"
+        if sign is None:
+            return f"{self.reference(node)} + e{self.index[node]}"
+        left, right = (self.coefficient(argument, 0) for argument in node.arguments)
+        return f"{left} {sign} {right}"
+
+    def _difference_rule(self, node: Expression) -> str:
+        a = node.arguments[0]
+        r, ra, ea = self.reference(node), self.reference(a), self.difference(a)
+        if node.operation in ("add", "sub", "mul", "div"):
+            b = node.arguments[1]
+            rb, eb = self.reference(b), self.difference(b)
+            if node.operation == "add":
+                return " + ".join(e for e in (ea, eb) if e)
+            if node.operation == "sub":
+                return f"{ea or ''}{f' - {eb}' if eb else ''}"
+            if node.operation == "mul" and ea and eb and (_vanishes(a) or _vanishes(b)):
+                return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # as it is: there is nothing to take it from
+            if node.operation == "mul":
+                return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"{self.coefficient(a, 0)} * {eb}") if t)
+            numerator = f"{ea or ''}{f' - {r} * {eb}' if eb else ''}"
+            return f"({numerator}) / {self.coefficient(b, 0)}"
+        if node.operation in ("sin", "cos"):
+            j = self.index[a]
+            sine, cosine = (self.reference(Expression(name, (a,))) for name in ("sin", "cos"))
+            return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
+        now = self.coefficient(a, 0)  # far from the reference its value has digits that reference + difference lacks
+        return {
+            "exp": f"exp_difference({r}, {now}, {ea}, {self.largest_exponent(node)})",
+            "log": f"log_difference({ra}, {now}, {ea})",
+            "sqrt": f"{ea} / (sqrt({now}) + {r})",
+            "tanh": f"tanh_difference({r}, {now}, {ea})",
+            "arcsinh": f"arcsinh_difference({ra}, {now}, {ea})",
+            "pow": f"power_difference({ra}, {now}, {ea}, {self.reference(node.arguments[-1])})",
+        }[node.operation]
+
+    def slopes(self, variable: Expression, tag: str) -> list[str]:
+        """First derivatives of the nodes with respect to SLIP, RATE or STATE."""
+        lines = []
+        for node in self.dynamic:
+            if not depends_on(node, variable):
+                continue
+            a = node.arguments[0]
+            value, a0, da = self.coefficient(node, 0), self.coefficient(a, 0), self.slope(a, variable, tag)
+            if node.operation in ("add", "sub", "mul", "div"):
+                b = node.arguments[1]
+                b0, db = self.coefficient(b, 0), self.slope(b, variable, tag)
+                rule = {
+                    "add": " + ".join(d for d in (da, db) if d),
+                    "sub": f"{da or ''}{f' - {db}' if db else ''}",
+                    "mul": " + ".join(t for t in (da and f"{da} * {b0}", db and f"{a0} * {db}") if t),
+                    "div": f"({da or ''}{f' - {value} * {db}' if db else ''}) / {b0}",
+                }[node.operation]
+            else:
+                partner = {"sin": "cos", "cos": "sin"}.get(node.operation)
+                other = self.coefficient(Expression(partner, (a,)), 0) if partner else ""
+                rule = {
+                    "sin": f"{other} * {da}",
+                    "cos": f"-{other} * {da}",
+                    "exp": f"{value} * {da}",
+                    "log": f"{da} / {a0}",
+                    "sqrt": f"{da} / (2.0 * {value})",
+                    "tanh": f"(1.0 - {value} * {value}) * {da}",
+                    "arcsinh": f"{da} / (sqrt(1.0 + {a0} * {a0}) if abs({a0}) < 1e150 else abs({a0}))",
+                    "pow": f"{self.reference(node.arguments[-1])} * {value} / {a0} * {da}",
+                }[node.operation]
+            lines.append(f"{tag}{self.index[node]} = {rule}")
+        return lines
+
+    # ---- guards -------------------------------------------------------------------------------------------------------------
+
+    def pulls(self) -> list[str]:
+        """Name, for each guard, the inverse of how far its argument may move: see `engine.codegen.guards`."""
+        lines = []
+        for j, guard in enumerate(self.guards):
+            exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
+            lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
+        return lines
+
+    def reach(self, k: int) -> str:
+        """The k-th coefficient of the bound on how much of its room a guard has used up, for the guard that uses up most."""
+        used = [
+            f"{coefficient} * g_{j}" for j, guard in enumerate(self.guards) if (coefficient := self.coefficient(guard.argument, k))
+        ]
+        text = used[0]
+        for other in used[1:]:
+            text = f"max({text}, {other})"
+        return f"max({text}, 0.0)"
+
+    # ---- higher orders ------------------------------------------------------------------------------------------------------
+
+    def order(self, k: int) -> list[str]:
+        return [f"n{self.index[node]}_{k} = {self._recurrence(node, k)}" for node in self.dynamic]
+
+    def weights(self, k: int) -> list[str]:
+        """k a_k of every argument of a function: shared by the recurrences of higher order."""
+        arguments = {n.arguments[0] for n in self.dynamic if n.operation in ("sin", "cos", "exp", "tanh")}
+        arguments |= {n for n in self.dynamic if n.operation in ("log", "arcsinh")}
+        return [f"w{self.index[a]}_{k} = {k}.0 * {self.coefficient(a, k)}" for a in sorted(arguments, key=self.index.__getitem__)]
+
+    def _weighted(self, a: Expression, b: Expression, k: int) -> str:
+        """(1/k) sum over 0 < j < k of j a_j b_(k-j)."""
+        pairs = oldest_first([(j, k - j) for j in range(1, k)])
+        terms = [f"w{self.index[a]}_{i} * {self.coefficient(b, j)}" for i, j in pairs]
+        return f" + {1.0 / k!r} * ({sum_of(terms)})" if terms else ""
+
+    def _recurrence(self, node: Expression, k: int) -> str:
+        a = node.arguments[0]
+        ak = self.coefficient(a, k) or "0.0"
+        if node.operation in ("add", "sub"):
+            bk = self.coefficient(node.arguments[1], k)
+            if bk is None:
+                return ak
+            if node.operation == "add":
+                return f"{ak} + {bk}" if self.coefficient(a, k) else bk
+            return f"{ak} - {bk}"
+        if node.operation == "mul":
+            return sum_of(self.products(a, node.arguments[1], [(j, k - j) for j in range(k + 1)]))
+        if node.operation == "div":
+            b = node.arguments[1]
+            terms = self.products(b, node, [(j, k - j) for j in range(1, k + 1)])
+            return f"({ak} - ({sum_of(terms)})) / {self.coefficient(b, 0)}"
+        if node.operation == "sqrt":
+            terms = self.products(node, node, [(j, k - j) for j in range(1, k)])
+            return f"({ak} - ({sum_of(terms)})) / (2.0 * {self.coefficient(node, 0)})"
+        if node.operation == "pow":
+            exponent = self.reference(node.arguments[1])
+            factors = [
+                (i, self.coefficient(a, j), self.coefficient(node, i)) for i, j in oldest_first([(j, k - j) for j in range(k)])
+            ]
+            terms = [f"({k - j}.0 * {exponent} - {j}.0) * {x} * {y}" for j, x, y in factors if x is not None]
+            return f"({sum_of(terms)}) / ({k}.0 * {self.coefficient(a, 0)})"
+        sine, cosine = Expression("sin", (a,)), Expression("cos", (a,))
+        if node.operation == "sin":
+            return f"{ak} * {self.coefficient(cosine, 0)}" + self._weighted(a, cosine, k)
+        if node.operation == "cos":
+            return f"-({ak} * {self.coefficient(sine, 0)}" + self._weighted(a, sine, k) + ")"
+        if node.operation == "exp":
+            return f"{ak} * {self.coefficient(node, 0)}" + self._weighted(a, node, k)
+        if node.operation == "log":
+            return f"({ak} - (0.0{self._weighted(node, a, k)})) / {self.coefficient(a, 0)}"
+        if node.operation == "tanh":
+            square = node * node
+            return f"{ak} * (1.0 - {self.coefficient(square, 0)}) - (0.0{self._weighted(a, square, k)})"
+        root = Expression("sqrt", (1.0 + a * a,))  # arcsinh
+        return f"({ak} - (0.0{self._weighted(node, root, k)})) / {self.coefficient(root, 0)}"

@@ -1,0 +1,268 @@
+"""Write the compiled form of a friction formula: its value and the Taylor series of the contact that slips under it.
+
+Each formula becomes straight-line code, in C functions that are each compiled when they are first wanted:
+
+prepare    fills `c` with the formula's constants and its nodes at the reference point (slip x_ref, rate 0)
+value      mu(x, s) - mu(x_ref, 0) with its derivatives with respect to s and x
+state_value  mu(x, s, w) - mu(x_ref, 0, 0) with its derivatives with respect to s, x and the state w, and the same of dw/dt
+rate_jet   massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
+motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
+guards     for each guard of the formula (see `engine.codegen.guards`) its argument and how hard the step is held back there
+rate_jets, motion_jets  the two series for several runs side by side (see `simd`)
+
+Behind the ORDER + 1 coefficients of the series, the jets of a formula with guards leave those of a bound: the step may be as long
+as its sum stays below 1.
+
+Friction is kept as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
+released from the very edge of equilibrium keeps its digits. s >= 0 is the magnitude of the slip rate, q its integral, and
+x = x_start + chi q the slip that the law counts. Time inside a piece is t = t0 + A eta + B eta^2 / 2, dt/d eta = A + B eta: B is
+zero except where a piece ends or starts at a fold, where s goes as a square root of time and eta is that root. A contact that
+leaves rest exactly at its strength has no net force by definition, not by subtraction: k[10] = 0 says so, k[11] is the step
+from static to sliding friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from stickslip.engine.codegen.guards import HIDDEN, IN_SIGHT
+from stickslip.engine.codegen.recurrences import Recurrences
+from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
+
+ORDER = 18
+"""Order of the Taylor series, and so of the history's polynomials."""
+
+SIGNATURES = {
+    "prepare": ("p[]", "x_ref", "c[]"),
+    "value": ("c[]", "dx", "s", "out[]"),
+    "state_value": ("c[]", "dx", "s", "w", "out[]"),
+    "guards": ("c[]", "dx", "s", "w", "out[]"),
+    "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
+    "motion_jet": ("c[]", "k[]", "L[]", "s[]"),
+    "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
+    "motion_jets": ("c[]", "k[]", "L[]", "s[]"),
+}
+"""Arguments of the functions: arrays where marked, else numbers."""
+
+MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
+
+from math import asinh, cos, cosh, exp, expm1, log, log1p, sin, sinh, sqrt, tanh
+
+from numba import njit, types
+
+from stickslip.engine.codegen.cache import sealed_cfunc
+from stickslip.engine.series.sine import sine, versine
+
+_array = types.CPointer(types.float64)
+_options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
+
+
+# f(now) - f(reference), where now = reference + step: near the reference without cancellation, far from it by the values.
+
+
+@njit(error_model="numpy")
+def exp_difference(value, now, step, largest):
+    if abs(step) < 1.0:
+        return value * expm1(step)
+    return exp(min(now, largest)) - value
+
+
+@njit(error_model="numpy")
+def log_difference(reference, now, step):
+    if abs(step) < 0.5 * abs(reference):
+        return log1p(step / reference)
+    return log(now / reference)
+
+
+@njit(error_model="numpy")
+def tanh_difference(value, now, step):
+    if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
+        return sinh(step) / cosh(now - step) / cosh(now)
+    return tanh(now) - value
+
+
+@njit(error_model="numpy")
+def power_difference(reference, now, step, exponent):
+    if abs(step) < 0.5 * reference:
+        return reference**exponent * expm1(exponent * log1p(step / reference))
+    return now**exponent - reference**exponent
+
+
+@njit(error_model="numpy")
+def arcsinh_difference(reference, now, step):
+    if abs(reference) > 1e150 or abs(now) > 1e150:  # their squares are no numbers
+        return asinh(now) - asinh(reference)
+    root, other = sqrt(1.0 + reference * reference), sqrt(1.0 + now * now)
+    if abs(step) < 0.5 * root:
+        return asinh(step * (root - reference * (2.0 * reference + step) / (root + other)))
+    return asinh(now) - asinh(reference)
+
+
+@njit(error_model="numpy")
+def power_pull(base, exponent):
+    height = exponent * log(base)  # the power is exp(height)
+    if height == 0.0:
+        return 0.0
+    room = max(abs(height) - {hidden!r}, {in_sight!r})
+    return 1.0 / (base * expm1((-room if height > 0.0 else room) / exponent))
+
+
+@njit(error_model="numpy")
+def exp_value(reference, difference, step, argument, largest):
+    """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
+    return reference + difference if abs(step) < 1.0 else exp(min(argument, largest))
+
+
+@njit(error_model="numpy")
+def power_value(reference, difference, base, exponent):
+    return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
+
+'''
+
+SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
+
+LANES_HEADER = """
+from stickslip.engine.codegen.simd import POINTER as _array
+from stickslip.engine.codegen.simd import lane_by_lane
+
+exp_difference = lane_by_lane(exp_difference)
+log_difference = lane_by_lane(log_difference)
+tanh_difference = lane_by_lane(tanh_difference)
+power_difference = lane_by_lane(power_difference)
+exp_value = lane_by_lane(exp_value)
+arcsinh_difference = lane_by_lane(arcsinh_difference)
+power_pull = lane_by_lane(power_pull)
+power_value = lane_by_lane(power_value)
+
+"""
+
+
+def describe(node: Expression) -> str:
+    """The formula in ordinary notation."""
+    signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
+    if node.operation in signs:
+        left, right = (describe(argument) for argument in node.arguments)
+        return f"({left} {signs[node.operation]} {right})"
+    if node.arguments:
+        return f"{node.operation}({describe(node.arguments[0])})"
+    return node.name or repr(node.value)
+
+
+class FormulaWriter(Recurrences):
+    """Turns one formula into source text; see the module's docstring for what is written."""
+
+    def __init__(
+        self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER, state_rate: Expression | None = None
+    ) -> None:
+        super().__init__(formula, parameters, state_rate)
+        self.limit = order
+
+    def prepare(self) -> list[str]:
+        """prepare(p, x_ref, c)"""
+        return [f"c[{self.index[node]}] = {self.reference_value(node)}" for node in self.nodes]
+
+    def value(self) -> list[str]:
+        """value(c, dx, s, out)"""
+        body = ["s_0 = s", *self.order_zero(), *self.slopes(RATE, "d"), *self.slopes(SLIP, "f")]
+        body += [
+            f"out[0] = {self.difference(self.formula) or '0.0'}",
+            f"out[1] = {self.slope(self.formula, RATE, 'd') or '0.0'}",
+            f"out[2] = {self.slope(self.formula, SLIP, 'f') or '0.0'}",
+        ]
+        return body
+
+    def state_value(self) -> list[str]:
+        """state_value(c, dx, s, w, out)"""
+        assert self.state_rate is not None
+        variables = ((RATE, "d"), (SLIP, "f"), (STATE, "y"))
+        body = ["s_0 = s", *self.order_zero()]
+        for variable, tag in variables:
+            body += self.slopes(variable, tag)
+        for i, tree in enumerate((self.formula, self.state_rate)):
+            level = self.difference(tree) if tree is self.formula else self.coefficient(tree, 0)
+            slopes = [self.slope(tree, variable, tag) for variable, tag in variables]
+            body += [f"out[{4 * i + j}] = {text or '0.0'}" for j, text in enumerate((level, *slopes))]
+        return body
+
+    def guard_values(self) -> list[str]:
+        """guards(c, dx, s, w, out)"""
+        body = ["s_0 = s", *self.order_zero(), *self.pulls()]
+        for j, guard in enumerate(self.guards):
+            body += [f"out[{2 * j}] = {self.coefficient(guard.argument, 0)}", f"out[{2 * j + 1}] = g_{j}"]
+        return body
+
+    def rate_jet(self) -> list[str]:
+        """Massless contact. k is laid out by `stickslip.engine.state.layout`; L holds the load's series; s receives the rate's."""
+        body = ["Z = k[0]", "S = k[1]", "A = k[2] * k[3]", "B = k[2] * k[4]", "dx = k[5]", "offset = k[6]"]
+        implicit = self.rate_dependent[self.formula]
+        if implicit:
+            body += ["s_0 = k[9]", *self.order_zero(), *self.slopes(RATE, "d")]
+            body += [f"resistance = 1.0 / (Z + S * {self.slope(self.formula, RATE, 'd')})"]
+        else:
+            body += [*self.order_zero(), "resistance = 1.0 / Z"]
+            body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
+        body += ["s[0] = s_0", "share = S * resistance", *self.pulls()]
+        for k in range(1, self.limit + 1):
+            body.append(f"x_{k} = {_integral('s', k)}")
+            self.pending_rate = k
+            body += self.order(k)
+            friction = self.coefficient(self.formula, k)
+            body.append(f"s_{k} = L[{k}] * resistance{f' - share * {friction}' if friction else ''}")
+            self.pending_rate = None
+            for node in self.dynamic:
+                if self.rate_dependent[node]:
+                    body.append(f"n{self.index[node]}_{k} += {self.slope(node, RATE, 'd')} * s_{k}")
+            body += [*self.weights(k), f"s[{k}] = s_{k}", *self.bound(k)]
+        return body
+
+    def bound(self, k: int) -> list[str]:
+        """The k-th coefficient of the bound of a formula with guards, behind the series."""
+        return [f"s[{self.limit + 1 + k}] = {self.reach(k)}"] if self.guards else []
+
+    def motion_jet(self) -> list[str]:
+        """Contact with mass: M ds/dt = L - K q - Z s - S mu. Arguments as for `rate_jet`."""
+        body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
+        body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
+        force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
+        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.pulls()]
+        for k in range(1, self.limit + 1):
+            body += [f"q_{k} = {_integral('s', k)}", f"s_{k} = {_integral('a', k)}"]
+            body.append(f"s[{k}] = s_{k}")
+            if k == self.limit:
+                body += [f"s[{2 * k + 1}] = s[{2 * k}]"] if self.guards else []  # the formula's own coefficients end at k - 1
+                break
+            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k), *self.bound(k)]
+            friction = self.coefficient(self.formula, k)
+            force = f"L[{k}] - K * q_{k} - Z * s_{k}{f' - S * {friction}' if friction else ''}"
+            body.append(f"a_{k} = ({force}) * inertia")
+        return body
+
+    def statements(self, part: str) -> list[str]:
+        """The body of one of SIGNATURES: assignments that are nearly C, too (the benchmarks make C of them)."""
+        write: dict[str, Callable[[], list[str]]] = {
+            "prepare": self.prepare,
+            "value": self.value,
+            "state_value": self.state_value,
+            "guards": self.guard_values,
+            "rate_jet": self.rate_jet,
+            "motion_jet": self.motion_jet,
+            "rate_jets": self.rate_jet,
+            "motion_jets": self.motion_jet,
+        }
+        return write[part]()
+
+    def module(self, part: str) -> str:
+        """Source of a module with one of the functions."""
+        arguments = SIGNATURES[part]
+        kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
+        head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
+        body = "".join(f"    {line}\n" for line in self.statements(part))
+        header = MODULE_HEADER.format(formula=describe(self.formula), hidden=HIDDEN, in_sight=IN_SIGHT)
+        header += LANES_HEADER if part in SIDE_BY_SIDE else ""
+        return header + head + body
+
+
+def _integral(name: str, k: int) -> str:
+    """k-th coefficient of the integral of a series over dt = (A + B eta) d eta; A / k and B / k do not wait for the series."""
+    old = f" + {1.0 / k!r} * B * {name}_{k - 2}" if k > 1 else ""
+    return f"{1.0 / k!r} * A * {name}_{k - 1}{old}"

@@ -1,0 +1,83 @@
+"""The piece of load being worked on, steps into the history, and shocks noted."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.series.polynomial import degree, fill
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.workspace import REAL, WHOLE, Run
+
+RESOLVED = 1e-12
+"""Slips, as a share of a row, of which double precision tells the ends apart well enough."""
+
+
+@kernel
+def theta_at(run: Run, xi: float) -> float:
+    """Offset in the round trip at a place in the present piece of load."""
+    return run.state.theta_to if xi >= 1.0 else run.state.theta_from + xi * (run.state.speed + xi * run.state.bend)
+
+
+@kernel
+def xi_at(run: Run, theta: float) -> float:
+    """Where in the present piece the offset theta lies."""
+    rest = theta - run.state.theta_from
+    root = math.sqrt(max(run.state.speed * run.state.speed + 4.0 * run.state.bend * rest, 0.0))
+    pace = run.state.speed + root
+    return 2.0 * rest / pace if pace > 0.0 else 0.0
+
+
+@kernel
+def note_degree(run: Run) -> None:
+    """A new piece of load: note its degree, beyond which the series of a step is zero too."""
+    run.counts.degree = degree(run.load)
+    fill(run.local, 0.0)
+    fill(run.seen, 0.0)
+
+
+@kernel
+def record(run: Run, xi_to: float) -> None:
+    """Append the step up to xi_to, whose load and rate already stand in the next free row. A step of no length is not kept."""
+    xi = run.state.xi
+    width = xi_to - xi
+    theta_from, theta_to = theta_at(run, xi), theta_at(run, xi_to)
+    if theta_to > theta_from:
+        n = run.counts.length
+        whole, real = ahead(run.whole, WHOLE * n), ahead(run.real, REAL * n)
+        whole[at.S_ROW], whole[at.S_MODE], whole[at.S_PIECE] = run.counts.row, run.counts.mode, run.counts.piece
+        whole[at.S_JUMP], whole[at.S_CAUSE], whole[at.S_ECHO_OF] = run.counts.jump, run.counts.cause, run.counts.echo_of
+        real[at.S_THETA_FROM], real[at.S_THETA_TO] = theta_from, theta_to
+        real[at.S_SPEED] = (run.state.speed + 2.0 * run.state.bend * xi) * width
+        real[at.S_BEND] = run.state.bend * width * width
+        real[at.S_SLIP], real[at.S_LAW_SLIP] = run.state.slip_now, run.state.law_slip
+        real[at.S_AMPLIFIED] = run.state.amplified
+        real[at.S_GAIN] = abs(run.par.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
+        note_slip(run, n, theta_from)
+        run.counts.length = n + 1
+        run.counts.jump = run.counts.cause = run.counts.stalled = 0
+    else:
+        run.counts.stalled += 1
+    run.state.xi = xi_to
+
+
+@kernel
+def note_slip(run: Run, n: int, theta: float) -> None:
+    """Where slip begins, and how many more slips were too short to be resolved than were not."""
+    slips, slipped = run.counts.mode != 0, n > 0 and run.whole[WHOLE * (n - 1) + at.S_MODE] != 0
+    if slips and not slipped:
+        run.counts.slip_row, run.state.slip_since = run.counts.row, theta
+    elif slipped and not slips:
+        lasted = (run.counts.row - run.counts.slip_row) * run.par.row_time + (theta - run.state.slip_since)
+        tiny = lasted < RESOLVED * run.par.row_time
+        run.counts.tiny = run.counts.tiny + 1 if tiny else max(run.counts.tiny - 1, 0)
+
+
+@kernel
+def note_jump(run: Run, rate: float, cause: int) -> None:
+    """Mark a shock if the slip rate is about to jump."""
+    before = run.state.rate_now
+    size = abs(rate - before)
+    if size > run.par.smallest_jump and size > run.par.relative_jump * max(abs(rate), abs(before)):
+        run.counts.cause = cause
+        run.counts.jump = 1

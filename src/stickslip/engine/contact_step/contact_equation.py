@@ -1,0 +1,232 @@
+"""The contact equation at one load: friction, static strength, and the branch of slip rates that the selection rule keeps."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
+from stickslip.engine.contact_step.append_segment import note_jump
+from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+TIE = 1e-13
+"""Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
+SAME_LEVEL = 1e-14
+"""Of the normal load: rounding of two levels of the load that are one."""
+NEAR_KNOT = 1e-12
+"""Relative distance within which a slip rate stands at a knot."""
+
+
+@kernel
+def constants_of(run: Run, piece: int) -> Floats:
+    """Pointer to the constants of a piece of the law."""
+    return ahead(run.constants, piece * run.size)
+
+
+@kernel
+def piece_at(run: Run, rate: float) -> int:
+    """The piece of the law at a slip rate: with knots in slip, the one to which slip has come."""
+    if run.counts.knots_in_rate == 0:
+        return run.counts.piece
+    piece = 0
+    while piece < run.pieces - 1 and rate >= run.knot[piece]:
+        piece += 1
+    return piece
+
+
+@kernel
+def is_knot(run: Run, rate: float) -> bool:
+    """Whether the law has a knot at this slip rate."""
+    if run.counts.knots_in_rate == 1:
+        for knot in range(run.pieces - 1):
+            if abs(run.knot[knot] - rate) <= NEAR_KNOT * rate:
+                return True
+    return False
+
+
+@kernel
+def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
+    """out: S (mu - mu_reference), its derivatives with respect to rate and slip times S, and mu - mu_reference."""
+    friction_of(run, piece_at(run, rate), law_slip, rate, out)
+
+
+@kernel
+def friction_of(run: Run, piece: int, law_slip: float, rate: float, out: Floats) -> None:
+    """As `friction_at`, by the formula of a piece."""
+    slip = law_slip + run.slip_shift[piece]
+    if run.counts.has_state == 1:
+        call_state_value(run.state_at[piece], constants_of(run, piece), slip, rate, run.state.state_now, out)
+    else:
+        call_value(run.value_at[piece], constants_of(run, piece), slip, rate, out)
+    out[3] = out[0] + run.offset[piece]
+    out[0] = run.par.normal * out[3]
+    out[1] *= run.par.normal
+    out[2] *= run.par.normal
+
+
+@kernel
+def rest_limit(run: Run) -> float:
+    """Load (minus the reference) at which the selection rule leaves rest forwards: the static strength, or below it."""
+    friction_at(run, run.state.law_slip, 0.0, run.value)
+    # the step to static friction is added to the coefficient: where the two cancel they must do so exactly, before any product
+    coefficient = run.value[3] + run.par.static_excess
+    return run.par.normal * coefficient + run.par.stick_to
+
+
+@kernel
+def towards(run: Run, load: float, direction: int) -> float:
+    """The load as seen in the direction of slip, minus the reference."""
+    return load if direction > 0 else -load - 2.0 * run.par.reference
+
+
+@kernel
+def load_ahead(run: Run, guess: float) -> None:
+    """Series of the load from the present place, in units of `guess`: as it is, and as seen in the direction of slip."""
+    load, local, seen, direction, n = run.load, run.local, run.seen, run.counts.mode, run.counts.degree
+    if n <= 1:
+        local[0] = load[0] + run.state.xi * load[1]
+        local[1] = guess * load[1]
+        seen[1] = direction * local[1]
+    else:
+        restrict_low(load, n, run.state.xi, guess, local)
+        for k in range(1, n + 1):
+            seen[k] = direction * local[k]
+    seen[0] = towards(run, local[0], direction)
+
+
+@kernel
+def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]:
+    """Where on [0, 1] the load leaves what the strength (minus the reference) holds, and in which direction; NONE if it stays."""
+    part, onset, direction = run.part, NONE, 0
+    for way in (1, -1):
+        for k in range(at.TERMS):
+            part[k] = strength[k] - way * load[k]
+        part[0] = 0.0 if run.counts.edge == way else strength[0] - towards(run, load[0], way)
+        first = first_descent(part, run.spare)
+        if first < onset:
+            onset, direction = first, way
+    return onset, direction
+
+
+@kernel
+def rate_on_branch(run: Run, load: float, guess: float) -> float:
+    """The slip rate on the current branch that solves g(s) = load: Newton's method kept inside the branch."""
+    branch = run.counts.branch
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    if load <= run.excess_from[branch]:
+        return low
+    if load >= run.excess_to[branch]:
+        return high
+    high = min(high, (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12))
+    s = guess if low < guess < high else 0.5 * (low + high)
+    for _ in range(200):
+        friction_at(run, run.state.law_slip, s, run.value)
+        error = run.par.impedance * s + run.value[0] - load
+        if error > 0.0:
+            high = s
+        elif error < 0.0:
+            low = s
+        else:
+            return s
+        slope = run.par.impedance + run.value[1]
+        step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
+        if not low < step < high:
+            step = 0.5 * (low + high)
+        if abs(step - s) <= 1e-16 * abs(s) or step in (low, high):
+            return step
+        s = step
+    return s
+
+
+@kernel
+def rate_from_here(run: Run, load: float, guess: float) -> float:
+    """The slip rate that solves g(s) = load next to the guess: Newton's method as long as it gains; branches need not be known."""
+    s = best = guess
+    least = math.inf
+    for _ in range(20):
+        friction_at(run, run.state.law_slip, s, run.value)
+        error = run.par.impedance * s + run.value[0] - load
+        slope = run.par.impedance + run.value[1]
+        if abs(error) >= least:
+            return best
+        best, least = s, abs(error)
+        if error == 0.0 or slope <= 0.0:
+            return best
+        s = max(s - error / slope, 0.0)
+    return best
+
+
+@kernel
+def needs_branches(run: Run) -> bool:
+    """Whether a choice among branches is due, and the table of branches is that of another slip."""
+    meets_jump = run.counts.ready == at.BROUGHT and run.counts.arriving != at.NO_CAUSE
+    due = run.counts.leaving == 1 or run.counts.mode == 0 or meets_jump
+    return due and run.state.table_slip != run.state.law_slip
+
+
+@kernel
+def choose_branch(run: Run, load: float) -> None:
+    """Leave rest: the first branch that the rule allows at this load."""
+    run.state.exit = math.nan
+    for branch in range(run.branches):
+        if load <= run.keep_to[branch]:
+            run.counts.branch = branch
+            return
+
+
+@kernel
+def leave_branch(run: Run, load: float) -> None:
+    """The branch ends at this load: go to the nearest allowed one in the direction of the load, or to rest.
+
+    A branch that the rule never takes has keep_from > keep_to.
+    """
+    branch = run.counts.branch
+    run.state.exit = math.nan
+    if load >= run.keep_to[branch]:
+        for other in range(branch + 1, run.branches):
+            if run.keep_from[other] <= run.keep_to[other] and load <= run.keep_to[other]:
+                run.counts.branch = other
+                return
+    for other in range(branch - 1, -1, -1):
+        if run.keep_from[other] <= min(load, run.keep_to[other]):
+            run.counts.branch = other
+            return
+    run.counts.mode = 0
+
+
+@kernel
+def branch_exit(run: Run) -> float:
+    """The xi, from the present one, at which the load leaves what the rule keeps the branch for; inf if not on this piece."""
+    branch, mode, part, xi = run.counts.branch, run.counts.mode, run.part, run.state.xi
+    first = NONE
+    for upper in (0, 1):
+        bound = run.keep_to[branch] if upper == 1 else run.keep_from[branch]
+        if math.isinf(bound):
+            continue
+        sign = -1.0 if upper == 1 else 1.0
+        restrict(run.load, xi, 1.0 - xi, part)
+        start = sign * (towards(run, part[0], mode) - bound)
+        for k in range(at.TERMS):
+            part[k] *= sign * mode
+        part[0] = 0.0 if run.counts.edge != 0 and start < 0.0 else start
+        first = min(first, first_descent(part, run.spare))
+    return xi + first * (1.0 - xi) if first < 1.0 - TIE else NONE
+
+
+@kernel
+def end_branch(run: Run) -> None:
+    """The load has left the interval in which the rule keeps the branch."""
+    branch, direction = run.counts.branch, run.counts.mode
+    seen = towards(run, evaluate(run.load, run.state.xi), direction)
+    upper = abs(seen - run.keep_to[branch]) < abs(seen - run.keep_from[branch])
+    level = run.keep_to[branch] if upper else run.keep_from[branch]
+    leave_branch(run, level)
+    if run.counts.mode == 0:
+        note_jump(run, 0.0, at.FOLD)
+        run.state.rate_now = 0.0
+        if abs(level - rest_limit(run)) <= SAME_LEVEL * run.par.normal:
+            run.counts.edge = direction  # rest ends where the branch does: the load goes away from there
+    else:
+        run.counts.edge = direction

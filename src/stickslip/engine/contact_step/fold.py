@@ -1,0 +1,209 @@
+"""Folds: where the branch of slip rates ends because g turns, and the slip rate goes as the square root of the time left."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact_step.append_segment import note_degree, theta_at
+from stickslip.engine.contact_step.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
+from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+SHORTEST_FOLD = 1e-9
+"""Way (in xi) below which the square root makes no difference."""
+APPROACHING, DEPARTING, PASSING = 1, 2, 3
+AT_THE_FOLD = 1e-14
+ROUNDING = 1e-14
+"""Relative difference of two loads that are surely not the same one."""
+LAST_TO_FOLD = 1e-4
+DEPARTURE = 1e-10
+"""Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
+
+
+@kernel
+def ends_at_fold(run: Run, way: float) -> bool:
+    """Whether the branch ends there because g turns smoothly, and not at a knot or because the rule prefers another solution."""
+    branch = run.counts.branch
+    level = towards(run, evaluate(run.load, run.state.xi + way), run.counts.mode)
+    if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
+        return run.keep_to[branch] == run.excess_to[branch] and not is_knot(run, run.rate_to[branch])
+    starts = run.rate_from[branch]
+    return starts > 0.0 and run.keep_from[branch] == run.excess_from[branch] and not is_knot(run, starts)
+
+
+@kernel
+def share_described(c: Floats) -> float:
+    """How far from 0 (as 2^-n) the first half of a series describes it to rounding: squaring its variable leaves no more terms."""
+    share = 1.0
+    for _ in range(60):
+        total, tail, power = 0.0, 0.0, 1.0
+        for k in range(at.TERMS):
+            total += abs(c[k]) * power
+            if 2 * k > at.TERMS - 1:
+                tail += abs(c[k]) * power
+            power *= share
+        if tail <= 1e-16 * total:
+            break
+        share *= 0.5
+    return share
+
+
+@kernel
+def square_variable(c: Floats, out: Floats) -> None:
+    """p(y^2) from p, cut to the terms that there are."""
+    fill(out, 0.0)
+    for k in range((at.TERMS + 1) // 2):
+        out[2 * k] = c[k]
+
+
+@kernel
+def set_aside(run: Run, width: float) -> None:
+    """Keep the present piece of load, to be taken up again `width` further."""
+    copy(run.load, run.kept_load, at.TERMS)
+    copy(numbers_of(run.state), numbers_of(run.kept), at.KEPT)
+    run.kept.xi = run.state.xi + width
+    if run.state.xi > 0.0:
+        run.counts.arriving = at.NO_CAUSE
+
+
+@kernel
+def approach_fold(run: Run, width: float) -> float:
+    """Prepare the way to a fold at distance `width`: s goes as the square root of the time left, so that becomes the variable.
+
+    Returns 0 once the piece is changed, or the part of the way that must be walked first.
+    """
+    backwards, squared = run.part, run.spare
+    restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold, z on [0, 1]
+    share = share_described(backwards)
+    if share < 1.0:
+        return (1.0 - share) * width
+    set_aside(run, width)
+    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
+    square_variable(backwards, squared)
+    restrict(squared, 1.0, -1.0, run.load)
+    run.state.theta_from, run.state.theta_to = theta_from, theta_to
+    run.state.speed, run.state.bend, run.state.xi = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
+    run.state.exit = math.nan
+    note_degree(run)
+    run.counts.at_fold = APPROACHING
+    return 0.0
+
+
+@kernel
+def starts_at_fold(run: Run) -> bool:
+    """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
+    branch = run.counts.branch
+    fold = run.rate_from[branch]
+    if run.counts.edge == 0 or run.counts.at_fold != 0 or fold == 0.0 or is_knot(run, fold):
+        return False
+    level = towards(run, evaluate(run.load, run.state.xi), run.counts.mode)
+    return level - run.excess_from[branch] <= AT_THE_FOLD * run.par.reference
+
+
+@kernel
+def load_outruns_fold(run: Run) -> bool:
+    """Whether the load grows faster than the friction at the fold does as the contact slips there."""
+    fold, xi, direction = run.rate_from[run.counts.branch], run.state.xi, run.counts.mode
+    friction_at(run, run.state.law_slip, fold, run.value)
+    restrict(run.load, xi, 1.0, run.part)
+    sense = direction if run.par.counts_net == 1.0 else 1
+    return direction * run.part[1] > run.value[2] * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
+
+
+@kernel
+def depart_from_fold(run: Run, left: float) -> None:
+    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time.
+
+    The bit is so short that the load is a straight line in time along it, in the echo of an earlier fold too.
+    """
+    width, forwards = DEPARTURE * left, run.part
+    restrict(run.load, run.state.xi, width, forwards)
+    rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.excess_from[run.counts.branch])
+    if 0.0 < rise < seen:  # the end of the bit would be the fold itself
+        width = min(width * seen / rise, left)
+        restrict(run.load, run.state.xi, width, forwards)
+    set_aside(run, width)
+    square_variable(forwards, run.load)
+    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
+    run.state.theta_from, run.state.theta_to = theta_from, theta_to
+    run.state.speed, run.state.bend, run.state.xi = 0.0, theta_to - theta_from, 0.0
+    note_degree(run)
+    run.counts.at_fold = DEPARTING
+
+
+@kernel
+def last_to_fold(run: Run) -> float:
+    """Share of the root of time before a fold that is a straight line: a moving fold is known as well as the run is accurate."""
+    if run.counts.folds_move == 0:
+        return LAST_TO_FOLD
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par.tolerance))
+
+
+@kernel
+def straight_to_fold(run: Run) -> None:
+    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
+
+    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
+    """
+    branch = run.counts.branch
+    low, high = run.rate_from[branch], run.rate_to[branch]
+    fold = low if run.jet[0] - low < high - run.jet[0] else high
+    if run.counts.folds_move == 1:
+        fold = run.state.fold_rate
+    for k in range(2, at.TERMS):
+        run.jet[k] = 0.0
+    run.jet[1] = fold - run.jet[0]
+
+
+@kernel
+def straight_from_fold(run: Run) -> None:
+    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
+    fold = run.rate_from[run.counts.branch]
+    friction_at(run, run.state.law_slip, fold, run.value)
+    weakened = run.value[2] * run.k.chi * fold * (run.state.speed + run.state.bend)
+    reached = rate_on_branch(run, towards(run, total(run.load), run.counts.mode) - weakened, fold)
+    fill(run.jet, 0.0)
+    run.jet[0], run.jet[1] = fold, reached - fold
+
+
+@kernel
+def leave_fold_piece(run: Run) -> None:
+    """The piece next to a fold is done: take up the piece of load where it was left, and jump if the fold is reached."""
+    state = run.state
+    way = theta_at(run, 1.0) - theta_at(run, 0.0)
+    if run.counts.at_fold == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
+        state.last_step = way
+    rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
+    last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # a piece that time does not resolve
+    copy(numbers_of(run.kept), numbers_of(run.state), at.KEPT)
+    state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
+    copy(run.kept_load, run.load, at.TERMS)
+    note_degree(run)
+    reached = run.counts.at_fold == APPROACHING
+    run.counts.at_fold = 0
+    if reached:
+        reach_end(run)
+
+
+@kernel
+def reach_end(run: Run) -> None:
+    """The branch ends here: go to another one, at once or when the branches at this slip are known."""
+    if run.counts.folds_move == 1:
+        run.counts.leaving = 1
+    else:
+        run.counts.stalled += 1  # to and fro between branches without any time would go on without end
+        end_branch(run)
+
+
+@kernel
+def leave_moving_branch(run: Run) -> None:
+    """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
+    run.counts.leaving = 0
+    run.counts.stalled += 1
+    end_branch(run)
+    if run.counts.at_fold != 0:
+        run.counts.at_fold = PASSING

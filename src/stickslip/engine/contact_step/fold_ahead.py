@@ -1,0 +1,100 @@
+"""A fold that moves with slip, found from the series of the slip rate.
+
+Towards a fold the slip rate s goes as the square root of the time left, but time as a function of s is smooth: it turns there. So
+the series s(t) is reversed, and the fold is where dt/ds = 0.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.series.polynomial import NONE
+from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.workspace import Run
+
+REVERSED = 14
+"""Terms of the reversed series: rounding grows with them, to 1e-13 here."""
+ENOUGH = 1e-12
+"""The last of them, relative to the time to the fold, for the fold to count as found."""
+ALIKE = 0.03
+"""How far two estimates of the time to the fold may differ before it is looked for at all."""
+
+
+@kernel
+def time_to_root(jet: Floats) -> float:
+    """Time to a square root's branch point, judged from the last coefficients; NONE if they do not look like that.
+
+    Those of (T - t)^(1/2) are c_(k+1) = c_k (k - 1/2) / (k + 1) / T, and all of one sign.
+    """
+    n = TERMS - 1
+    if jet[1] * jet[n] <= 0.0 or jet[1] * jet[n - 1] <= 0.0:
+        return NONE
+    time = (n - 1.5) / n * jet[n - 1] / jet[n]
+    before = (n - 2.5) / (n - 1) * jet[n - 2] / jet[n - 1]
+    return time if abs(before - time) <= ALIKE * time and time < math.inf else NONE
+
+
+@kernel
+def reversed_series(jet: Floats, time: float, out: Floats) -> None:
+    """t / time as a series in (s - s_0) / (2 s_1 time), order by order: so that it is 2 z - z^2 for a square root alone."""
+    powers = np.zeros((REVERSED + 1, REVERSED + 1))  # z^n in (t / time)^j
+    out[0], out[1] = 0.0, 2.0
+    powers[1, 1] = 2.0
+    for n in range(2, REVERSED + 1):
+        out[n] = 0.0
+        scale = 1.0
+        for j in range(2, n + 1):
+            for m in range(1, n - j + 2):
+                powers[j, n] += powers[1, m] * powers[j - 1, n - m]
+            scale *= time
+            out[n] -= jet[j] / jet[1] * scale * powers[j, n]
+        powers[1, n] = out[n]
+
+
+@kernel
+def fold_ahead(jet: Floats) -> tuple[float, float]:
+    """Time to the fold that the series of the slip rate runs into, in its unit, and the rate there; NONE if none is seen."""
+    time = time_to_root(jet)
+    if time == NONE:
+        return NONE, 0.0
+    series = np.empty(REVERSED + 1)
+    reversed_series(jet, time, series)
+    if not abs(series[REVERSED]) + abs(series[REVERSED - 1]) <= ENOUGH:
+        return NONE, 0.0
+    z, value = 1.0, 0.0
+    for _ in range(20):
+        value, slope, bend = 0.0, 0.0, 0.0
+        for k in range(REVERSED, -1, -1):
+            bend = bend * z + 2.0 * slope
+            slope = slope * z + value
+            value = value * z + series[k]
+        step = slope / bend
+        z -= step
+        if not 0.5 < z < 2.0:
+            return NONE, 0.0
+        if abs(step) <= 1e-15:
+            break
+    return value * time, jet[0] + 2.0 * jet[1] * time * z
+
+
+@kernel
+def way_to_fold(run: Run, guess: float) -> float:
+    """The way (in xi) to the fold that the present series runs into, if the law stays in its piece; the rate there is noted."""
+    eta, rate = fold_ahead(run.jet)
+    if eta == NONE or rate <= 0.0:
+        return NONE
+    piece = run.counts.piece
+    if run.counts.knots_in_rate == 1:
+        if rate > run.knot[piece] or (piece > 0 and rate < run.knot[piece - 1]):
+            return NONE
+    elif run.pieces > 1:
+        walked = max(rate, run.jet[0]) * (run.k.speed + 0.5 * run.k.bend * eta) * eta
+        slip = run.state.law_slip
+        knot = piece if run.k.chi > 0.0 else piece - 1
+        if 0 <= knot < run.pieces - 1 and abs(run.knot[knot] - slip) <= abs(walked):
+            return NONE
+    run.state.fold_rate = rate
+    return eta * guess

@@ -1,0 +1,68 @@
+"""Knots of a law in slip rate: which piece a rate belongs to, and where a step passes from one piece to the next."""
+
+from __future__ import annotations
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact_step.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
+from stickslip.engine.series.polynomial import NONE, first_descent
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+
+@kernel
+def settle_piece(run: Run, rate: float) -> None:
+    """Take the piece of the law that holds at the slip rate. At a knot the present one goes on: the way there has chosen it.
+
+    But where a branch starts or ends at the knot, it is the piece on which g rises.
+    """
+    piece = run.counts.piece
+    below = piece > 0 and rate < run.knot[piece - 1] * (1.0 - NEAR_KNOT)
+    if below or rate > run.knot[piece] * (1.0 + NEAR_KNOT):
+        piece = piece_at(run, rate)
+    if run.counts.is_algebraic == 1 and is_knot(run, rate):
+        friction_of(run, piece, run.state.law_slip, rate, run.value)
+        if run.par.impedance + run.value[1] <= 0.0:
+            piece += 1 if abs(run.knot[piece] - rate) <= NEAR_KNOT * rate else -1
+    run.counts.piece = piece
+
+
+@kernel
+def is_end_of_branch(run: Run, rate: float) -> bool:
+    """Whether a branch that stays where it is ends at this knot: its end is found from the load."""
+    if run.counts.is_algebraic == 0 or run.counts.folds_move == 1:
+        return False
+    branch, room = run.counts.branch, NEAR_KNOT * rate
+    return abs(run.rate_to[branch] - rate) <= room or abs(run.rate_from[branch] - rate) <= room
+
+
+@kernel
+def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
+    """Where on [0, 1] the slip rate leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down."""
+    first, turn, part = NONE, 1, run.part
+    for way in (1, -1):
+        knot = run.counts.piece if way == 1 else run.counts.piece - 1
+        if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.knot[knot]):
+            continue
+        for k in range(at.TERMS):
+            part[k] = -way * rate[k]
+        room = way * (run.knot[knot] - rate[0])
+        part[0] = 0.0 if abs(room) <= NEAR_KNOT * run.knot[knot] else room
+        crossing = first_descent(part, run.spare)
+        if crossing < first:
+            first, turn = crossing, way
+    return first, turn
+
+
+@kernel
+def pass_rate_knot(run: Run, turn: int) -> bool:
+    """Stand at the knot and go on behind it; False where the resistance g falls there: then the branch ends at the knot."""
+    piece = run.counts.piece
+    knot = run.knot[piece] if turn > 0 else run.knot[piece - 1]
+    run.state.rate_now = run.counts.mode * knot
+    if run.counts.folds_move == 1:
+        friction_of(run, piece + turn, run.state.law_slip, knot, run.value)
+        if run.par.impedance + run.value[1] <= 0.0:
+            return False
+    run.counts.piece = piece + turn
+    return True

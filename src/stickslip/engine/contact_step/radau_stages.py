@@ -1,0 +1,353 @@
+"""The stages of an implicit step: slip rate and state at Radau's points, by Newton's method.
+
+    M v' = load - K q - Z v - S mu(u, v, w),    u' = v,    w' = F(u, v, w)
+
+A contact without mass (M = 0) and one without a state are the same equations with terms left out. v >= 0 is the magnitude.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stickslip.engine.codegen.compiler import ahead, call_guards, call_state_value, call_value, floats, kernel
+from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.series.polynomial import evaluate
+from stickslip.engine.series.radau_nodes import (
+    DERIVATIVE,
+    DERIVATIVE_IN_MIDDLE,
+    INTEGRAL,
+    INTEGRAL_TO_MIDDLE,
+    MIDDLE,
+    POINT,
+    POINTS,
+    STAGES,
+    VALUE_IN_MIDDLE,
+)
+from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.workspace import Run
+
+MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
+"""What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
+RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
+"""What `look_between` leaves in a row of run.matrix."""
+STRIDE = 1e-4
+"""Share of the way between two places (1) over which the slope of a guard's argument is taken."""
+CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
+PLACES_ON_CHORD = 4
+"""Where between two places guards are looked at."""
+NUDGE = 1e-15
+"""Relative change of a number that is rounding: 4 ulp or more."""
+ITERATIONS = 40
+NEWTON_ROUNDING = 1e-15
+"""Rounding of the load (1), relative to its terms, as Newton's method meets it."""
+
+
+@kernel
+def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
+    """Friction and the change of the state, with derivatives, into run.value."""
+    piece = run.counts.piece
+    constants, slip = constants_of(run, piece), law_slip + run.slip_shift[piece]
+    if run.counts.has_state == 1:
+        call_state_value(run.state_at[piece], constants, slip, rate, state, run.value)
+    else:
+        below = min(rate, 0.0)  # a rate law need not mean anything there, but an iteration may look: straight on
+        call_value(run.value_at[piece], constants, slip, rate - below, run.value)
+        run.value[MU] += run.value[BY_RATE] * below
+        for k in range(BY_STATE, CHANGE_BY_STATE + 1):
+            run.value[k] = 0.0
+    run.value[MU] += run.offset[piece]
+
+
+@kernel
+def rate_at_load(run: Run, load: float, guess: float) -> float:
+    """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
+    impedance, normal = run.par.impedance, run.par.normal
+    low, high = 0.0, (load + run.par.reference) / impedance
+    if high <= 0.0:
+        return 0.0
+    s = guess if low < guess < high else 0.5 * high
+    for _ in range(200):
+        contact_at(run, run.state.law_slip, s, run.state.state_now)
+        error = impedance * s + normal * run.value[MU] - load
+        if error > 0.0:
+            high = s
+        else:
+            low = s
+        step = s - error / (impedance + normal * run.value[BY_RATE])
+        if not low < step < high:
+            step = math.sqrt(low * high) if low > 0.0 else 1e-3 * high
+        if abs(step - s) <= 1e-15 * abs(s) or high <= low:
+            return step
+        s = step
+    return s
+
+
+@kernel
+def assemble(run: Run, h: float, force: float) -> None:
+    """Newton's equations at the present stages, for a step of h seconds; `force` is taken from the load."""
+    par, v, w, m = run.par, run.stage_rate, run.stage_state, run.matrix
+    moving, remembers = run.counts.mode != 0, run.counts.has_state == 1
+    mass, chi = par.inertia / h, run.k.chi * h
+    size = 2 * STAGES if remembers else STAGES
+    for i in range(1, POINTS):
+        row, other = ahead(m, TERMS * (i - 1)), ahead(m, TERMS * (STAGES + i - 1))
+        walked, change, evolved = 0.0, 0.0, 0.0
+        for j in range(POINTS):
+            walked += INTEGRAL[i, j] * v[j]
+            change += DERIVATIVE[i, j] * v[j]
+            evolved += DERIVATIVE[i, j] * w[j]
+        contact_at(run, run.state.law_slip + chi * walked, v[i], w[i])
+        value = run.value
+        resisted = par.impedance * v[i] + par.normal * value[MU] + par.stiffness * h * walked
+        by_walk = par.stiffness * h + par.normal * value[BY_SLIP] * chi
+        for j in range(1, POINTS):
+            row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
+        row[i - 1] += par.impedance + par.normal * value[BY_RATE] if moving else 1.0
+        row[size] = evaluate(run.seen, POINT[i]) - force - resisted - mass * change if moving else 0.0
+        if remembers:
+            for j in range(1, POINTS):
+                row[STAGES + j - 1] = 0.0
+                other[j - 1] = -h * value[CHANGE_BY_SLIP] * chi * INTEGRAL[i, j] if moving else 0.0
+                other[STAGES + j - 1] = DERIVATIVE[i, j]
+            row[STAGES + i - 1] = par.normal * value[BY_STATE] if moving else 0.0
+            other[i - 1] -= h * value[CHANGE_BY_RATE]
+            other[STAGES + i - 1] -= h * value[CHANGE_BY_STATE]
+            other[size] = h * value[CHANGE] - evolved
+
+
+@kernel
+def eliminate(m: Floats, size: int) -> bool:
+    """Solve the equations in the rows of m; the solution replaces the last column. False where they are singular."""
+    for i in range(size):
+        row, largest = ahead(m, TERMS * i), 0.0
+        for j in range(size):
+            largest = max(largest, abs(row[j]))
+        if not 0.0 < largest < math.inf:
+            return False
+        for j in range(size + 1):
+            row[j] /= largest
+    for k in range(size):
+        pivot = k
+        for i in range(k + 1, size):
+            if abs(m[TERMS * i + k]) > abs(m[TERMS * pivot + k]):
+                pivot = i
+        if m[TERMS * pivot + k] == 0.0:
+            return False
+        for j in range(k, size + 1):
+            m[TERMS * k + j], m[TERMS * pivot + j] = m[TERMS * pivot + j], m[TERMS * k + j]
+        for i in range(k + 1, size):
+            factor = m[TERMS * i + k] / m[TERMS * k + k]
+            if factor != 0.0:
+                for j in range(k + 1, size + 1):
+                    m[TERMS * i + j] -= factor * m[TERMS * k + j]
+    for i in range(size - 1, -1, -1):
+        for j in range(i + 1, size):
+            m[TERMS * i + size] -= m[TERMS * i + j] * m[TERMS * j + size]
+        m[TERMS * i + size] /= m[TERMS * i + i]
+    return True
+
+
+@kernel
+def size_of_load(run: Run) -> float:
+    """Return the size (Pa, or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
+    size = run.par.reference
+    for k in range(TERMS):
+        size += abs(run.load[k])
+    return size
+
+
+@kernel
+def correct(run: Run, size: int, rounding: float) -> float:
+    """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
+
+    rounding: of the load (Pa, or N); a change of the slip rate that is no more than that makes is none.
+    """
+    v, w, m = run.stage_rate, run.stage_state, run.matrix
+    fastest, farthest, moved, evolved = 1e-300, run.par.state_scale + 1e-300, 0.0, 0.0
+    for i in range(1, POINTS):
+        step = m[TERMS * (i - 1) + size]
+        v[i] += step
+        moved, fastest = max(moved, abs(step)), max(fastest, abs(v[i]))
+        if size > STAGES:
+            step = m[TERMS * (STAGES + i - 1) + size]
+            w[i] += step
+            evolved, farthest = max(evolved, abs(step)), max(farthest, abs(w[i]))
+        if not (math.isfinite(v[i]) and math.isfinite(w[i])):
+            return math.inf
+    if rounding > 0.0:
+        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value[BY_RATE]), 0.0)  # as at the last stage
+    return max(moved / fastest, evolved / farthest)
+
+
+@kernel
+def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
+    """Find slip rates and states at the points of a step of h seconds, from the values at its start. False if that fails.
+
+    Newton's method begins with the values at the start; or, where share > 0, with the polynomials of a longer step of which
+    this one is such a share. After it, `look_between` has looked between the points.
+    """
+    for i in range(1, POINTS):
+        run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
+        if share > 0.0:
+            run.stage_state[i] = evaluate(run.state_jet, share * POINT[i])
+            if run.counts.mode != 0:  # at rest run.jet holds the strength
+                run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
+    size = 2 * STAGES if run.counts.has_state == 1 else STAGES
+    before, rounding = math.inf, NEWTON_ROUNDING * size_of_load(run) if run.counts.has_inertia == 0 else 0.0
+    for _ in range(ITERATIONS):
+        assemble(run, h, force)
+        if not eliminate(run.matrix, size):
+            return False
+        change = correct(run, size, rounding)
+        # Newton squares its error: the next change would be lost in the tolerance; or the last digits go round in circles
+        if change <= 1e-2 * math.sqrt(run.par.tolerance) or 0.1 * before < change < 1e-9:
+            look_between(run)
+            return True
+        if math.isinf(change):
+            return False
+        before = change
+    return False
+
+
+@kernel
+def look_between(run: Run) -> None:
+    """Put slip rate, its change and integral, state and its change halfway between the points into rows of run.matrix."""
+    v, w, remembers = run.stage_rate, run.stage_state, run.counts.has_state == 1
+    for i in range(STAGES):
+        rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
+        for j in range(POINTS):
+            rate += VALUE_IN_MIDDLE[i, j] * v[j]
+            acceleration += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
+            walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
+        if remembers:
+            for j in range(POINTS):
+                state += VALUE_IN_MIDDLE[i, j] * w[j]
+                evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
+        row = ahead(run.matrix, TERMS * i)
+        row[RATE], row[ACCELERATION], row[WALKED], row[STATE], row[EVOLVED] = rate, acceleration, walked, state, evolved
+
+
+@kernel
+def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
+    """Evaluate the contact at a place where `look_between` has looked; all of its arguments are larger by a relative nudge."""
+    row = ahead(run.matrix, TERMS * i)
+    slip = run.state.law_slip + run.k.chi * h * row[WALKED]
+    contact_at(run, slip * (1.0 + nudge), row[RATE] * (1.0 + nudge), row[STATE] * (1.0 + nudge))
+
+
+@kernel
+def yielding(run: Run, h: float) -> tuple[float, float]:
+    """Return the error of slip rate per load that is missing, and of the state per missing change, over a step of h seconds.
+
+    What is missing of a derivative turns its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
+    """
+    resistance = abs(run.par.impedance + run.par.normal * run.value[BY_RATE]) + STAGES * run.par.inertia / h
+    return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
+
+
+@kernel
+def defects(run: Run, h: float, force: float) -> tuple[float, float]:
+    """Return by how much the polynomials through the stages miss the equations halfway between the points.
+
+    The first number is in units of slip rate, the second in units of the state.
+    """
+    par, value = run.par, run.value
+    missed, missed_state = 0.0, 0.0
+    for i in range(STAGES):
+        middle = ahead(run.matrix, TERMS * i)
+        contact_between(run, i, h, 0.0)
+        by_load, by_change = yielding(run, h)
+        resisted = par.impedance * middle[RATE] + par.normal * value[MU] + par.stiffness * h * middle[WALKED]
+        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par.inertia / h * middle[ACCELERATION]
+        missed = larger(missed, abs(missing) * by_load)
+        missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
+    return missed, missed_state if run.counts.has_state == 1 else 0.0
+
+
+@kernel
+def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
+    """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
+    piece = run.counts.piece
+    slip = run.state.law_slip + walked + run.slip_shift[piece]
+    call_guards(run.guards_at[piece], constants_of(run, piece), slip, rate, state, out)
+
+
+@kernel
+def follow_step(run: Run, h: float, way: Floats) -> None:
+    """Put law slip (m, since the start), slip rate and state at the start, the points and the places between them one by one."""
+    chi = run.k.chi * h
+    for point in range(POINTS):
+        walked = 0.0
+        for j in range(POINTS):
+            walked += INTEGRAL[point, j] * run.stage_rate[j]
+        here = ahead(way, 6 * point)
+        here[0], here[1], here[2] = chi * walked, run.stage_rate[point], run.stage_state[point]
+    for i in range(STAGES):
+        row = ahead(run.matrix, TERMS * i)
+        between = ahead(way, 6 * i + 3)
+        between[0], between[1], between[2] = chi * row[WALKED], row[RATE], row[STATE]
+
+
+@kernel
+def rise(first: float, climb: float, last: float, descent: float) -> float:
+    """Return how far a concave function rises above its start, from its values and its slopes at both ends of [0, 1]."""
+    if climb > 0.0 and descent < 0.0:
+        return climb * min(max((last - first - descent) / (climb - descent), 0.0), 1.0)
+    return max(last - first, 0.0)
+
+
+@kernel
+def stays_in_sight(run: Run, h: float) -> float:
+    """Return the share of its room that the hardest pressed guard of the law uses up in a step of h seconds: it must not exceed 1.
+
+    A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes back where the argument
+    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts. A
+    narrow part may lie between two places: there its argument goes up and down again, which its slopes at both of them show.
+    """
+    n = run.guard_count[run.counts.piece]
+    if n == 0:
+        return 0.0
+    room, used = np.empty(3 * (2 * POINTS - 1) + 2 * n * PLACES_ON_CHORD), np.zeros(n)
+    way = floats(room.ctypes.data)
+    seen = ahead(way, 3 * (2 * POINTS - 1))
+    follow_step(run, h, way)
+    for i in range(2 * STAGES):
+        begin, end = ahead(way, 3 * i), ahead(way, 3 * i + 3)
+        for k in range(PLACES_ON_CHORD):
+            walked, rate = begin[0] + CHORD[k] * (end[0] - begin[0]), begin[1] + CHORD[k] * (end[1] - begin[1])
+            look_at_guards(run, walked, rate, begin[2] + CHORD[k] * (end[2] - begin[2]), ahead(seen, 2 * n * k))
+        for j in range(n):
+            pull = seen[2 * j + 1]  # as it is at this place: one that rises from zero has no room there, and soon enough
+            first, last = pull * seen[2 * j], pull * seen[6 * n + 2 * j]
+            climb, descent = pull * seen[2 * n + 2 * j] - first, last - pull * seen[4 * n + 2 * j]
+            used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
+    hardest = 0.0
+    for j in range(n):
+        hardest = max(hardest, used[j])
+    return hardest
+
+
+@kernel
+def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
+    """Return what rounding in the law's formulas makes of slip rate and state: by how much they answer to a nudge of rounding.
+
+    A formula may lose any number of digits, and nothing but the formula knows how many.
+    """
+    lost, lost_state = 0.0, 0.0
+    for i in range(STAGES):
+        contact_between(run, i, h, 0.0)
+        friction, change = run.value[MU], run.value[CHANGE]
+        by_load, by_change = yielding(run, h)
+        for nudge in (-NUDGE, NUDGE):
+            contact_between(run, i, h, nudge)
+            lost = max(lost, abs(run.value[MU] - friction) * run.par.normal * by_load)
+            lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
+    return lost, lost_state
+
+
+@kernel
+def larger(x: float, y: float) -> float:
+    """Return the larger of two numbers, and infinity where the second is none."""
+    return math.inf if math.isnan(y) else max(x, y)

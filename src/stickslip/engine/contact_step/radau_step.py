@@ -1,0 +1,356 @@
+"""Implicit steps: for contacts with a state of their own, and for stiff ones with mass.
+
+Such a contact settles far faster than anything else happens; an explicit series would have to follow every settling time.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.contact_step.append_segment import record
+from stickslip.engine.contact_step.contact_equation import TIE, load_ahead, onset_of_slip
+from stickslip.engine.contact_step.radau_stages import (
+    BY_RATE,
+    BY_STATE,
+    CHANGE_BY_RATE,
+    CHANGE_BY_STATE,
+    MU,
+    contact_at,
+    defects,
+    larger,
+    rate_at_load,
+    rounding_of_law,
+    size_of_load,
+    solve_stages,
+    stays_in_sight,
+)
+from stickslip.engine.contact_step.verify import NEGLIGIBLE
+from stickslip.engine.series.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
+from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+ATTEMPTS = 80
+STIFF, NOT_STIFF = 4.0, 1.5
+"""Settling times in an explicit step beyond which the contact is stiff: only stability can have kept it so short; and in an
+implicit step, below which it no longer is."""
+CHECKED = 16
+"""Explicit steps between two looks at the stiffness."""
+LONGEST_GROWTH = 4.0
+"""Growth (as an exponent) of a disturbance over a step, at most."""
+ROUNDING = 1e-15
+LOAD_ROUNDING = 1e-14
+"""Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+DEFECT_ROUNDING = 1e-14
+"""Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
+ALLOWED = 0.1
+"""Share of the defect (1) that counts: it turns its sign at every point, and leaves hardly anything in slip and state."""
+LEAST_TREND = 0.7
+"""Change of the length (1) that a step expects at least of the next one, when it had to become shorter itself."""
+LAW_ROUNDING = 5.0
+"""Rounding of the law that is allowed for, in units of the largest that was seen in a few evaluations."""
+LARGEST_ROUNDING, PATIENCE = 1e3, 8
+"""Error, in units of the tolerance, beyond which a step is never kept; attempts, each shorter, whose error has not halved."""
+FORGOTTEN = 1e-18
+"""Share of friction below which what is left of the state at rest is dropped."""
+
+
+@kernel
+def is_implicit(run: Run) -> bool:
+    """Whether the next step is an implicit one."""
+    return run.counts.has_state == 1 or run.counts.stiff == 1
+
+
+@kernel
+def settling_rate(run: Run) -> float:
+    """How fast (1/s) the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
+    contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
+    return (run.par.impedance + run.par.normal * run.value[1]) / run.par.inertia
+
+
+@kernel
+def judge_stiffness(run: Run) -> None:
+    """After an explicit step of a contact with mass: now and then, whether it has become stiff."""
+    run.counts.steps += 1
+    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
+        run.counts.stiff = 1
+
+
+@kernel
+def growth_rate(run: Run) -> float:
+    """How fast (1/s) a disturbance of slip rate and state grows at the start of the step; 0 where none does.
+
+    An implicit step far longer than that would walk along an unstable solution as if it were stable. What slip does to a
+    disturbance is left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with it.
+    """
+    par, value = run.par, run.value
+    contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
+    resistance = par.impedance + par.normal * value[BY_RATE]
+    if run.counts.has_inertia == 0:
+        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par.normal * value[BY_STATE] / resistance, 0.0)
+    mass = par.inertia
+    trace = value[CHANGE_BY_STATE] - resistance / mass
+    product = (par.normal * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
+    root = trace * trace - 4.0 * product
+    growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
+    if growth > 0.0 and trace < 0.0 and root > 0.0:
+        growth = -2.0 * product / (math.sqrt(root) - trace)  # the same without cancellation
+    return max(growth, 0.0)
+
+
+@kernel
+def start_of_step(run: Run) -> float:
+    """Slip rate and state at the start into the stages; the force that is none by definition, where slip leaves rest."""
+    state, force = run.state, 0.0
+    run.stage_state[0] = state.state_now
+    run.stage_rate[0] = abs(state.rate_now)
+    if run.counts.mode == 0:
+        run.stage_rate[0] = 0.0
+    elif run.counts.edge != 0:
+        contact_at(run, state.law_slip, 0.0, state.state_now)
+        force = run.seen[0] - run.par.normal * run.value[MU]
+        if run.counts.has_inertia == 0:
+            run.stage_rate[0] = 0.0
+    elif run.counts.has_inertia == 0:
+        run.stage_rate[0] = rate_at_load(run, run.seen[0], abs(state.rate_now))
+    return force
+
+
+@kernel
+def strength_ahead(run: Run) -> float:
+    """Put the static strength (minus the reference) over a step at rest into run.jet, from the states at its points.
+
+    Returns by how much it misses the law between the points, in units of the tolerance.
+    """
+    par = run.par
+    largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
+    for i in range(POINTS):
+        contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
+        run.stage_rate[i] = par.normal * run.value[MU]
+        largest = max(largest, abs(run.stage_rate[i]))
+    interpolate(run.stage_rate, run.jet, run.spare)
+    for i in range(STAGES):
+        contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
+        missed = larger(missed, abs(par.normal * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+    fill(run.stage_rate, 0.0)
+    return max(missed, last_terms(run.jet)) / (par.tolerance * largest)
+
+
+@kernel
+def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
+    """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
+
+    The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
+    between the points, where a feature of the law may lie that none of the points sees. `lost` is what is known to be lost by
+    rounding in the law itself.
+    """
+    par, value, h = run.par, run.value, run.k.speed
+    fastest, farthest = par.rate_floor, par.state_scale + 1e-300
+    for i in range(POINTS):
+        fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
+    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h  # as at the last stage
+    noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
+    state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
+    missed, missed_state = defects(run, h, force)
+    missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
+    error = max(last_terms(run.jet), missed) / (par.tolerance * fastest + noise + lost)
+    if run.counts.has_state == 1:
+        missed_state = ALLOWED * max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
+        state_noise += lost_state
+        error = max(error, max(last_terms(run.state_jet), missed_state) / (par.tolerance * farthest + state_noise))
+    if run.counts.mode == 0:
+        error = max(error, strength_ahead(run))
+    return error
+
+
+@kernel
+def settle_start(run: Run) -> bool:
+    """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
+
+    Leading coefficients that are negative by the rounding of the interpolation alone are set to zero: a contact with mass leaves
+    rest with a slip rate that grows as the square of time, or even later.
+    """
+    if run.counts.mode == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
+        return True
+    fastest = 0.0
+    for i in range(1, POINTS):
+        fastest = max(fastest, abs(run.stage_rate[i]))
+    for k in range(1, POINTS):
+        if run.jet[k] >= 0.0:
+            return True
+        if run.jet[k] < -ROUNDING * TO_POWERS_SUM[k] * fastest:
+            return False
+        run.jet[k] = 0.0
+    return True
+
+
+@kernel
+def turn_with_load(run: Run, left: float) -> float:
+    """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
+
+    Friction is an odd function of the slip rate there, and zero at rest. Without mass the slip rate has the sign of the load at
+    every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
+    slip rate: near a load of zero that rate may lie far below the error of the polynomial.
+    """
+    part, direction, rounding = run.part, 1, LOAD_ROUNDING * size_of_load(run)
+    restrict(run.load, run.state.xi, left, part)
+    part[0] += run.par.reference
+    if part[0] < 0.0:
+        turn_over(part)
+        direction = -1
+    first = first_descent(part, run.spare) if part[0] > rounding else 0.0
+    if first <= TIE:
+        run.load[0] -= direction * part[0]  # a load that passes through zero here does so for the stages, too
+        part[0] = 0.0
+        first = first_descent(part, run.spare)
+        if first <= TIE:
+            turn_over(part)
+            first, direction = first_descent(part, run.spare), -direction
+    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par.reference:
+        return left  # no load at all
+    run.counts.mode = direction
+    return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
+
+
+@kernel
+def turn_over(c: Floats) -> None:
+    """Change the sign of a polynomial."""
+    for k in range(at.TERMS):
+        c[k] = -c[k]
+
+
+@kernel
+def judged_error(run: Run, force: float, before: float) -> float:
+    """Return the error of the step's polynomials as `error_of`. Infinity stands for polynomials that are no solution at all.
+
+    An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
+    """
+    error = error_of(run, force, 0.0, 0.0)
+    if error > 1.0 and error > 0.5 * before:
+        lost, lost_state = rounding_of_law(run, run.k.speed)
+        error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
+    return error if settle_start(run) else math.inf
+
+
+@kernel
+def first_length(run: Run, left: float) -> float:
+    """Return the length in xi with which to try an implicit step: short enough for a disturbance that grows."""
+    speed = abs(run.state.speed)
+    guess = min(left, run.state.last_step / speed)
+    if 0.5 * left < guess < left:
+        guess = 0.5 * left
+    load_ahead(run, guess)
+    start_of_step(run)
+    growth = growth_rate(run) if run.counts.mode != 0 else 0.0
+    return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
+
+
+@kernel
+def collocate(run: Run, left: float) -> float:
+    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+
+    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. An error that
+    does not shrink with the step is rounding, after PATIENCE attempts in a row. The polynomials are NaN if all attempts fail.
+    """
+    speed = abs(run.state.speed)
+    if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
+        left = turn_with_load(run, left)
+    guess = longest = first_length(run, left)
+    before, in_vain, solution_over = math.inf, 0, 0.0
+    for _ in range(ATTEMPTS):
+        force = begin_step(run, guess)
+        solved = solve_stages(run, run.k.speed, force, guess / solution_over if solution_over > 0.0 else 0.0)
+        used, solution_over = stays_in_sight(run, run.k.speed) if solved else math.inf, guess if solved else 0.0
+        if solved:
+            interpolate(run.stage_rate, run.jet, run.spare)
+            interpolate(run.stage_state, run.state_jet, run.spare)
+        if used <= 1.0:
+            error = judged_error(run, force, before)
+            factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
+            in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
+            if error <= 1.0 or in_vain >= PATIENCE:
+                if error > 1.0:
+                    run.counts.rough += 1
+                    run.state.roughest = max(run.state.roughest, error * run.par.tolerance)
+                change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0  # steps that had to shrink go on to
+                run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
+                return guess
+            before = error
+            guess *= max(min(factor, 0.8), 0.1)
+        else:
+            before = math.inf
+            guess *= max(min(0.9 / used, 0.8), 0.1) if solved else 0.25
+    fill(run.jet, math.nan)
+    fill(run.state_jet, math.nan)
+    return guess
+
+
+@kernel
+def begin_step(run: Run, guess: float) -> float:
+    """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
+    load_ahead(run, guess)
+    if run.counts.sticks == 0 and abs(run.seen[0] + run.par.reference) <= LOAD_ROUNDING * size_of_load(run):
+        run.seen[0] = -run.par.reference  # the load passes through zero here: slip begins with a rate of zero
+    run.k.speed, run.k.bend = run.state.speed * guess, 0.0
+    run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
+    return start_of_step(run)
+
+
+@kernel
+def keep_state(run: Run, length: float) -> None:
+    """Put the state's polynomial, up to `length` of the step, into the history, and the state at its end where it is now."""
+    if run.counts.has_state == 0:
+        return
+    kept = ahead(run.stored_state, at.TERMS * run.counts.length)
+    for k in range(at.TERMS):
+        kept[k] = run.state_jet[k]
+    if length != 1.0:
+        scale(kept, length)
+    run.state.state_now = total(kept)
+
+
+@kernel
+def note_negative_friction(run: Run) -> None:
+    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
+    rate, state = run.state.rate_now, run.state.state_now
+    if not math.isfinite(rate):
+        rate, state = run.stage_rate[0], run.stage_state[0]
+    contact_at(run, run.state.law_slip, abs(rate), state)
+    if run.par.reference + run.par.normal * run.value[MU] < -NEGLIGIBLE * run.par.normal:
+        run.counts.breach = at.NEGATIVE_FRICTION
+
+
+@kernel
+def forgotten(run: Run) -> bool:
+    """Whether nothing is left of the state that friction would notice; then nothing is left at all."""
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    if abs(run.value[BY_STATE] * run.state.state_now) > FORGOTTEN:
+        return False
+    run.state.state_now = 0.0
+    return True
+
+
+@kernel
+def stick_with_state(run: Run, xi_to: float) -> None:
+    """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
+    width = collocate(run, xi_to - run.state.xi)
+    if not math.isfinite(run.jet[0]):
+        run.state.rate_now = math.nan
+        note_negative_friction(run)
+        return
+    reached = width >= xi_to - run.state.xi
+    load = ahead(run.stored_load, at.TERMS * run.counts.length)
+    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
+    copy(run.local, load, at.TERMS)
+    onset, direction = onset_of_slip(run, load, run.jet)
+    end = min(onset, 1.0)
+    if end < 1.0:
+        scale(load, end)
+    keep_state(run, end)
+    record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
+    note_negative_friction(run)
+    run.counts.edge, run.counts.moved = 0, 1
+    if onset < NONE:
+        run.counts.mode, run.counts.edge = direction, direction

@@ -1,0 +1,144 @@
+"""The contact at rest: what a new piece of load finds, how rest heals, how long it lasts, and how slip comes to rest."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.contact_step.append_segment import note_jump, record
+from stickslip.engine.contact_step.contact_equation import (
+    SAME_LEVEL,
+    TIE,
+    choose_branch,
+    friction_at,
+    leave_branch,
+    onset_of_slip,
+    rest_limit,
+    towards,
+)
+from stickslip.engine.contact_step.radau_step import forgotten, stick_with_state
+from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+TOUCH = 10.0
+"""Rests up to the root of this many local tolerances (the root of `rtol`), in rows, are touches of rest in passing."""
+
+
+@kernel
+def arrive(run: Run) -> None:
+    """A new piece of load begins: does the contact stick or slip under it, which way, on which branch?"""
+    load = run.load[0]
+    if run.counts.sticks == 0:
+        if run.counts.has_inertia == 0 and load != -run.par.reference:
+            run.counts.mode = 1 if load > -run.par.reference else -1
+        return
+    limit = rest_limit(run)
+    mode = run.counts.mode
+    if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == at.NO_CAUSE:
+        pass  # the load goes on as it was, and so does the slip rate
+    elif mode != 0 and run.counts.is_algebraic == 1:
+        seen, branch = towards(run, load, mode), run.counts.branch
+        if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
+            leave_branch(run, seen)
+    elif mode != 0 and run.counts.has_inertia == 0:
+        friction_at(run, run.state.law_slip, 0.0, run.value)
+        if towards(run, load, mode) < run.value[0]:
+            run.counts.mode = 0
+    if run.counts.mode == 0 and run.counts.edge == 0:
+        for direction in (1, -1):
+            if towards(run, load, direction) > limit:
+                run.counts.mode = direction
+                choose_branch(run, towards(run, load, direction))
+    if run.counts.mode == 0:
+        note_jump(run, 0.0, run.counts.arriving)
+        run.state.rate_now = 0.0
+
+
+@kernel
+def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
+    """Where on [0, 1] of a stretch of load rest ends, and in which direction; NONE if it lasts."""
+    strength = run.jet
+    fill(strength, 0.0)
+    strength[0] = rest_limit(run)
+    return onset_of_slip(run, load, strength)
+
+
+@kernel
+def is_arrest(run: Run, lasting: float) -> bool:
+    """Whether rest that lasts so long (s, without healing) is more than a touch of rest in passing.
+
+    A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
+    the order of its root. A contact without mass stops because the load falls, and stays.
+    """
+    return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.par.tolerance) * run.par.row_time
+
+
+@kernel
+def heal(run: Run, load: float) -> None:
+    """A law that remembers slip since the last arrest forgets it: friction is that of the start. Slip at once if it cannot hold."""
+    before = rest_limit(run)
+    run.state.law_slip, run.counts.piece = 0.0, int(run.par.healed_piece)
+    limit = rest_limit(run)
+    if limit == before:
+        return
+    run.counts.edge = 0
+    if run.counts.folds_move == 1:
+        return  # the branches at the healed slip have to be found first
+    for direction in (1, -1):
+        beyond = towards(run, load, direction) - limit
+        if abs(beyond) <= SAME_LEVEL * run.par.normal:
+            run.counts.edge = direction  # how the load goes on decides, and not its rounding
+        elif beyond > 0.0:
+            run.counts.mode = direction
+            if run.counts.has_inertia == 0:
+                note_jump(run, direction * beyond / run.par.impedance, at.HEALING)
+
+
+@kernel
+def stick(run: Run, xi_to: float) -> None:
+    """Stay at rest until the load leaves what friction can hold."""
+    if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
+        stick_with_state(run, xi_to)
+        return
+    width, load = xi_to - run.state.xi, ahead(run.stored_load, at.TERMS * run.counts.length)
+    restrict(run.load, run.state.xi, width, load)
+    onset, direction = end_of_rest(run, load)
+    if run.par.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
+        heal(run, load[0])
+        stale = run.counts.folds_move == 1 and run.state.table_slip != run.state.law_slip
+        if run.counts.mode != 0 or stale:
+            return
+        onset, direction = end_of_rest(run, load)
+    slips = onset <= 1.0 - TIE
+    if slips:
+        scale(load, onset)
+    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
+    if run.counts.has_state == 1:
+        fill(ahead(run.stored_state, at.TERMS * run.counts.length), 0.0)
+    record(run, run.state.xi + onset * width if slips else xi_to)
+    run.counts.edge = 0
+    if slips:
+        run.counts.mode, run.counts.edge = direction, direction
+        run.counts.stiff = run.counts.steps = 0
+        choose_branch(run, rest_limit(run))
+
+
+@kernel
+def come_to_rest(run: Run) -> None:
+    """The slip rate has reached zero: rest, or slip the other way where the load is beyond the strength there."""
+    before = run.counts.mode
+    run.state.rate_now = 0.0
+    if run.counts.sticks == 0:
+        run.counts.mode = -before
+        return
+    run.counts.mode = 0
+    if run.counts.has_inertia == 0:
+        run.counts.edge = before if run.par.static_excess == 0.0 else 0
+        return
+    load = evaluate(run.load, run.state.xi)
+    limit = rest_limit(run)
+    for direction in (1, -1):
+        if towards(run, load, direction) > limit:
+            run.counts.mode = direction

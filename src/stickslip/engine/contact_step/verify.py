@@ -1,0 +1,178 @@
+"""Verification of explicit steps: no step goes beyond what its series can see, and every step obeys the contact equation.
+
+A step's length follows from the last coefficients of its series. Two things keep that honest. The guards of the law's formula
+(see `guards`) end the step before a part of the law that left no trace at its start begins to count. And the finished step is put
+into the governing equation at its end, where a series is worst: what is missing must be no more than the tolerance allows, or
+rounding; else the step is made shorter.
+"""
+
+from __future__ import annotations
+
+from stickslip.engine.codegen.compiler import call_value, inlined, kernel
+from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.series.polynomial import moment, multiply, powers_of, total
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.workspace import Run
+
+ALLOWED = 10.0
+"""Defect of the contact equation, in units of the local tolerance, beyond which a step is made shorter (1): on smooth laws it is
+below 1."""
+ALLOWED_SLOPE = 300.0
+"""The same with inertia (1), where it is an error of the series' slope, which is larger at the end of a step: up to 33 there."""
+ROUNDING = 1e-14
+"""Rounding of the terms of the contact equation (1), relative to the largest of them."""
+HALVINGS = 40
+"""How often a step is halved (1) before the run ends: 2^-40 of a step is next to nothing."""
+NEGLIGIBLE = 1e-9
+"""Size of a friction coefficient (1) that may be below zero by rounding."""
+TRIFLE = 2.0**-30
+"""Share of a step (1) that is so short that nothing happens in it."""
+EXTRA = 10.0
+"""How much larger (1) rounding may be at one place of a step than at another."""
+LOST = 1e-6
+"""Share of the terms of the contact equation (1) that is more than rounding in any law: the step does not even begin on the law."""
+CLOSE = 0.01
+"""How well (1) the longest step within all guards is found, relative to its length."""
+
+
+@inlined
+def used_up(reach: Floats, powers: Floats) -> float:
+    """Return the share of its room that the hardest pressed guard may have used up at the end of a step, by its powers."""
+    a, b, c, d = reach[1] * powers[1], reach[2] * powers[2], reach[3] * powers[3], reach[4] * powers[4]
+    for k in range(5, TERMS - 3, 4):
+        a, b = a + reach[k] * powers[k], b + reach[k + 1] * powers[k + 1]
+        c, d = c + reach[k + 2] * powers[k + 2], d + reach[k + 3] * powers[k + 3]
+    for k in range(TERMS - (TERMS - 5) % 4, TERMS):
+        a += reach[k] * powers[k]
+    return (a + b) + (c + d)
+
+
+@kernel
+def within_guards(run: Run, length: float) -> float:
+    """Return the longest part of a step (in guesses) that no guard of the formula ends."""
+    powers_of(length, run.powers)
+    if not used_up(run.reach, run.powers) > 1.0:
+        return length
+    low, high = 0.0, length
+    for k in range(1, TERMS):  # each term alone stays below 1 up to `high`, and all of them together up to half of it
+        if run.reach[k] > 0.0:
+            high = min(high, run.reach[k] ** (-1.0 / k))
+    low = 0.5 * high
+    while high - low > CLOSE * high:
+        middle = 0.5 * (low + high)
+        powers_of(middle, run.powers)
+        if used_up(run.reach, run.powers) > 1.0:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+@inlined
+def largest_rate(rate: Floats, rate_end: float) -> float:
+    """Return a size of the slip rate over a step, from its polynomial on [0, 1]."""
+    return max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
+
+
+@inlined
+def slope_at_end(rate: Floats) -> float:
+    """Return p'(1)."""
+    a, b = rate[1], 2.0 * rate[2]
+    for k in range(3, TERMS - 1, 2):
+        a, b = a + k * rate[k], b + (k + 1) * rate[k + 1]
+    return a + b
+
+
+@inlined
+def load_at_end(run: Run) -> float:
+    """Return the load at the end of a step, as seen in the direction of slip, minus the reference; `run.powers` are the step's."""
+    if run.counts.degree <= 1:
+        return run.seen[0] + run.powers[1] * run.seen[1]
+    load = run.seen[0]
+    for k in range(1, run.counts.degree + 1):
+        load += run.powers[k] * run.seen[k]
+    return load
+
+
+@inlined
+def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> bool:
+    """Return True if a step (of so many guesses) obeys the contact equation at its end, to the tolerance or to rounding."""
+    moves = run.counts.has_inertia == 1
+    missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if moves else 0.0)
+    allowed = ALLOWED_SLOPE if moves else ALLOWED
+    return missing <= allowed * run.par.tolerance * largest_rate(rate, rate_end) + rounding + run.state.rounded
+
+
+@inlined
+def is_negative(run: Run) -> bool:
+    """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
+    friction = run.value[0] + run.offset[run.counts.piece]
+    return run.par.reference + run.par.normal * friction < -NEGLIGIBLE * run.par.normal
+
+
+@inlined
+def defect(run: Run, lasting: float, grown: float, rate: float, slope: float) -> tuple[float, float]:
+    """Return what the contact equation lacks at a place in a step, as slip rate, and how much of that may be rounding.
+
+    Z s + S mu = load without inertia; with it the difference is the mass times the acceleration. lasting: length of the step up
+    to there, in guesses; slope: of the slip rate there, by the same unit. A step that leaves rest begins by definition without a
+    net force: what the equation lacks there it lacks at every place.
+    """
+    par, value, piece = run.par, run.value, run.counts.piece
+    dx, load = run.k.slip + run.k.chi * grown, load_at_end(run)
+    call_value(run.value_at[piece], constants_of(run, piece), dx, rate, value)
+    friction, impedance, normal = value[0] + run.offset[piece], par.impedance, par.normal
+    missing = load - impedance * rate - normal * friction - run.state.unbalanced
+    # value[1] and value[2] are the slopes of the coefficient with slip rate and slip: their places are rounded, too
+    terms = par.reference + abs(load) + normal * (abs(friction) + abs(value[1] * rate) + abs(value[2] * dx))
+    if run.counts.has_inertia == 0:
+        resistance = impedance + normal * max(value[1], 0.0)
+        return abs(missing) / resistance, ROUNDING * terms / resistance
+    missing -= par.stiffness * grown
+    pace = (run.k.speed + run.k.bend * lasting) * lasting / par.inertia
+    return abs(missing * pace - slope), ROUNDING * terms * pace
+
+
+@kernel
+def note_rounding(run: Run, length: float) -> None:
+    """Measure how well the law can be told from its neighbourhood: what the equation lacks after a step that is next to nothing.
+
+    Far from the reference of a steep law rounding may be larger than its terms say; to shorten the step would not mend that.
+    """
+    powers_of(TRIFLE * length, run.powers)
+    multiply(run.jet, run.powers, run.part)
+    grown = run.k.speed * TRIFLE * length * moment(run.part, 1)
+    grown += run.k.bend * (TRIFLE * length) ** 2 * moment(run.part, 2)
+    missing, rounding = defect(run, TRIFLE * length, grown, total(run.part), slope_at_end(run.part))
+    run.state.rounded = EXTRA * missing
+    if missing * ROUNDING > LOST * rounding:
+        run.counts.breach = at.OFF_THE_LAW
+
+
+@kernel
+def note_rough_step(run: Run, rate: Floats, rate_end: float) -> None:
+    """Count the step if rounding in the law has made it miss the contact equation by more than the tolerance allows."""
+    share = run.state.rounded / largest_rate(rate, rate_end)
+    if share > (ALLOWED_SLOPE if run.counts.has_inertia == 1 else ALLOWED) * run.par.tolerance:
+        run.counts.rough += 1
+        run.state.roughest = max(run.state.roughest, share)
+
+
+@inlined
+def begin_verification(run: Run) -> None:
+    """Nothing is known yet of the step at hand: no ignored force, no rounding."""
+    run.state.unbalanced = run.state.rounded = 0.0
+    if run.k.free == 0.0 and run.counts.is_algebraic == 0:  # an algebraic contact solves its equation where it starts, too
+        note_unbalanced(run)
+
+
+@kernel
+def note_unbalanced(run: Run) -> None:
+    """Note the force that a step ignores at its start, because it leaves rest and has no net force by definition."""
+    piece = run.counts.piece
+    call_value(run.value_at[piece], constants_of(run, piece), run.k.slip, 0.0, run.value)
+    balance = run.seen[0] - run.par.normal * (run.value[0] + run.offset[piece])
+    run.state.unbalanced = balance - run.k.force
+    if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.par.tolerance) * run.par.normal:
+        run.counts.breach = at.OFF_THE_LAW  # a massless contact has no force to spare: no solution begins here

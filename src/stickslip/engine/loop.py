@@ -1,0 +1,296 @@
+"""The engine: brings the load round trip after round trip, lets the contact answer, and leaps over rest.
+
+One loop serves both bodies. A slab's load is what left the contact one round trip ago, reflected by the driver, plus what the
+driver sends; a block's is its spring. Pieces of load arrive one by one and are split wherever the contact needs it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.contact_step.append_segment import note_degree, xi_at
+from stickslip.engine.contact_step.contact_equation import needs_branches, rest_limit
+from stickslip.engine.contact_step.fold import leave_fold_piece, leave_moving_branch
+from stickslip.engine.contact_step.radau_step import is_implicit
+from stickslip.engine.contact_step.stick import arrive, stick
+from stickslip.engine.contact_step.taylor_step import slip, slip_implicitly
+from stickslip.engine.series.polynomial import fill, maximum, mean_of, total
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import TERMS, Integers
+from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+from stickslip.engine.waves.echo_queue import FOREVER, NOTHING, end_trip, next_echo, pays, plant
+from stickslip.engine.waves.varying_forcing import has_faded, rows_withstood, take_part
+
+ROOM = 8
+LARGEST_STALL = 200
+LARGEST_STORM = 10_000
+"""So many more slips that are too short to be resolved than others end a run: they would go on without end."""
+
+
+@kernel
+def rows_leaped(run: Run, n: int) -> int:
+    """Whole rows at rest between the one of a piece of the history and the present one."""
+    return run.counts.row - run.whole[WHOLE * n + at.S_ROW] - 1
+
+
+@kernel
+def first_piece(run: Run) -> bool:
+    """The next piece of load of a first round trip, or of any period of a block; False when there is none left."""
+    source = run.counts.source
+    if source >= run.loads - 1:
+        return False
+    run.state.theta_from, run.state.theta_to = run.first_theta[source], run.first_theta[source + 1]
+    run.state.speed, run.state.bend = run.state.theta_to - run.state.theta_from, 0.0
+    fill(run.load, 0.0)
+    run.load[0] = run.first_load[source]
+    run.load[1] = run.first_slope[source] * run.state.speed
+    if run.counts.is_block == 1 and run.counts.row > 0:
+        run.load[0] = run.state.load_now + rows_leaped(run, run.counts.length - 1) * run.par.ramp
+    run.counts.echo_of = -1
+    # in the first round trip of a slab the start itself comes back from the driver, from half of it on
+    run.state.amplified = (
+        math.nan if run.counts.is_block == 1 else 1.0 if run.state.theta_from < 0.5 * run.par.row_time else abs(run.par.reflection)
+    )
+    run.counts.arriving = at.NO_CAUSE
+    if run.counts.row == 0 and source == 0:
+        run.counts.arriving = at.START
+    elif run.counts.row == 0 and run.first_jump[source] == 1.0:
+        run.counts.arriving = at.LOADING
+    return True
+
+
+@kernel
+def echo_piece(run: Run) -> bool:
+    """The next piece of load that returns from the driver; False when the round trip is complete."""
+    if run.counts.sparse == 1:
+        source = next_echo(run)
+        if source == NOTHING:
+            return False
+    else:
+        source = run.counts.previous_from + run.counts.source
+        if source >= run.counts.previous_to:
+            return False
+    run.counts.echo_of = source
+    par = run.par
+    real, rate, load = (
+        ahead(run.real, REAL * source),
+        ahead(run.stored_rate, TERMS * source),
+        ahead(run.stored_load, TERMS * source),
+    )
+    run.state.theta_from, run.state.theta_to = real[at.S_THETA_FROM], real[at.S_THETA_TO]
+    run.state.speed, run.state.bend = real[at.S_SPEED], real[at.S_BEND]
+    run.state.amplified = real[at.S_AMPLIFIED] * real[at.S_GAIN]
+    for k in range(TERMS):
+        run.load[k] = par.reflection * (2.0 * par.impedance * rate[k] - load[k])
+    time = run.counts.row * par.row_time + run.state.theta_from
+    run.load[0] += par.inflow + par.inflow_rate * time - par.reflection * rows_leaped(run, source) * par.ramp
+    run.load[1] += par.inflow_rate * run.state.speed
+    run.load[2] += par.inflow_rate * run.state.bend
+    jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts.lumped == 1
+    run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
+    if run.counts.lumped == 1:
+        lump(run)
+    run.counts.arriving = at.ECHO if (jumps or run.counts.lumped == 1) and par.reflection != 0.0 else at.NO_CAUSE
+    return True
+
+
+@kernel
+def width_of(run: Run) -> float:
+    """Return the length (s) of the piece of load that has just been brought."""
+    return run.state.theta_to - run.state.theta_from
+
+
+@kernel
+def lump(run: Run) -> None:
+    """A piece too short to be resolved: its load is its mean, so that it slips as a whole or not at all."""
+    mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.theta_to - run.state.theta_from)
+    fill(run.load, 0.0)
+    run.load[0] = mean
+
+
+@kernel
+def next_piece(run: Run) -> bool:
+    """Bring the next piece of load; False at the end of the round trip."""
+    first = run.counts.is_block == 1 or run.counts.row == 0
+    if not (first_piece(run) if first else echo_piece(run)):
+        return False
+    if run.counts.varies == 1:
+        take_part(run)
+    else:
+        run.counts.source += 1
+    run.state.xi, run.state.exit = 0.0, math.nan
+    note_degree(run)
+    run.counts.jump = 1 if run.counts.arriving != at.NO_CAUSE else run.counts.jump
+    run.counts.ready = at.BROUGHT
+    return True
+
+
+@kernel
+def rows_at_rest(run: Run, limit: float) -> int:
+    """Whole round trips that a contact at rest stays there for certain, judged from the one just past."""
+    par = run.par
+    ramp = par.ramp
+    if run.counts.varies == 1:
+        return rows_withstood(run, limit)
+    if not is_ramp(run):
+        return 0
+    top, bottom = -math.inf, -math.inf
+    for n in range(run.counts.row_from, run.counts.length):
+        load = ahead(run.stored_load, TERMS * n)
+        top = max(top, maximum(load))
+        bottom = max(bottom, maximum(load, -1.0))
+    if ramp == 0.0:
+        return FOREVER
+    room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * par.reference)
+    rows = math.floor(room / abs(ramp)) - 1.0
+    return min(max(int(rows), 0), FOREVER) if rows < 9e18 else FOREVER
+
+
+@kernel
+def is_ramp(run: Run) -> bool:
+    """Whether the load of the next round trips is that of the last one plus a ramp."""
+    if run.counts.is_block == 1:
+        return True
+    if run.par.reflection == -1.0:
+        return True
+    return has_faded(run)
+
+
+@kernel
+def swings_for_ever(run: Run) -> bool:
+    """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
+    return run.counts.varies == 0 and run.par.reflection == 1.0 and run.par.ramp == 0.0 and run.counts.stuck_rows >= 2
+
+
+@kernel
+def end_row(run: Run, limit: float, last_row: int) -> bool:
+    """Close a round trip; leap over the following ones while nothing can happen in them.
+
+    False, and nothing done, where the end of the run would cut the leap and TO_THE_END is not set.
+    """
+    if run.counts.sparse == 1:
+        end_trip(run)
+        return True
+    if run.counts.lumps == 0 and run.counts.length - run.counts.row_from > run.counts.lump_above:
+        run.counts.lumps, run.counts.lumped_since = 1, run.counts.row + 1
+    if pays(run):
+        plant(run)
+        return True
+    leap, locked = 0, False
+    if run.counts.moved == 0:
+        run.counts.stuck_rows += 1
+        leap = rows_at_rest(run, limit)
+        locked = leap >= FOREVER or swings_for_ever(run)
+        room = last_row - run.counts.row - 1
+        if leap > room and run.counts.to_the_end == 0:
+            run.counts.stuck_rows -= 1
+            return False
+        leap = max(min(leap, room), 0)
+    else:
+        run.counts.stuck_rows = 0
+    run.counts.is_locked = 1 if locked else 0
+    if run.counts.is_block == 1:
+        run.state.load_now = total(ahead(run.stored_load, TERMS * (run.counts.length - 1)))
+    run.counts.row += 1 + leap
+    if run.counts.moved == 1:
+        run.counts.creep_in -= 1
+        if run.counts.creep_in == 0:
+            run.counts.pause_at = run.counts.row
+    run.counts.previous_from, run.counts.previous_to = run.counts.row_from, run.counts.length
+    run.counts.row_from = run.counts.length
+    run.counts.source = run.counts.moved = 0
+    run.counts.row_segment = run.counts.segment
+    return True
+
+
+@kernel
+def ended(run: Run) -> int:
+    """What to say at the end of the run."""
+    return at.LOCKED if run.counts.is_locked == 1 else at.FINISHED
+
+
+@kernel
+def is_finite(run: Run) -> bool:
+    """Return True if the contact's slip, slip rate and state are numbers."""
+    return math.isfinite(run.state.rate_now + run.state.slip_now + run.state.state_now)
+
+
+@kernel
+def take_back(run: Run, length: int, xi: float) -> None:
+    """Drop the pieces that a step has added to a history of `length` pieces: they are not finite. The run ends before them."""
+    if run.counts.length > length:
+        real = ahead(run.real, REAL * length)
+        run.state.slip_now, run.state.law_slip = real[at.S_SLIP], real[at.S_LAW_SLIP]
+        run.counts.length = length
+    run.state.xi = xi
+
+
+@kernel
+def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> int:
+    """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
+
+    Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
+    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. END_AHEAD: what
+    comes next depends on where the run ends; the caller sets TO_THE_END and goes on. Up to there a longer run is the same.
+    PAUSED: row PAUSE_AT, or one behind it, comes next. SLIPS: a run that WAITS is to take an explicit step of slip.
+
+    `table` comes from `workspace.lend`. Its scratch array is kept between calls.
+    """
+    run = borrow(table)
+    run.k.impedance, run.k.normal = run.par.impedance, run.par.normal
+    run.k.inertia, run.k.stiffness = run.par.inertia, run.par.stiffness
+    while True:
+        if run.counts.length + ROOM > run.capacity:
+            return at.FULL
+        if run.counts.stalled > LARGEST_STALL or run.counts.tiny > LARGEST_STORM:
+            return at.STORM
+        budget -= 1
+        if budget < 0:
+            return -1
+        if run.counts.folds_move == 1:
+            if needs_branches(run):
+                return at.NEED_BRANCHES
+            if run.counts.leaving == 1:
+                leave_moving_branch(run)
+        if run.counts.ready == 0:
+            if run.counts.row > last_row or (run.counts.sparse == 1 and run.counts.is_locked == 1):
+                return ended(run)
+            if not next_piece(run):
+                if not end_row(run, rest_limit(run), last_row):
+                    return at.END_AHEAD
+                if run.counts.row >= run.counts.pause_at:
+                    return at.PAUSED
+                continue
+            if run.counts.folds_move == 1:
+                continue
+        if run.counts.ready == at.BROUGHT:
+            arrive(run)
+            run.counts.ready = at.MET
+            if run.counts.folds_move == 1:
+                continue  # a step that the caller may take back stands alone
+        is_last = run.counts.row == last_row and run.counts.at_fold == 0 and run.state.theta_to >= last_theta
+        is_cut = is_last and run.state.theta_to > last_theta
+        if is_cut and run.counts.to_the_end == 0:
+            return at.END_AHEAD
+        xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
+        if run.state.xi < xi_to:
+            length, xi = run.counts.length, run.state.xi
+            if run.counts.mode == 0:
+                stick(run, xi_to)
+            elif is_implicit(run):
+                slip_implicitly(run, xi_to)
+            elif run.counts.waits == 1:
+                run.state.target = xi_to
+                return at.SLIPS
+            else:
+                slip(run, xi_to)
+            if run.counts.breach != 0 or not is_finite(run):
+                take_back(run, length, xi)
+                return run.counts.breach if run.counts.breach != 0 else at.FAILED
+        elif run.counts.at_fold != 0:
+            leave_fold_piece(run)
+        elif is_last:
+            return ended(run)
+        else:
+            run.counts.ready = 0

@@ -1,0 +1,1 @@
+"""Branches and levels that move with slip, in compiled code."""

@@ -1,0 +1,235 @@
+"""Levels of the built-in selection rules where folds move with slip, in compiled code: along a step, and for a choice.
+
+At a place in a step the branches are found by a scan (`branch_scan`); between their levels and the load lies the room that the
+rule leaves to the present branch. Where that room runs out, the step crosses a level.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.contact_step.contact_equation import towards
+from stickslip.engine.moving_folds.branch_scan import (
+    LEVEL_FROM,
+    LEVEL_TO,
+    RATE_FROM,
+    RATE_TO,
+    Contact,
+    area,
+    branch_near,
+    find_branches,
+    rate_at,
+    strength_at,
+)
+from stickslip.engine.series.polynomial import NONE, evaluate, integral
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import TERMS, Floats, Integers
+from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+
+MINIMAL, MAXIMAL, MAXWELL = range(3)
+COMPILED_RULES = {"minimal": MINIMAL, "maximal": MAXIMAL, "maxwell": MAXWELL}
+"""Rules whose levels are worked out here; any other but perfect delay is followed by its table (`branch_table.Step`)."""
+
+ROUNDING = 1e-11
+"""Loads nearer to a level, relative to the strength, have not crossed it."""
+EXACT, SHORTEST = 1e-14, 1e-15
+"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step so well known."""
+FIRST_PLACE, LAST_PLACE = 0.5, 1.0
+"""Where in a step the rule is looked at."""
+NEXT = 1e-4
+"""Share of a step: outside the level there too, a load that starts at the level leaves it at once."""
+
+
+class View(NamedTuple):
+    """A step of slip in the history of a run, as a rule looks at it; rates to scan, and room for branches."""
+
+    run: Run
+    step: int
+    rule: int
+    scan: Floats
+    table: Floats
+
+
+@kernel
+def fastest(run: Run, load: float) -> float:
+    """A slip rate that no solution at this load exceeds."""
+    return (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12)
+
+
+@kernel
+def rate_on(contact: Contact, load: float, branch: int) -> float:
+    """The slip rate on a branch of the table at a load between the levels of its ends."""
+    low, high = contact.table[RATE_FROM, branch], contact.table[RATE_TO, branch]
+    return rate_at(contact, load, low, max(low, min(high, fastest(contact.run, load))))
+
+
+@kernel
+def better_by(contact: Contact, load: float, slow: float, fast: float) -> float:
+    """How far (Pa) the load is above the level at which two rates that meet it have equal areas; exact at the level."""
+    return -area(contact, load, slow, fast) / (fast - slow)
+
+
+@kernel
+def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> float:
+    """How far (Pa) the load is from the level at which another rate that solves the contact equation is the better one."""
+    room, own = math.inf, branch_near(contact, rate, branches)
+    if load <= strength_at(contact):
+        room = better_by(contact, load, 0.0, rate) if rate > 0.0 else room
+    for k in range(branches):
+        if k == own or not contact.table[LEVEL_FROM, k] < load < contact.table[LEVEL_TO, k]:
+            continue
+        other = rate_on(contact, load, k)
+        if other < rate:
+            room = min(room, better_by(contact, load, other, rate))
+        elif other > rate:
+            room = min(room, -better_by(contact, load, rate, other))
+    return room
+
+
+@kernel
+def law_slip_in(run: Run, n: int, xi: float) -> float:
+    """Law slip (m), minus the initial one, at a place in a step of the history."""
+    real, rate = ahead(run.real, REAL * n), ahead(run.stored_rate, TERMS * n)
+    grown = real[at.S_SPEED] * integral(rate, xi, 1) + 2.0 * real[at.S_BEND] * integral(rate, xi, 2)
+    mode = run.whole[WHOLE * n + at.S_MODE]
+    return real[at.S_LAW_SLIP] + (grown if run.par.counts_net == 1.0 else mode * grown)
+
+
+@kernel
+def room_in(view: View, xi: float) -> float:
+    """How far (Pa) the load is inside the interval for which the rule keeps the branch; negative outside."""
+    run, n = view.run, view.step
+    mode, law_slip = run.whole[WHOLE * n + at.S_MODE], law_slip_in(run, n, xi)
+    contact = Contact(run, run.whole[WHOLE * n + at.S_PIECE], law_slip, view.scan, view.table)
+    rate = abs(evaluate(ahead(run.stored_rate, TERMS * n), xi))
+    load = towards(run, evaluate(ahead(run.stored_load, TERMS * n), xi), mode)
+    branches = find_branches(contact, max(rate, fastest(run, load)) * (1.0 + 1e-9))
+    if branches == 0:
+        return math.inf  # the branch is narrower than the scan can see
+    own = branch_near(contact, rate, branches)
+    low, high = view.table[LEVEL_FROM, own], view.table[LEVEL_TO, own]
+    if view.rule == MINIMAL:
+        low = max(low, strength_at(contact))
+        for k in range(own):
+            low = max(low, view.table[LEVEL_TO, k])
+    elif view.rule == MAXIMAL:
+        for k in range(own + 1, branches):
+            high = min(high, view.table[LEVEL_FROM, k])
+    room = min(load - low, high - load)
+    return min(room, maxwell_room(contact, rate, load, branches)) if view.rule == MAXWELL else room
+
+
+@kernel
+def place_of_crossing(view: View, low: float, high: float) -> float:
+    """Where the room, not negative at low and negative at high, falls through zero: false position, kept from standing still.
+
+    Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
+    """
+    slack = EXACT * view.run.par.reference
+    above, below = max(room_in(view, low), slack), room_in(view, high)
+    side, x = 0, high
+    for _ in range(100):
+        x = (low * below - high * above) / (below - above)
+        value = room_in(view, x)
+        if abs(value) <= slack or high - low < SHORTEST:
+            break
+        if value > 0.0:
+            low, above = x, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, below = x, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+    return x
+
+
+@kernel
+def crossing_in(places: Integers, step: int, rule: int, scan: Floats, table: Floats) -> float:
+    """Where on [0, 1] of a step of slip the load first leaves what the rule keeps the branch for; NONE if it stays in it.
+
+    `places` comes from `workspace.lend`.
+    """
+    view = View(borrow(places), step, rule, scan, table)
+    before, slack = 0.0, ROUNDING * view.run.par.reference
+    for place in (FIRST_PLACE, LAST_PLACE):
+        if room_in(view, place) < -slack:
+            if room_in(view, before) <= slack and room_in(view, before + NEXT * (place - before)) <= 0.0:
+                return before
+            return place_of_crossing(view, before, place)
+        before = place
+    return NONE
+
+
+@kernel
+def gap(contact: Contact, slow: int, fast: int, load: float) -> tuple[float, float]:
+    """By how much the integral of g - load is larger on the faster of two branches (-1: stick), and its slope along the load."""
+    start = rate_on(contact, load, slow) if slow >= 0 else 0.0
+    end = rate_on(contact, load, fast)
+    return area(contact, load, start, end), start - end
+
+
+@kernel
+def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float) -> float:
+    """The load between two others at which two branches have equal areas: Newton's method, kept inside."""
+    load = 0.5 * (low + high)
+    for _ in range(100):
+        value, slope = gap(contact, slow, fast, load)
+        if value > 0.0:
+            low = load
+        elif value < 0.0:
+            high = load
+        else:
+            break
+        step = load - value / slope
+        if not low < step < high:
+            step = 0.5 * (low + high)
+        if abs(step - load) <= EXACT * contact.run.par.normal or step in (low, high):
+            load = step
+            break
+        load = step
+    return load
+
+
+@kernel
+def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
+    """Limit what two branches (-1: stick) are kept for to where each is better than the other; returns up to where stick is."""
+    run, table = contact.run, contact.table
+    low = table[LEVEL_FROM, fast] if slow < 0 else max(table[LEVEL_FROM, slow], table[LEVEL_FROM, fast])
+    ends = strength_at(contact) if slow < 0 else table[LEVEL_TO, slow]
+    high = min(ends, table[LEVEL_TO, fast])
+    if not low < high:
+        return stick_to
+    if gap(contact, slow, fast, low)[0] <= 0.0:
+        level = low
+    elif gap(contact, slow, fast, high)[0] >= 0.0:
+        run.keep_from[fast] = max(run.keep_from[fast], high)
+        return stick_to
+    else:
+        level = equal_areas(contact, slow, fast, low, high)
+        run.keep_from[fast] = max(run.keep_from[fast], level)
+    if slow < 0:
+        return min(stick_to, level)
+    run.keep_to[slow] = min(run.keep_to[slow], level)
+    return stick_to
+
+
+@kernel
+def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
+    """Write the levels of Maxwell's rule at the present slip into the setup, where branches are kept up to their ends so far."""
+    run = borrow(places)
+    contact = Contact(run, run.counts.piece, run.state.law_slip, scan, table)
+    for k in range(run.branches):
+        table[RATE_FROM, k], table[RATE_TO, k] = run.rate_from[k], run.rate_to[k]
+        table[LEVEL_FROM, k], table[LEVEL_TO, k] = run.excess_from[k], run.excess_to[k]
+    strength = strength_at(contact)
+    stick_to = strength
+    for fast in range(run.branches):
+        for slow in range(-1, fast):
+            stick_to = hand_over(contact, slow, fast, stick_to)
+    for k in range(run.branches):
+        if run.keep_from[k] >= run.keep_to[k]:
+            run.keep_from[k], run.keep_to[k] = math.inf, -math.inf
+    run.par.stick_to = stick_to - strength

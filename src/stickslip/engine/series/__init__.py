@@ -1,0 +1,1 @@
+"""Polynomials, series and step sizes."""

@@ -1,0 +1,314 @@
+"""The echoes on their way back to the contact of a slab with a rigid driver: which of them will make it slip next, and when.
+
+A rigid driver sends back what left the contact, round trip after round trip, and adds the same to it each time. So a piece of load
+under which the contact rests need not be met again before it breaks: the round trip in which it does is known. Of each phase of the
+round trip the last piece recorded there stands in a tree, ordered by phase; each node knows which piece below it breaks first.
+
+It is a treap (Seidel & Aragon 1996, Algorithmica 16, 464), whose shape depends on the pieces that are in it and not on how they
+came: a run that is taken up again grows the same one. While a round trip goes on there are two: what it has passed, and what it
+has yet to meet.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.engine.codegen.compiler import ahead, bits_of, kernel
+from stickslip.engine.contact_step.contact_equation import rest_limit
+from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import TERMS, Floats, Integers
+from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+
+LEFT, RIGHT, FIRST_UP, FIRST_DOWN, TRIP, RANK = range(6)
+NODE = 6
+"""Numbers of a node: its children, the pieces below (or here) that break first forwards and backwards, round trip, rank."""
+PHASE, HIGH, LOW = range(3)
+HEIGHTS = 3
+"""Of a node's piece: where it begins, and the largest of its load and of minus its load one round trip later, less the ramp."""
+NOTHING = -1
+FOREVER = 2**62
+NEARLY = 2e-15
+"""Of the reference strength: rounding of a load, by which a piece is met early rather than late."""
+MANY = 16
+"""Pieces in a round trip from which on it pays to meet only those that break, and of these at most one in `MANY // 4`."""
+
+
+class Echoes(NamedTuple):
+    """The trees, as rows parallel to those of the history."""
+
+    node: Integers  # (capacity, NODE)
+    heights: Floats  # (capacity, HEIGHTS)
+
+
+def new_echoes(capacity: int) -> Echoes:
+    """Room for as many pieces as the history has."""
+    return Echoes(np.empty((capacity, NODE), np.int64), np.empty((capacity, HEIGHTS)))
+
+
+def resized(echoes: Echoes, length: int, capacity: int) -> Echoes:
+    """The first `length` pieces, with room for `capacity`."""
+    larger = new_echoes(capacity)
+    for old, new in zip(echoes, larger, strict=True):
+        new[:length] = old[:length]
+    return larger
+
+
+# ---- trees ------------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def sooner(node: Integers, heights: Floats, ramp: float, a: int, b: int, way: int) -> bool:
+    """Whether piece a breaks before piece b, forwards (way 1) or backwards (-1)."""
+    column = HIGH if way > 0 else LOW
+    higher = heights[HEIGHTS * a + column] - heights[HEIGHTS * b + column]
+    return higher > way * ramp * (node[NODE * a + TRIP] - node[NODE * b + TRIP])
+
+
+@kernel
+def settle(node: Integers, heights: Floats, ramp: float, n: int) -> None:
+    """What breaks first at or below a node, from what its children know."""
+    for way, column in ((1, FIRST_UP), (-1, FIRST_DOWN)):
+        first = n
+        for side in (LEFT, RIGHT):
+            child = node[NODE * n + side]
+            if child != NOTHING and sooner(node, heights, ramp, node[NODE * child + column], first, way):
+                first = node[NODE * child + column]
+        node[NODE * n + column] = first
+
+
+@kernel
+def join(node: Integers, heights: Floats, ramp: float, a: int, b: int) -> int:
+    """One tree of two, all phases of the first of which lie before those of the second."""
+    if a == NOTHING:
+        return b
+    if b == NOTHING:
+        return a
+    if node[NODE * a + RANK] > node[NODE * b + RANK]:
+        node[NODE * a + RIGHT] = join(node, heights, ramp, node[NODE * a + RIGHT], b)
+        settle(node, heights, ramp, a)
+        return a
+    node[NODE * b + LEFT] = join(node, heights, ramp, a, node[NODE * b + LEFT])
+    settle(node, heights, ramp, b)
+    return b
+
+
+@kernel
+def part(node: Integers, heights: Floats, ramp: float, n: int, phase: float) -> tuple[int, int]:
+    """Two trees of one: the pieces that begin before a phase, and the others."""
+    if n == NOTHING:
+        return NOTHING, NOTHING
+    if heights[HEIGHTS * n + PHASE] < phase:
+        before, behind = part(node, heights, ramp, node[NODE * n + RIGHT], phase)
+        node[NODE * n + RIGHT] = before
+        settle(node, heights, ramp, n)
+        return n, behind
+    before, behind = part(node, heights, ramp, node[NODE * n + LEFT], phase)
+    node[NODE * n + LEFT] = behind
+    settle(node, heights, ramp, n)
+    return before, n
+
+
+@kernel
+def without_first(node: Integers, heights: Floats, ramp: float, n: int) -> int:
+    """The tree without its first piece."""
+    if node[NODE * n + LEFT] == NOTHING:
+        return node[NODE * n + RIGHT]
+    node[NODE * n + LEFT] = without_first(node, heights, ramp, node[NODE * n + LEFT])
+    settle(node, heights, ramp, n)
+    return n
+
+
+@kernel
+def first_of(run: Run, n: int) -> int:
+    """The first piece in a tree."""
+    while n != NOTHING and run.node[NODE * n + LEFT] != NOTHING:
+        n = run.node[NODE * n + LEFT]
+    return n
+
+
+@kernel
+def rank(phase: float, trip: int) -> int:
+    """As good as random, but always the same for a piece (the finalizer of MurmurHash3, public domain, A. Appleby)."""
+    h = bits_of(phase) ^ (trip * 0x5851F42D4C957F2D)
+    h = (h ^ ((h >> 33) & 0x7FFFFFFF)) * -0x00AE502812AA7333
+    h = (h ^ ((h >> 33) & 0x7FFFFFFF)) * -0x3B314601E57A13AD
+    return h ^ ((h >> 33) & 0x7FFFFFFF)
+
+
+# ---- when a piece breaks ----------------------------------------------------------------------------------------------------
+
+
+@kernel
+def room(run: Run, n: int, way: int, limit: float) -> float:
+    """How far the load of a piece stays from the limit in the round trip after its own, less the ramp."""
+    top = run.heights[HEIGHTS * n + HIGH] if way > 0 else run.heights[HEIGHTS * n + LOW] - 2.0 * run.par.reference
+    return limit - NEARLY * abs(run.par.reference) - top
+
+
+@kernel
+def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
+    """Whether the contact may slip under a piece in a round trip."""
+    return way * run.par.ramp * (trip - run.node[NODE * n + TRIP]) > room(run, n, way, limit)
+
+
+@kernel
+def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
+    """Whether it may slip under any piece of a tree."""
+    forwards = breaks(run, run.node[NODE * n + FIRST_UP], 1, limit, trip)
+    return forwards or breaks(run, run.node[NODE * n + FIRST_DOWN], -1, limit, trip)
+
+
+@kernel
+def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
+    """The first piece in a tree, in order of phase, under which the contact may slip in a round trip."""
+    if n == NOTHING or not any_breaks(run, n, limit, trip):
+        return NOTHING
+    while True:
+        left = run.node[NODE * n + LEFT]
+        if left != NOTHING and any_breaks(run, left, limit, trip):
+            n = left
+        elif breaks(run, n, 1, limit, trip) or breaks(run, n, -1, limit, trip):
+            return n
+        else:
+            n = run.node[NODE * n + RIGHT]
+
+
+@kernel
+def next_trip(run: Run, n: int, limit: float) -> int:
+    """The next round trip in which the contact may slip under any piece of a tree."""
+    coming = run.counts.row + 1
+    if any_breaks(run, n, limit, coming):
+        return coming
+    way = 1 if run.par.ramp > 0.0 else -1
+    growth, first = abs(run.par.ramp), run.node[NODE * n + (FIRST_UP if way > 0 else FIRST_DOWN)]
+    trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
+    if not trips < 4e18:
+        return FOREVER
+    trip = max(run.node[NODE * first + TRIP] + int(trips), coming)
+    while not breaks(run, first, way, limit, trip):
+        trip += 1
+    return trip
+
+
+# ---- a round trip -----------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def leave_out_ends(run: Run, real: Floats) -> None:
+    """Of the load in a piece leave only what is not too near its ends: slip there alone would be too short to be resolved."""
+    width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
+    share = run.par.shortest / width if run.counts.lumps == 1 else 0.0
+    if share >= 0.5:
+        mean = mean_of(run.part, real[at.S_SPEED], real[at.S_BEND], width)
+        fill(run.part, 0.0)
+        run.part[0] = mean
+    elif share > 0.0:
+        restrict(run.part, share, 1.0 - 2.0 * share, run.spare)
+        copy(run.spare, run.part, TERMS)
+
+
+@kernel
+def add(run: Run, n: int) -> None:
+    """A piece that the round trip has passed: behind all those that it has passed before."""
+    node, heights = ahead(run.node, NODE * n), ahead(run.heights, HEIGHTS * n)
+    load, rate = ahead(run.stored_load, TERMS * n), ahead(run.stored_rate, TERMS * n)
+    for k in range(TERMS):
+        run.part[k] = load[k] - 2.0 * run.par.impedance * rate[k]
+    real = ahead(run.real, REAL * n)
+    leave_out_ends(run, real)
+    heights[PHASE], heights[HIGH], heights[LOW] = real[at.S_THETA_FROM], maximum(run.part), maximum(run.part, -1.0)
+    node[LEFT] = node[RIGHT] = NOTHING
+    node[FIRST_UP] = node[FIRST_DOWN] = n
+    node[TRIP] = run.whole[WHOLE * n + at.S_ROW]
+    node[RANK] = rank(heights[PHASE], node[TRIP])
+    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, n)
+
+
+@kernel
+def add_new(run: Run) -> None:
+    """The pieces recorded since the last call."""
+    for n in range(run.counts.new_from, run.counts.length):
+        add(run, n)
+    run.counts.new_from = run.counts.length
+
+
+@kernel
+def pass_to(run: Run, n: int) -> None:
+    """The round trip passes over what comes before a piece, and takes that piece."""
+    phase = run.heights[HEIGHTS * n + PHASE]
+    before, rest = part(run.node, run.heights, run.par.ramp, run.counts.ahead, phase)
+    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, before)
+    run.counts.ahead = without_first(run.node, run.heights, run.par.ramp, rest)
+    if run.counts.new_from == run.counts.length:
+        run.state.new_since = phase
+    run.state.taken_to = run.real[REAL * n + at.S_THETA_TO]
+
+
+@kernel
+def goes_on(run: Run) -> bool:
+    """Whether the piece that follows must be met: the contact slips, or has come to rest just where the last one ended."""
+    return run.counts.mode != 0 or run.whole[WHOLE * (run.counts.length - 1) + at.S_MODE] != 0
+
+
+@kernel
+def next_echo(run: Run) -> int:
+    """The piece of history whose echo has to be met next; NOTHING where the round trip holds no more."""
+    if goes_on(run):
+        source = first_of(run, run.counts.ahead)
+    else:
+        add_new(run)
+        source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.row)
+    if source != NOTHING:
+        pass_to(run, source)
+    return source
+
+
+@kernel
+def end_trip(run: Run) -> None:
+    """Close a round trip, and go to the next one in which something happens. Nothing ever will: the contact is locked."""
+    add_new(run)
+    whole = join(run.node, run.heights, run.par.ramp, run.counts.behind, run.counts.ahead)
+    trip = run.counts.row + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
+    settled = run.par.ramp == 0.0 and run.counts.moved == 0
+    run.counts.is_locked = 1 if trip == FOREVER or settled else 0
+    run.counts.row = trip
+    run.counts.ahead, run.counts.behind = whole, NOTHING
+    run.state.new_since = run.state.taken_to = 0.0
+    run.counts.moved = 0
+
+
+@kernel
+def pays(run: Run) -> bool:
+    """Whether to meet only what breaks from here on: the round trip was at rest, or, if it had many pieces, almost."""
+    if run.par.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
+        return False
+    if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != at.NEVER:
+        return False
+    slipping, pieces = 0, run.counts.length - run.counts.row_from
+    for n in range(run.counts.row_from, run.counts.length):
+        slipping += 1 if run.whole[WHOLE * n + at.S_MODE] != 0 else 0
+    return slipping == 0 or (pieces >= MANY and slipping <= pieces // (MANY // 4))
+
+
+@kernel
+def plant(run: Run) -> None:
+    """From here on only echoes that break are met: those of the round trip just past are the first."""
+    run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
+    run.counts.behind = run.counts.ahead = NOTHING
+    end_trip(run)
+
+
+@kernel
+def replant(table: Integers, pieces: Integers, past: int) -> None:
+    """The trees again: of these pieces, in order of phase; the first `past` of them lie before the round trip's place."""
+    run = borrow(table)
+    run.counts.behind = NOTHING
+    for k in range(past, len(pieces)):
+        add(run, pieces[k])
+    run.counts.ahead, run.counts.behind = run.counts.behind, NOTHING
+    for k in range(past):
+        add(run, pieces[k])

@@ -1,0 +1,42 @@
+"""What a run does where nothing else is said: it leaps over creep, and lumps short events, where following each is hopeless.
+
+The engine counts what decides, so that a single run, one that is taken up again and a member of a batch decide alike. Until then
+a run is the same, bit for bit, as one that does neither.
+"""
+
+from __future__ import annotations
+
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts, Params
+from stickslip.engine_input.creep_limits import PATIENCE, missing_but_pull
+from stickslip.engine_input.lumping_limits import AUTOMATIC_SHARE, MOST_PIECES, lumps_by_itself
+from stickslip.problem.problem import Problem
+
+
+def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
+    """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
+    if creep_rtol is None and not missing_but_pull(problem):
+        count.creep_in = PATIENCE
+
+
+def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None:
+    """Set the counts at t = 0 that say when short pieces are lumped: from the start, later, or never."""
+    lumps = shortest is not None and shortest > 0.0
+    count.lumps, count.lumped_since = lumps, 0 if lumps else at.NEVER
+    count.lump_above = MOST_PIECES if shortest is None and lumps_by_itself(problem) else at.NEVER
+
+
+def set_length(par: Params, shortest: float | None) -> None:
+    """Set the length of the pieces that are lumped, in `Setup.par` or in one with a column a member."""
+    par.shortest = AUTOMATIC_SHARE * par.row_time if shortest is None else shortest
+
+
+def lumping_note(count: Counts, par: Params, shortest: float | None) -> str:
+    """Return one line on automatic lumping in a run; empty where it did not begin."""
+    if shortest is not None or count.lumps == 0:
+        return ""
+    since = count.lumped_since * par.row_time
+    return (
+        f"events shorter than {par.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
+        f" {MOST_PIECES} pieces: what comes after is right on average only (shortest_event = 0 resolves every event)"
+    )

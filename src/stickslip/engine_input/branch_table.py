@@ -1,0 +1,228 @@
+"""Branches of a massless contact, for the engine: once for a law of slip rate, again and again for a law of slip and slip rate.
+
+Where friction depends on both, folds and the levels of the selection rule move with slip. The slip rate is followed by its series;
+the branches at a slip are worked out only where a choice is due. A rule other than perfect delay is looked at after every step:
+a built-in one in compiled code (`moving_levels`), a user's own by its table, which is Python and costs milliseconds a step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.contact.branches import scan_rates
+from stickslip.contact.equation import resistance
+from stickslip.contact.rules.selection import selection_table
+from stickslip.engine.loop import advance
+from stickslip.engine.moving_folds.branch_scan import new_branches
+from stickslip.engine.moving_folds.moving_levels import (
+    COMPILED_RULES,
+    EXACT,
+    FIRST_PLACE,
+    LAST_PLACE,
+    MAXWELL,
+    NEXT,
+    ROUNDING,
+    SHORTEST,
+    crossing_in,
+    set_maxwell_levels,
+)
+from stickslip.engine.series.polynomial import RECIPROCAL
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, State, Store
+from stickslip.friction.formula.differences import difference
+from stickslip.problem.problem import Problem
+
+OUT_OF_BUDGET = -1
+"""What `advance` returns when it has made as many steps as it was asked for."""
+AT_A_TIME = 100
+"""Steps looked at before the caller may say how far the run is."""
+STORM_OF, STORM_IN = 30, 1e-6
+"""So many crossings within this share of a round trip are a storm."""
+
+
+def has_inertia(problem: Problem) -> bool:
+    """Whether the contact itself has mass, so that its slip rate cannot jump."""
+    return not isinstance(problem.body, ElasticSlab) or problem.body.contact_mass > 0.0
+
+
+def is_algebraic(problem: Problem) -> bool:
+    """Whether the slip rate is a root of the contact equation, on one of its branches.
+
+    That is so for a massless contact under a law of rate that has no state of its own.
+    """
+    return not has_inertia(problem) and problem.friction.depends_on_rate and problem.friction.state is None
+
+
+def folds_move(problem: Problem) -> bool:
+    """Whether these branches change with slip."""
+    return is_algebraic(problem) and problem.friction.depends_on_slip
+
+
+def branch_rows(problem: Problem, law_slip: float) -> tuple[Floats, float]:
+    """Rows of `Setup.branch` at a law slip (m, minus the initial one), and the load minus strength (Pa) at which stick is left.
+
+    One branch, kept for ever, where the solution is unique.
+    """
+    if not is_algebraic(problem):
+        return np.array([[0.0], [math.inf], [-math.inf], [math.inf], [-math.inf], [math.inf]]), 0.0
+    branches, table = selection_table(problem, problem.law_slip + law_slip)
+    rates = [[getattr(branch, name) for branch in branches] for name in ("rate_from", "rate_to")]
+    ends = [[getattr(branch, name) for branch in branches] for name in ("excess_from", "excess_to")]
+    loads = np.array([table.keep_from, table.keep_to, *ends]) + strength_change(problem, law_slip)
+    return np.array([*rates, *loads]), table.stick_to
+
+
+def strength_change(problem: Problem, law_slip: float) -> float:
+    """Static strength (Pa) at a law slip (m, minus the initial one), minus that at the start, to rounding of the difference."""
+    law, start = problem.friction, problem.law_slip
+    home = int(law.piece_at(start))
+    if law.knot_variable == "slip" and int(law.piece_at(start + law_slip)) != home:
+        return problem.normal * float(law.static_coefficient(start + law_slip) - law.static_coefficient(start))
+    return problem.normal * float(difference(law.trees()[home], law.numbers(home), start, law_slip, 0.0)[0])
+
+
+def branch_of(rows: Floats, rate: float) -> int:
+    """The branch to which a slip rate (m/s) belongs: the nearest one, for at a fold it may lie outside by rounding."""
+    return int(np.argmin(np.maximum(np.maximum(rows[at.RATE_FROM] - rate, rate - rows[at.RATE_TO]), 0.0)))
+
+
+def has_levels_to_set(problem: Problem) -> bool:
+    """Whether compiled code sets the levels of the rule: those of Maxwell's take Python tenths of a second."""
+    return COMPILED_RULES.get(problem.rule) == MAXWELL
+
+
+def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
+    """The setup with the branches at the present law slip; the other arguments take note of it.
+
+    Under Maxwell's rule its levels are still to be set (`RuleFollower.set_levels`).
+    """
+    case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
+    rows, par.stick_to = branch_rows(case, float(state.law_slip))
+    count.branch = branch_of(rows, abs(float(state.rate_now)))
+    state.table_slip = state.law_slip
+    return setup._replace(branch=rows)
+
+
+@dataclass(frozen=True)
+class Step:
+    """The last step in a history, with the rule's levels along it: xi runs over it from 0 to 1."""
+
+    problem: Problem
+    store: Store
+    row: int
+
+    @property
+    def direction(self) -> int:
+        """+1 for slip forwards, -1 backwards, 0 at rest."""
+        return int(self.store.mode[self.row])
+
+    def law_slip(self, xi: float) -> float:
+        """Law slip (m), minus the initial one."""
+        rate, powers = self.store.rate[self.row], xi ** np.arange(1, at.TERMS + 1)
+        straight = self.store.speed[self.row] * (RECIPROCAL[1 : at.TERMS + 1] * rate * powers).sum()
+        bent = 2.0 * self.store.bend[self.row] * xi * (RECIPROCAL[2 : at.TERMS + 2] * rate * powers).sum()
+        grown = float(straight + bent)
+        return float(self.store.law_slip[self.row]) + (grown if self.problem.friction.counts == "net" else self.direction * grown)
+
+    def room(self, xi: float) -> float:
+        """How far (Pa) the load is inside the interval for which the rule keeps the branch; negative outside."""
+        rows, _ = branch_rows(self.problem, self.law_slip(xi))
+        powers = xi ** np.arange(at.TERMS)
+        rate, load = abs(float(self.store.rate[self.row] @ powers)), float(self.store.load[self.row] @ powers)
+        seen = load if self.direction > 0 else -load - 2.0 * self.problem.strength
+        branch = branch_of(rows, rate)
+        return min(seen - float(rows[at.KEEP_FROM, branch]), float(rows[at.KEEP_TO, branch]) - seen)
+
+    def crossing(self) -> float | None:
+        """Where the load first leaves that interval; None if it stays in it."""
+        before, slack = 0.0, ROUNDING * self.problem.strength
+        for place in (FIRST_PLACE, LAST_PLACE):
+            if self.room(place) < -slack:
+                starts_outside = self.room(before) <= slack and self.room(before + NEXT * (place - before)) <= 0.0
+                return before if starts_outside else root_between(self.room, before, place, EXACT * self.problem.strength)
+            before = place
+        return None
+
+
+def root_between(room: Callable[[float], float], low: float, high: float, slack: float) -> float:
+    """Where a function, not negative at low and negative at high, falls through zero: false position, kept from standing still.
+
+    Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
+    """
+    above, below, side, x = max(room(low), slack), room(high), 0, high
+    for _ in range(100):
+        x = (low * below - high * above) / (below - above)
+        value = room(x)
+        if abs(value) <= slack or high - low < SHORTEST:
+            break
+        if value > 0.0:
+            low, above = x, value
+            below *= 0.5 if side > 0 else 1.0
+        else:
+            high, below = x, value
+            above *= 0.5 if side < 0 else 1.0
+        side = 1 if value > 0.0 else -1
+    return x
+
+
+@dataclass
+class RuleFollower:
+    """Runs the engine; step by step for a rule whose levels move: a step over a level is taken back, and made again up to it."""
+
+    problem: Problem
+    row_time: float
+    state: State
+    count: Counts
+    times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
+
+    def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
+        """As `loop.advance`. at.STORM where the contact goes to and fro across a level, which slip moves against the load."""
+        if not folds_move(self.problem) or self.problem.rule == "perfect-delay":
+            return advance(table, *last, budget)
+        for _ in range(min(budget, AT_A_TIME)):
+            state, count = self.state.copy(), self.count.copy()
+            code = advance(table, *last, 1)
+            place = self._crossing(table, store, int(count.length))
+            if place is not None:
+                state.exit = state.xi + place * (self.state.xi - state.xi)
+                self.state.numbers[:], self.count.numbers[:] = state.numbers, count.numbers
+                if self._storms():
+                    return at.STORM
+            elif code != OUT_OF_BUDGET:
+                return code
+        return OUT_OF_BUDGET
+
+    def set_levels(self, table: Integers) -> None:
+        """Put what `renewed` has left out into the setup that is lent."""
+        if has_levels_to_set(self.problem):
+            set_maxwell_levels(table, *self._scan)
+
+    def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
+        """Where a step in slip that has just been made crosses a level of the rule."""
+        stepped = self.count.length > length and store.mode[length] != 0 and self.count.leaving == 0
+        if not stepped:
+            return None
+        if self.problem.rule not in COMPILED_RULES:
+            return Step(self.problem, store, length).crossing()
+        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], *self._scan)
+        return place if place <= 1.0 else None
+
+    @cached_property
+    def _scan(self) -> tuple[Floats, Floats]:
+        """Slip rates (m/s) at which compiled code looks for branches, and room for what it finds."""
+        rates = scan_rates(resistance(self.problem))
+        return rates, new_branches(rates)
+
+    def _storms(self) -> bool:
+        """Note the time of a crossing: whether many have come with hardly any time between them."""
+        whole, theta = float(self.count.row), float(self.state.theta_from)
+        xi = float(self.state.exit)
+        self.times.append(whole * self.row_time + theta + xi * (self.state.speed + xi * self.state.bend))
+        return len(self.times) == STORM_OF and self.times[-1] - self.times[0] <= STORM_IN * self.row_time

@@ -1,0 +1,184 @@
+"""What the driver sends, as the load at the contact has it: for tables and observables; `varying_forcing` is the engine's own way.
+
+A slab's load is beta(t) = r w(t - R) + F(t), with the inflow F(t) = 2 Z [Zd V + s] / (Z + Zd) at t - h/c, 2 Z V(t - h/c) for a
+rigid driver, less (1 + r) times the reference strength, as all loads are differences. A block's grows by K V(t) in a second.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.bodies import ElasticSlab
+from stickslip.engine.waves.varying_forcing import dirichlet
+from stickslip.loading import LoadingHistory, Segment, Tone
+from stickslip.loading.contract import SILENT
+from stickslip.problem.problem import Problem
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Inflow:
+    """Straight segments, each from the time on (s) at which it arrives, and a tone. Slab: Pa; block: N/s."""
+
+    start: Floats
+    value: Floats
+    slope: Floats
+    tone: Tone
+    row_time: float
+    is_block: bool
+    is_rigid: bool
+
+    def at(self, time: Floats) -> Floats:
+        """F at times (s since the start of the run); behind a jump."""
+        n = self.segment(time)
+        straight = self.value[n] + self.slope[n] * (time - self.start[n])
+        return straight if self.tone is SILENT else np.asarray(straight + self._swing(time))
+
+    def total(self, low: Floats, high: Floats) -> Floats:
+        """Integral of F between times (s)."""
+        first, last, middle = self.segment(low), self.segment(high), 0.5 * (low + high)
+        inside = (high - low) * (self.value[first] + self.slope[first] * (middle - self.start[first]))
+        straight = np.where(first == last, inside, self._up_to(last, high) - self._up_to(first, low))
+        if self.tone is SILENT:
+            return straight
+        frequency = self.tone.frequency
+        return np.asarray(straight + 2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(middle))
+
+    def gathered(self, row: Floats, offset: Floats, rows: Floats) -> Floats:
+        """By how much a load at rest has grown so many whole rows later; nothing changes in the rows between but the tone.
+
+        On a slab that is the sum of F over these rows: so many times its mean, and Dirichlet's kernel for the tone.
+        """
+        time = row * self.row_time + offset
+        if self.is_block:
+            return self.total(time, time + rows * self.row_time)
+        if not self.is_rigid:
+            return np.zeros(len(rows))
+        n = self.segment((row + 1.0) * self.row_time)
+        middle = time + 0.5 * (rows + 1.0) * self.row_time
+        straight = rows * (self.value[n] + self.slope[n] * (middle - self.start[n]))
+        if self.tone is SILENT:
+            return np.asarray(straight)
+        return np.asarray(straight + self._summed(rows) * self._swing(middle))
+
+    def breaks(self) -> list[tuple[int, float]]:
+        """Rows and offsets (s) at which segments begin; the edges of rows are offset 0 of the later one."""
+        rows = np.floor(self.start / self.row_time)
+        offsets = self.start - rows * self.row_time
+        late, early = offsets > (1.0 - EDGE) * self.row_time, offsets < EDGE * self.row_time
+        offsets[late | early] = 0.0
+        return list(zip((rows + late).astype(int).tolist(), offsets.tolist(), strict=True))
+
+    def edges(self, low: float, high: float) -> Floats:
+        """Times (s) between two others at which segments arrive, and which part a tone where it turns by 1 rad."""
+        turns = math.floor((high - low) * self.tone.frequency) if self.tone.amplitude != 0.0 else 0
+        inside = self.start[(self.start > low) & (self.start < high)]
+        return np.unique(np.concatenate([inside, np.linspace(low, high, turns + 2)[1:-1]])) if turns else inside
+
+    def segment(self, time: Floats) -> NDArray[np.intp]:
+        """Which segment has arrived at times (s)."""
+        return np.maximum(np.searchsorted(self.start, time, side="right") - 1, 0)
+
+    def _up_to(self, n: NDArray[np.intp], time: Floats) -> Floats:
+        lasting = np.diff(self.start)
+        whole = np.append(0.0, np.cumsum(lasting * (self.value[:-1] + 0.5 * self.slope[:-1] * lasting)))
+        since = time - self.start[n]
+        return np.asarray(whole[n] + since * (self.value[n] + 0.5 * self.slope[n] * since))
+
+    def _summed(self, rows: Floats) -> Floats:
+        """By how much the tones of so many rows are larger than that at their mean time."""
+        return np.array([dirichlet(count, self.tone.frequency * self.row_time) for count in rows.tolist()])
+
+    def _swing(self, time: Floats) -> Floats:
+        return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))
+
+
+DAY = 86_400.0
+LONGEST_ROW = 1e6
+"""Periods of a block in a row of its history (1), at most."""
+
+
+def row_time(problem: Problem) -> float:
+    """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation.
+
+    A block that never sticks may creep for years, over which no row can leap: its row lasts a day, but no longer than the period
+    of a tone in its loading, nor than LONGEST_ROW of its own periods, which times in a row would no longer resolve.
+    """
+    body = problem.body
+    if isinstance(body, ElasticSlab):
+        return body.two_way_time
+    if problem.friction.sticks:
+        return body.period
+    tone = problem.pull_rate.tone if isinstance(problem.pull_rate, LoadingHistory) else SILENT
+    swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
+    return max(body.period, min(DAY, LONGEST_ROW * body.period, swing))
+
+
+EDGE = 1e-13
+"""Breaks nearer to the edge of a row, as a share of it, lie on it."""
+
+
+def steady_inflow(problem: Problem) -> tuple[float, float]:
+    """The inflow of a loading that does not vary: value at 0 s and what it gains in a second. Slab: Pa; block: N/s."""
+    body = problem.body
+    if not isinstance(body, ElasticSlab):
+        return body.stiffness * problem.first_pull_rate, 0.0
+    if body.is_driven_rigidly:
+        return 2.0 * body.impedance * problem.first_pull_rate, 0.0
+    gain, far = 1.0 + body.reflection, problem.far_stress
+    assert not isinstance(far, LoadingHistory)
+    excess = problem.excess if far is None else far - problem.strength
+    growth, delay = problem.far_stress_rate, 0.5 * body.two_way_time
+    return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
+
+
+@lru_cache(maxsize=64)
+def inflow_of(problem: Problem) -> Inflow:
+    """The inflow of a problem."""
+    body = problem.body
+    if not problem.varies:
+        value, slope = steady_inflow(problem)
+        return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
+    if not isinstance(body, ElasticSlab):
+        return _inflow(*_scaled(problem.pull_rate, body.stiffness), 0.0, problem)
+    delay = 0.5 * body.two_way_time
+    if body.reflection == -1.0:
+        return _inflow(*_scaled(problem.pull_rate, 2.0 * body.impedance), delay, problem)
+    return _inflow(*_lossy(problem, body), delay, problem)
+
+
+def _lossy(problem: Problem, body: ElasticSlab) -> tuple[list[Segment], Tone]:
+    """Far stress and pull rate together, one of which varies, as they leave a driver of finite impedance."""
+    gain, far = 1.0 + body.reflection, problem.far_stress
+    if isinstance(far, LoadingHistory):
+        segments, tone = _scaled(far, gain)
+        steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)
+    else:
+        segments, tone = _scaled(problem.pull_rate, gain * body.driver_impedance)
+        steady = gain * (problem.excess if far is None else far - problem.strength)
+    growth = gain * problem.far_stress_rate
+    return [Segment(s.start, s.value + steady + growth * s.start, s.slope + growth) for s in segments], tone
+
+
+def _scaled(history: float | LoadingHistory, gain: float) -> tuple[list[Segment], Tone]:
+    assert isinstance(history, LoadingHistory)
+    amplitude, frequency, phase = history.tone
+    tone = Tone(gain * amplitude, frequency, phase) if amplitude != 0.0 else SILENT
+    return [Segment(s.start, gain * s.value, gain * s.slope) for s in history.segments], tone
+
+
+def _inflow(segments: list[Segment], tone: Tone, delay: float, problem: Problem) -> Inflow:
+    """As it arrives. The first segment is carried on to 0 s: before its delay is over nothing of it is asked for."""
+    body = problem.body
+    start, value, slope = np.array(segments).T
+    start = start + delay
+    value[0], start[0] = value[0] - slope[0] * delay, 0.0
+    late = tone if tone is SILENT else Tone(tone.amplitude, tone.frequency, tone.phase - tone.frequency * delay)
+    is_rigid = isinstance(body, ElasticSlab) and body.reflection == -1.0
+    return Inflow(start, value, slope, late, row_time(problem), not isinstance(body, ElasticSlab), is_rigid)

@@ -1,0 +1,220 @@
+"""From a problem to the numbers that the compiled engine works on."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.contact.rules.selection import rule_of
+from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts, Params, Setup, State
+from stickslip.engine_input.automatic import set_length, set_lumping
+from stickslip.engine_input.branch_table import branch_rows, folds_move, has_inertia, is_algebraic
+from stickslip.engine_input.forcing import inflow_of, row_time, steady_inflow
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SelectionRule
+
+
+def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, State, Counts]:
+    """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
+
+    Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
+    """
+    setup, state, count = _prepared(problem, rule_of(problem))
+    par = setup.par.copy()
+    set_tolerance(par, rtol, shortest)
+    count = count.copy()
+    set_lumping(count, problem, shortest)
+    return setup._replace(par=par), state.copy(), count
+
+
+def set_tolerance(par: Params, rtol: Any, shortest: float | None) -> None:
+    """What the tolerance says in `Setup.par`, or in one with a column a member."""
+    set_length(par, shortest)
+    par.tolerance, par.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
+
+
+@lru_cache(maxsize=256)
+def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # the rule of a name may change
+    par = parameters_of(problem)
+    branches, par.stick_to = branch_rows(problem, 0.0)
+    first = first_load_varying(problem) if problem.varies else first_load(problem)
+    setup = Setup(par, *_formulas(problem), branches, first, loading_of(problem))
+    for shared in (par.numbers, *setup[1:]):
+        shared.flags.writeable = False
+    return setup, *start_of(problem)
+
+
+def parameters_of(problem: Problem) -> Params:
+    """`Setup.par` but for what the tolerance says; with a column a member where any of the problem's numbers is an array."""
+    body, law = problem.body, problem.friction
+    par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
+    par.row_time = row_time(problem)
+    par.normal = problem.normal
+    par.reference = problem.strength
+    par.counts_net = 1.0 if law.counts == "net" else 0.0
+    par.static_excess = law.static_excess
+    par.state_scale = law.state.scale if law.state else 0.0
+    par.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
+    par.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
+    lowest, _ = law.range()
+    par.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
+    if isinstance(body, ElasticSlab):
+        par.impedance, par.inertia, par.reflection = body.impedance, body.contact_mass, body.reflection
+        par.smallest_jump = 1e-14 * problem.normal / body.impedance
+    else:
+        par.impedance, par.inertia, par.stiffness = body.damping, body.mass, body.stiffness
+    if problem.varies:
+        par.tone, par.tone_frequency, par.tone_phase = inflow_of(problem).tone
+    elif not isinstance(body, ElasticSlab):
+        par.ramp = body.stiffness * problem.first_pull_rate * row_time(problem)
+    else:
+        par.inflow, par.inflow_rate = steady_inflow(problem)
+        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
+    return Params(together([getattr(par, name) for name in Params.places]))
+
+
+def together(numbers: Sequence[Any]) -> at.Floats:
+    """One table of numbers; with a column a member where any of them is an array."""
+    if any(np.ndim(number) for number in numbers):
+        return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
+    return np.array(numbers, float)
+
+
+SMALLEST, SLOWEST = 1e-300, 1e-12
+"""Slip rates that are resolved to the last digit: down to nothing where slip begins from rest, to a share of the law's own scale
+where friction has no rest."""
+SAFETY = 0.1
+"""Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
+
+
+def first_load(problem: Problem) -> at.Floats:
+    """The load of the first round trip (minus the reference), linear between its breaking points."""
+    body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
+    if not isinstance(body, ElasticSlab):
+        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
+    slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
+    if body.is_driven_rigidly:
+        return _pieces([0.0, body.two_way_time], [excess], [slope])
+    r, half = body.reflection, 0.5 * body.two_way_time
+    steady, rate = steady_inflow(problem)
+    # for h/c <= t < R the start comes back: w(t - R) = G V (R - t) / h - tau0
+    reflected = steady + rate * half + r * (slope * half - excess)
+    before = excess + slope * half
+    jump = abs(reflected - before) > 1e-12 * np.maximum(abs(problem.strength), abs(before))
+    return _pieces([0.0, half, 2.0 * half], [excess, np.where(jump, reflected, before)], [slope, rate - r * slope], [0.0, jump])
+
+
+def first_load_varying(problem: Problem) -> at.Floats:
+    """The same without what a loading that varies adds to it, in parts so short that a tone in it is a polynomial to rounding."""
+    body, excess = problem.body, problem.excess
+    if not isinstance(body, ElasticSlab):
+        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [0.0]))
+    r, half = body.reflection, 0.5 * body.two_way_time
+    slope = body.impedance * problem.first_pull_rate / half
+    before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
+    jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
+    return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0.0, jump]))
+
+
+def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
+    """The same in shorter pieces, in which a tone turns by at most LARGEST_TURN."""
+    theta, tone = pieces[0], inflow_of(problem).tone
+    if tone.amplitude == 0.0:
+        return pieces
+    counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
+    if counts.sum() > MOST_PARTS:
+        period = 2.0 * math.pi / tone.frequency
+        raise InputError(
+            f"the loading's period of {period:g} s is too short: at least {theta[-1] / MOST_PARTS * 16:.3g} s is needed"
+        )
+    edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(theta[:-1], theta[1:], counts, strict=True)]
+    of = np.repeat(np.arange(len(counts)), counts)
+    begin = np.concatenate(edges)
+    load = pieces[1][of] + pieces[2][of] * (begin - theta[of])
+    jump = np.where(begin == theta[of], pieces[3][of], 0.0)
+    return np.array([[*begin, theta[-1]], [*load, 0.0], [*pieces[2][of], 0.0], [*jump, 0.0]])
+
+
+NOT_VARYING = np.zeros((5, 1))
+LARGEST_TURN, MOST_PARTS = 1.0, 100_000
+"""Phase (rad) in which a sine's Taylor series is right to rounding; parts of a round trip."""
+
+
+def loading_of(problem: Problem) -> at.Floats:
+    """Rows of `Setup.loading`: the segments of the inflow by where they arrive; none of a loading that does not vary."""
+    if not problem.varies:
+        return NOT_VARYING
+    inflow = inflow_of(problem)
+    row, offset = zip(*inflow.breaks(), strict=True)
+    ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)
+    jump = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))
+    return np.array([row, offset, inflow.value, inflow.slope, [0.0, *jump]])
+
+
+def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
+    table = together([*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
+    return table.reshape(4, len(theta), *table.shape[1:])
+
+
+def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
+    """Addresses of the functions and constants of the law's pieces; shifts and offsets to their own references, and knots."""
+    law, start = problem.friction, problem.law_slip
+    change = law.state_tree() if law.state else None
+    formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
+    home = int(law.piece_at(start))
+    # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
+    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
+    references = near if law.knot_variable == "slip" else [start] * len(formulas)
+    constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
+    for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):
+        _fill(formula, np.array(law.piece_values(i)), references[i], row)
+    static = float(law.static_coefficient(start))
+    at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
+    offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
+    address = np.array([addresses_of(formula, problem) for formula in formulas], np.int64).T.copy()
+    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
+    return address, constants, np.array([[start - reference for reference in references], offsets, knots])
+
+
+def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int, int, int]:
+    """Return what `Setup.address` holds of a formula: a law with a state is only ever stepped implicitly."""
+    stepped_implicitly = problem.friction.state is not None or has_inertia(problem)
+    guards = formula.guards if formula.guard_count and stepped_implicitly else 0
+    if problem.friction.state:
+        return 0, 0, formula.state_value, guards, formula.guard_count
+    jet = formula.motion_jet if has_inertia(problem) else formula.rate_jet
+    return formula.value, jet, 0, guards, formula.guard_count
+
+
+def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at.Floats) -> None:
+    double = ctypes.POINTER(ctypes.c_double)
+    formula.prepare(values.ctypes.data_as(double), reference, row.ctypes.data_as(double))
+
+
+def start_of(problem: Problem) -> tuple[State, Counts]:
+    """State and counts at t = 0: at rest, the load not yet met."""
+    state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
+    state.last_step = math.inf
+    count.piece = int(problem.friction.piece_at(problem.law_slip))
+    count.varies = problem.varies
+    count.is_block = not isinstance(problem.body, ElasticSlab)
+    count.has_inertia = has_inertia(problem)
+    count.is_algebraic = is_algebraic(problem)
+    count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
+    state.state_now = problem.state
+    if not problem.friction.sticks:
+        count.mode = 1 if problem.load >= 0.0 else -1
+    count.pause_at = count.lumped_since = count.lump_above = at.NEVER
+    count.folds_move = folds_move(problem)
+    count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
+    return state, count

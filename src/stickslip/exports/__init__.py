@@ -1,1 +1,0 @@
-"""Time series of a run in the formats of seismologists and rupture modellers."""

@@ -1,0 +1,1 @@
+"""Figures of the contact: laws, resistance, regimes."""

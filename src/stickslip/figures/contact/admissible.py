@@ -1,0 +1,151 @@
+"""The admissible set K of any problem: its branches by stability, the jumps of its selection rule, and a run's path over them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILLION, letter, panels, quantity, styled
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.solution.solution import Solution
+
+Height = Callable[..., Any]
+"""From an excess (Pa), and the direction of slip, to where its load is drawn."""
+
+_POINTS = 1201
+_ROOM = 1.25
+"""How far the curve goes beyond the fastest rate of interest."""
+_TINY = 1e-3
+"""Range of loads, as a share of the strength, below which loads are drawn as differences from it."""
+
+
+def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
+    """The set K for slip forwards at the start of a problem, and the path of a run in it: loads as excess over the strength (Pa).
+
+    A law of slip moves the set as it slips: the path of a run under one leaves the set of the start.
+    Raises InputError for a block or a contact mass: inertia makes the slip rate a state, and there is no such set.
+    """
+    contact = uniqueness(problem)
+    g = contact.resistance
+    if g is None:
+        raise InputError("figure of the set K: inertia makes the slip rate a state, there is no set of solutions to draw")
+    path = _path(solution, g.strength)
+    ends = [rate for b in contact.branches for rate in (b.rate_from, b.rate_to) if np.isfinite(rate)]
+    rates = np.union1d(np.linspace(0.0, _fastest(contact, path["path_slip_rate"].values), _POINTS), ends)
+    inside = [(b.rate_from <= rates) & (rates <= b.rate_to) for b in contact.branches]
+    flat = [(p.rate_from <= rates) & (rates <= p.rate_to) for p in contact.plateaus]
+    kind = np.where(np.any(inside, axis=0), 1, -1)
+    kind = np.where(np.any(flat, axis=0), 0, kind) if flat else kind
+    jumps = np.array([(j.rate_before, j.rate_after, j.load - g.strength) for j in contact.jumps]).reshape(-1, 3)
+    contents = {
+        "excess": quantity("slip_rate", g.excess(rates), "load minus static strength", r"\beta - S\mu_s", "Pa"),
+        "kind": xr.Variable("slip_rate", kind, {"long_name": "1 stable, -1 unstable, 0 continuum"}),
+        "strength": quantity((), g.strength, "static strength", r"S\mu_s", "Pa"),
+        "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
+    }
+    place = f" at a slip of {g.law_slip:.6g} m" if problem.friction.depends_on_slip else ""
+    coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s")}
+    title = f"Set K: {type(problem.friction).kind} friction{place}, {contact.regime}"
+    attributes = {"title": title, "rule": contact.rule}
+    return xr.Dataset(contents | path, coords=coordinates, attrs=attributes)
+
+
+def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
+    rate = load = np.zeros(0)
+    if solution is not None:
+        (_, rate), (_, load) = solution.curve("slip_rate"), solution.curve("load")
+    return {
+        "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", "m/s"),
+        "path_excess": quantity("path", load - strength, "load of the run minus static strength", r"\beta - S\mu_s", "Pa"),
+    }
+
+
+def _fastest(contact: Uniqueness, path: NDArray[np.float64]) -> float:
+    """The end of the axis of slip rates: beyond every fold and jump, and the run."""
+    rates = [fold.rate for fold in contact.folds]
+    rates += [rate for jump in contact.jumps for rate in (jump.rate_before, jump.rate_after)]
+    found = max([*rates, *np.abs(path).tolist()], default=0.0)
+    assert contact.resistance is not None
+    return _ROOM * found if found > 0.0 else 0.25 * contact.resistance.strength / contact.resistance.impedance
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """The set in the plane of slip rate and load; mirrored as well where the run slips backwards."""
+    figure, grid = panels(1, 1, (5.4, 4.2))
+    axes = grid[0, 0]
+    strength = float(dataset["strength"])
+    low, high = _range(dataset)
+    near = high - low < _TINY * strength
+    scale, origin = (1.0, strength) if near else (1e-6, 0.0)
+
+    def height(excess: Any, sign: int = 1) -> Any:
+        """Where the load strength + excess is drawn; near the strength no digit is lost."""
+        return scale * (sign * np.asarray(excess) + (sign * strength - origin))
+
+    backwards = bool((dataset["path_slip_rate"].values < 0.0).any())
+    for sign in (1, -1) if backwards else (1,):
+        _draw_set(axes, dataset, sign, height)
+    _draw_jumps(axes, dataset, height)
+    _draw_path(axes, dataset, height)
+    fastest = float(dataset["slip_rate"][-1])
+    axes.set(
+        xlabel="slip rate $v$ (m/s)",
+        ylabel=r"load $\beta$ minus static strength (Pa)" if near else r"load $\beta$ (MPa)",
+        xlim=(-fastest if backwards else -0.04 * fastest, fastest),
+        ylim=(float(height(low)), float(height(high))),
+    )
+    axes.legend(loc="best")
+    letter(axes, dataset.attrs["title"])
+    return figure
+
+
+def _range(dataset: xr.Dataset) -> tuple[float, float]:
+    """Loads of interest, as excess: the curve, the end of stick, and the run, with some room."""
+    inside = np.concatenate((dataset["excess"].values, [0.0], dataset["path_excess"].values))
+    room = 0.08 * float(np.ptp(inside)) or 1.0
+    return float(inside.min()) - room, float(inside.max()) + room
+
+
+def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> None:
+    """Stick (vertical), stable, unstable and flat parts of the curve; for sign -1 mirrored."""
+    rate, excess, kind = (dataset[name].values for name in ("slip_rate", "excess", "kind"))
+    stick = height(np.array([-float(dataset["strength"]), 0.0]), sign)
+    axes.plot([0.0, 0.0], stick, color=GREY, linewidth=3.0, label="stick" if sign > 0 else None)
+    shown = ((1, "slip, stable", BLUE, "-"), (-1, "slip, unstable", VERMILLION, "--"), (0, "slip, continuum", PURPLE, "-"))
+    for which, name, colour, style in shown:
+        chosen = kind == which
+        if not chosen.any():
+            continue
+        if which != 1:  # over to the first point of the neighbour, so that the curve has no gap
+            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
+        values = np.where(chosen, height(excess, sign), np.nan)
+        axes.plot(sign * rate, values, color=colour, linewidth=3.0, linestyle=style, label=name if sign > 0 else None)
+
+
+def _draw_jumps(axes: Axes, dataset: xr.Dataset, height: Height) -> None:
+    arrow = {"arrowstyle": "-|>", "color": GREEN, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+    for k, (before, after, excess) in enumerate(dataset["jump"].values.tolist()):
+        level = float(height(excess))
+        axes.annotate("", (after, level), (before, level), arrowprops=arrow)
+        if k == 0:
+            axes.plot([], [], color=GREEN, linewidth=1.2, label=f"jump, {dataset.attrs['rule']}")
+
+
+def _draw_path(axes: Axes, dataset: xr.Dataset, height: Height) -> None:
+    rate, load = dataset["path_slip_rate"].values, height(dataset["path_excess"].values)
+    if not rate.size:
+        return
+    axes.plot(rate, load, color=INK, linewidth=1.0, label="run", zorder=4)
+    for i, marker, name in ((0, "o", "its start"), (-1, "s", "its end")):
+        axes.plot(rate[i], load[i], marker, color=INK, markersize=4.5, zorder=5, label=name, linestyle="")

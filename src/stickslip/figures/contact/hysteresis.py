@@ -1,0 +1,104 @@
+"""Figure 4: the rule of perfect delay, walked by an actual run whose load rises and then falls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.figures.contact import resistance
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, quantity, shown, styled, zero_line
+
+if TYPE_CHECKING:
+    from stickslip.solution.solution import Solution
+
+CASE = "loop"
+
+
+def data(solution: Solution) -> xr.Dataset:
+    """The run in the plane of slip rate and load, and in time; with the set K that it walks. Its load must rise, then fall."""
+    time, rate = solution.curve("slip_rate")
+    _, load = solution.curve("load")
+    turn = int(np.argmax(load))
+    background = resistance.data({CASE: solution.problem}, float(rate.max()))
+    run = {
+        "run_time": quantity("run_time", time, "time", "t", "s"),
+        "run_slip_rate": quantity("run_time", rate, "slip rate", "v", "m/s"),
+        "run_load": quantity("run_time", load, "load", r"\beta", "Pa"),
+        "run_turn": xr.Variable((), turn, {"long_name": "index at which the load turns from rising to falling"}),
+    }
+    return background.assign(run).assign_attrs(title="The rule of perfect delay")
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """The loop on the left, the same run against time on the right."""
+    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    axes: Any = figure.subplot_mosaic([["loop", "load"], ["loop", "rate"]], width_ratios=(1.25, 1))
+    _draw_loop(axes["loop"], dataset)
+    _draw_time(axes["load"], axes["rate"], dataset)
+    figure.align_ylabels([axes["load"], axes["rate"]])
+    letter(axes["loop"], "a   Set K and the paths walked")
+    letter(axes["load"], "b   The run")
+    return figure
+
+
+def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
+    turn = int(dataset["run_turn"])
+    return (slice(None, turn + 1), VERMILLION, "load rises: ODABE"), (slice(turn, None), BLUE, "load falls: EBCDO")
+
+
+def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
+    resistance.draw_set(axes, dataset, CASE, quiet=True)
+    rate, load = shown(dataset["run_slip_rate"]), shown(dataset["run_load"])
+    shift = 0.012 * rate.max()  # the two paths share the branches: drawn side by side, not on top of each other
+    for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
+        x, y = rate[part] + side * shift, load[part] - side * 0.35
+        axes.plot(x, y, color=colour, linewidth=1.8, label=text)
+        _arrows(axes, x, y, colour)
+    axes.set(ylim=(50, 90), xlim=(-0.04 * rate.max(), 1.04 * rate.max()))
+    resistance.draw_points(axes, dataset, CASE, D=(8, 3))
+    axes.annotate("to O", (0, 50), (6, 4), textcoords="offset points", fontsize=9, fontweight="bold")
+    axes.set_ylabel(label(dataset["run_load"]))
+    axes.legend(loc="lower right")
+
+
+def _arrows(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+    """Arrow heads in the middle of the jump and halfway along the slipping and the sticking stretch."""
+    jump = int(np.argmax(np.abs(np.diff(x))))
+    for first, last in ((jump, jump + 1), *_middles(jump, x.size)):
+        axes.annotate(
+            "",
+            _between(x, y, first, last, 0.6),
+            _between(x, y, first, last, 0.4),
+            arrowprops={"arrowstyle": "-|>", "color": colour},
+        )
+
+
+def _middles(jump: int, size: int) -> list[tuple[int, int]]:
+    halves = [(0, jump), (jump + 1, size - 1)]
+    return [(low + 2 * (high - low) // 5, low + 3 * (high - low) // 5) for low, high in halves if high - low > 10]
+
+
+def _between(x: NDArray[np.float64], y: NDArray[np.float64], first: int, last: int, share: float) -> tuple[float, float]:
+    return float(x[first] + share * (x[last] - x[first])), float(y[first] + share * (y[last] - y[first]))
+
+
+def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
+    time = shown(dataset["run_time"])
+    for axes, name in ((top, "run_load"), (bottom, "run_slip_rate")):
+        for part, colour, _ in _parts(dataset):
+            axes.plot(time[part], shown(dataset[name])[part], color=colour)
+        axes.set(ylabel=label(dataset[name]), xlim=(0, time[-1]))
+    for point, left in (("A", 0.0), ("C", 0.25 * time[-1])):
+        level = dataset[f"{CASE}_point_{point}"].values[1] / 1e6
+        top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+        top.annotate(f"fold {point}, {level:.2f} MPa", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
+    zero_line(bottom)
+    top.tick_params(labelbottom=False)
+    bottom.set_xlabel(label(dataset["run_time"]))
+    bottom.sharex(top)

@@ -1,0 +1,108 @@
+"""Figure 3: the admissible set K, every pair of slip rate and load that solves the contact equation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stickslip.contact.branches import branches_of, rate_on
+from stickslip.contact.equation import resistance
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled
+from stickslip.problem.problem import Problem
+
+OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
+"""Where the name of a point stands, in points from it: clear of the curve."""
+
+
+def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
+    """The set K of each problem's contact for v >= 0: slip g(s), stick up to the strength, and the points of Fig. 4."""
+    rates = np.linspace(0.0, largest_rate, 1201)
+    contents: dict[str, xr.Variable] = {}
+    for name, problem in problems.items():
+        g = resistance(problem)
+        contents[f"{name}_resistance"] = quantity("slip_rate", g.strength + g.excess(rates), "load", r"\beta", "Pa")
+        slope = xr.Variable("slip_rate", g.slope(rates), {"long_name": "slope of the resistance", "units": "Pa s/m"})
+        contents[f"{name}_slope"] = slope
+        contents[f"{name}_strength"] = quantity((), g.strength, "static strength", r"\mu_S S", "Pa")
+        for point, (rate, load) in corners(problem, largest_rate).items():
+            where = {"long_name": f"point {point}: slip rate (m/s), load (Pa)", "units": "m/s, Pa"}
+            contents[f"{name}_point_{point}"] = xr.Variable("coordinate", [rate, load], where)
+    attributes = {
+        "title": "The set K",
+        "cases": list(problems),
+        "case_titles": [(titles or {}).get(name, name) for name in problems],
+    }
+    coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s"), "coordinate": ["slip_rate", "load"]}
+    return xr.Dataset(contents, coords=coordinates, attrs=attributes)
+
+
+def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, float]]:
+    """The points of the paper's Fig. 4 as (slip rate, load); a regular contact has none.
+
+    O is the origin, A the end of stick, B where the jump up lands, C the lower fold, D where the jump down lands, and E a
+    point further up the slipping branch, here at `largest_rate`.
+    """
+    g = resistance(problem)
+    slipping = branches_of(g)[-1]
+    if not slipping.excess_from < 0.0 < slipping.rate_from:
+        return {}
+    fold = g.strength + slipping.excess_from
+    return {
+        "O": (0.0, 0.0),
+        "A": (0.0, g.strength),
+        "B": (rate_on(g, slipping, 0.0), g.strength),
+        "C": (slipping.rate_from, fold),
+        "D": (0.0, fold),
+        "E": (largest_rate, g.strength + float(g.excess(largest_rate))),
+    }
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """A panel for each case, stable branches solid, unstable ones dashed."""
+    cases, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("cases", "case_titles"))
+    figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.3), sharey=True)
+    for i, case in enumerate(cases):
+        draw_set(axes[0, i], dataset, case)
+        draw_points(axes[0, i], dataset, case)
+        letter(axes[0, i], f"{'abcdef'[i]}   {titles[i]}")
+    axes[0, 0].set_ylabel(label(dataset[f"{cases[0]}_resistance"]))
+    axes[0, -1].legend(loc="lower right")
+    return figure
+
+
+def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False) -> None:
+    """The branches of K: stick (vertical), stable slip, unstable slip; `quiet` draws them as a background."""
+    rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"])
+    strength = float(shown(dataset[f"{case}_strength"]))
+    rising = dataset[f"{case}_slope"].values > 0
+    colours = (GREY, GREY, GREY) if quiet else (INK, BLUE, VERMILLION)
+    width = 1.0 if quiet else 1.8
+    axes.plot([0, 0], [0, strength], color=colours[0], linewidth=width, label=None if quiet else "stick")
+    axes.plot(rate, np.where(rising, load, np.nan), color=colours[1], linewidth=width, label=None if quiet else "slip, stable")
+    if not rising.all():
+        # the unstable part reaches over to the first rising point, so that the curve has no gap
+        falling = ~rising | np.roll(~rising, 1)
+        text = None if quiet else "slip, unstable"
+        axes.plot(rate, np.where(falling, load, np.nan), color=colours[2], linewidth=width, linestyle="--", label=text)
+    axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
+
+
+def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:
+    """The points O to E of an irregular case, and the levels of its folds; `moved`: offsets of names in points."""
+    offsets = OFFSETS | moved
+    found = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
+    low, high = axes.get_ylim()
+    for point, (rate, load) in found.items():
+        if not low <= load / 1e6 <= high:
+            continue
+        axes.plot(rate, load / 1e6, "o", markersize=3.5, color=INK, zorder=5, clip_on=False)
+        axes.annotate(point, (rate, load / 1e6), offsets[point], textcoords="offset points", fontsize=9, fontweight="bold")
+    for start, end in (("A", "B"), ("D", "C")):
+        if found:
+            level = found[start][1] / 1e6
+            axes.plot([found[start][0], found[end][0]], [level, level], color=GREY, linewidth=0.8, linestyle=":", zorder=0)

@@ -1,0 +1,187 @@
+"""The slab in motion: displacement and stress across it, beside the contact's slip, slip rate and traction against time."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, narrow, places, seen, snapshots
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, letter, styled, zero_line
+from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Readings
+
+FRAMES, PER_SECOND, PLACES, DPI, SIZE = 150, 20, 401, 100, (8.0, 4.5)
+CODECS = {".gif": "", ".mp4": "h264", ".webm": "libvpx-vp9"}
+SUFFIXES = tuple(CODECS)
+Told = Callable[[int, int], object]
+"""Is told how many frames of how many are drawn."""
+
+
+def check_animation(path: Path, where: str) -> None:
+    """Refuse an animation that could not be written. Raises InputError."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(f"{where} {path}: the name must end in {' or '.join(SUFFIXES)}")
+    if path.suffix.lower() != ".gif" and _ffmpeg() is None:
+        raise InputError(f"{where} {path}: MP4 and WebM need ffmpeg (pip install 'stickslip[video]'); .gif does not")
+
+
+def _ffmpeg() -> str | None:
+    """The program that makes videos: the system's, or that of imageio-ffmpeg."""
+    if FFMpegWriter.isAvailable():
+        return str(mpl.rcParams["animation.ffmpeg_path"])
+    if importlib.util.find_spec("imageio_ffmpeg") is None:
+        return None
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    return str(get_ffmpeg_exe())
+
+
+def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
+    """The field at as many times as there are frames (default 150), and the contact, from `start` to `end` (s); SI.
+
+    By default all that `figures.runs.slab_panels.seen` finds. Raises InputError for a block, for times outside the run, and for
+    less than two frames.
+    """
+    readings, start, end = seen(readings, start, end)
+    frames = FRAMES if frames is None else frames
+    if frames < 2:
+        raise InputError(f"animation: needs at least 2 frames, got {frames}")
+    contents = snapshots(readings, np.linspace(start, end, frames), places(readings, PLACES))
+    contents |= contact_variables(readings, start, end, (readings.curves[0], "slip_rate", "traction"))
+    return xr.Dataset(contents, attrs=about(readings))
+
+
+@styled
+def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND, progress: Told | None = None) -> Path:
+    """Draw every frame and write the file (.gif, .mp4, .webm), whole or not at all. Returns the path.
+
+    Raises InputError where the library that writes such files is missing.
+    """
+    path = Path(path)
+    check_animation(path, "animation:")
+    figure = _Film(figsize=SIZE, dpi=DPI, layout="constrained")
+    move, moving = _stage(figure, dataset)
+    figure.keep_still(moving)
+    frames = dataset.sizes["time"]
+
+    def render(draft: Path) -> None:
+        suffix = path.suffix.lower()
+        writer = _writer(suffix, per_second)
+        with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg()} if CODECS[suffix] else {}), writer.saving(figure, str(draft), DPI):
+            for n in range(frames):
+                move(n)
+                writer.grab_frame()
+                if progress is not None:
+                    progress(n + 1, frames)
+
+    return write_atomically(path, render)
+
+
+def _writer(suffix: str, per_second: int) -> AbstractMovieWriter:
+    if suffix == ".gif":
+        return PillowWriter(fps=per_second)
+    return FFMpegWriter(fps=per_second, codec=CODECS[suffix], extra_args=["-pix_fmt", "yuv420p"])
+
+
+class _Film(Figure):
+    """A figure of which a movie writer saves frame after frame: only what moves is drawn anew."""
+
+    def keep_still(self, moving: list[Artist]) -> None:
+        """Draw all the rest, once."""
+        self._moving = moving
+        for artist in moving:
+            artist.set_animated(True)
+        agg: Any = FigureCanvasAgg(self)
+        agg.draw()
+        self._agg, self._still = agg, agg.copy_from_bbox(self.bbox)
+
+    def savefig(self, fname: Any, **_: Any) -> None:
+        """Write the frame's pixels, as movie writers want them (RGBA, at the figure's own resolution)."""
+        self._agg.restore_region(self._still)
+        for artist in self._moving:
+            artist.draw(self._agg.get_renderer())
+        fname.write(self._agg.buffer_rgba())
+
+
+@styled
+def frame(dataset: xr.Dataset, n: int) -> Figure:
+    """The n-th frame as a figure."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    move, _ = _stage(figure, dataset)
+    move(n)
+    return figure
+
+
+def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
+    """Draw what an animation shows. Returns what moves it to a frame, and all that moves then."""
+    scales = Scales(dataset)
+    axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
+    unit, size = length_unit(float(np.abs(dataset.displacement).max()))
+    profiles = (
+        (axes["A"], dataset.displacement.values / size, f"displacement ({unit})", BLUE),
+        (axes["B"], scales.stresses(dataset.stress.values), scales.name_stress("shear stress"), VERMILLION),
+    )
+    lines = [_profile(panel, dataset, values, text, colour, scales) for panel, values, text, colour in profiles]
+    axes["B"].tick_params(labelleft=False)
+    axes["B"].set_ylabel("")
+    marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
+    letter(axes["C"], dataset.attrs["title"])
+    clock = axes["A"].set_title(" ")
+
+    def move(n: int) -> None:
+        now = float(dataset.time.values[n]) / scales.time
+        for line, (_, values, _, _) in zip(lines, profiles, strict=True):
+            line.set_xdata(values[n])
+        for mark in marks:
+            mark.set_xdata([now, now])
+        clock.set_text(f"{now:.3f} {scales.time_unit}")
+
+    return move, [*lines, *marks, clock]
+
+
+def _profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, text: str, colour: str, scales: Scales) -> Any:
+    """Axes that hold every frame, and the line that is moved."""
+    low, high = float(values.min()), float(values.max())
+    margin = 0.05 * (high - low) or 1.0
+    panel.set_xlim(low - margin, high + margin)
+    panel.set_xlabel(text)
+    scales.set_places(panel, dataset)
+    panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False)
+    panel.plot(values[0], dataset.x.values / scales.place, color=GREY, linewidth=0.8, linestyle=":")
+    (line,) = panel.plot(values[0], dataset.x.values / scales.place, color=colour)
+    return line
+
+
+def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
+    """Curves of the contact, each with the line that marks the moment."""
+    time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values
+    slip = slip - slip[0]
+    unit, size = length_unit(float(np.abs(slip).max()))
+    curves = (
+        (slip / size, f"slip ({unit})", BLUE),
+        (dataset.contact_slip_rate.values, "slip rate\n(m/s)", GREEN),
+        (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress("traction")), VERMILLION),
+    )
+    marks = []
+    for panel, (values, text, colour) in zip(panels, curves, strict=True):
+        panel.plot(time, values, color=colour)
+        panel.set_ylabel(text)
+        panel.set_xlim(time[0], time[-1])
+        panel.tick_params(labelbottom=panel is panels[-1])
+        marks.append(panel.axvline(time[0], color=INK, linewidth=0.8))
+    zero_line(panels[1])
+    panels[-1].set_xlabel(scales.clock)
+    return marks

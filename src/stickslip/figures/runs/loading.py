@@ -1,0 +1,58 @@
+"""A pull rate or far stress that varies, as the driver has it: a panel below the curves of a run."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from stickslip.figures.style import INK, PALE, readable, zero_line
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import MAY_VARY, Problem
+from stickslip.solution.evaluation import Readings
+
+PERIODS = 60.0
+"""More periods of a tone than this are drawn as a band as wide as it swings."""
+POINTS = 32
+"""Points in a period."""
+
+
+def varying(problem: Problem) -> str:
+    """What varies, as a field of the problem; empty where nothing does."""
+    return next((name for name in MAY_VARY if isinstance(getattr(problem, name), LoadingHistory)), "")
+
+
+def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size: float) -> None:
+    """What varies from `start` to `end` (s since the readings' epoch), against times in units of `size` (s)."""
+    name = varying(readings.problem)
+    history: LoadingHistory = getattr(readings.problem, name)
+    row, offset = readings.history.epoch
+    begun = row * readings.history.row_time + offset
+    tone, swing = history.tone, abs(history.tone.amplitude)
+    turns = (end - start) * tone.frequency / (2.0 * np.pi) if swing > 0.0 else 0.0
+    is_band = turns > PERIODS
+    time, values = _straight(history, start + begun, end + begun, 0.0 if is_band else turns)
+    if not is_band:
+        values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
+    unit, scale = ("m/s", 1.0) if name == "pull_rate" else readable(float(np.abs(values).max()), "Pa")
+    time = (time - begun) / size
+    if is_band:
+        panel.fill_between(time, (values - swing) / scale, (values + swing) / scale, color=PALE, linewidth=0.0)
+    panel.plot(time, values / scale, color=INK)
+    low, high = panel.get_ylim()
+    if low < 0.0 < high:
+        zero_line(panel)
+    panel.set_ylabel(f"{name.replace('_', ' ')}\n({unit})")
+
+
+def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The straight parts between two times (s) with both limits at jumps, and so many points that a tone can be drawn on them."""
+    segments = history.segments
+    edges = [start, *(one.start for one in segments[1:] if start < one.start < end), end]
+    first = sum(one.start <= start for one in segments[1:])
+    parts = list(zip(segments[first:], pairwise(edges), strict=False))
+    dense = [np.linspace(low, high, 2 + int(POINTS * turns * (high - low) / (end - start))) for _, (low, high) in parts]
+    values = [one.at(time) for (one, _), time in zip(parts, dense, strict=True)]  # type: ignore[arg-type]
+    return np.concatenate(dense), np.concatenate(values)

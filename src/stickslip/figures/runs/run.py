@@ -1,0 +1,92 @@
+"""The default plot of a run: slip, slip rate, traction and load, one above the other, and a loading that varies below."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.figures.runs.curves import nearly_flat
+from stickslip.figures.runs.loading import draw_loading
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, time_unit, zero_line
+from stickslip.solution.evaluation import Curve, Readings
+
+MANY = 60
+"""Shocks beyond this number are drawn by the curves alone: marks would hide them."""
+
+
+@styled
+def plot_run(solution: Readings, start: float | None = None, end: float | None = None, *, title: str = "") -> Figure:
+    """Draw a run or a window on it, from `start` to `end` (s), in a new pyplot figure: a notebook or `pyplot.show()` shows it.
+
+    Shocks (jumps of the slip rate) are dotted lines; time is in years where seconds would be unreadable.
+    """
+    start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
+    unit, size = time_unit(end - start)
+    of_event = "event_slip" in solution.curves
+    axes: Any = _sheet(solution)
+    drawn: tuple[tuple[Axes, Curve, str], ...] = ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN))
+    for panel, name, colour in drawn:
+        time, values = solution.curve(name, start, end)
+        panel.plot(time / size, values, color=colour)
+    _draw_stress(axes[2], solution, start, end, size)
+    if solution.problem.varies:
+        draw_loading(axes[3], solution, start, end, size)
+    if not solution.problem.friction.sticks:
+        _draw_every_size(axes[1], *solution.curve("slip_rate", start, end), size)
+    for panel in axes[:3]:
+        if panel.get_yscale() == "linear":
+            zero_line(panel)
+        for at in _shock_times(solution, start, end):
+            panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
+    axes[0].set_ylabel("slip in the event (m)" if of_event else "slip $u$ (m)")
+    axes[1].set_ylabel("slip rate $v$ (m/s)")
+    axes[-1].set_xlabel(f"time since the event began ({unit})" if of_event else f"time $t$ ({unit})")
+    letter(axes[0], title or _title(solution))
+    figure: Figure = axes[0].figure
+    figure.align_ylabels()
+    return figure
+
+
+def _sheet(solution: Readings) -> Any:
+    """Panels of a new figure, one more and lower where the loading varies."""
+    heights = [3, 3, 3, 2] if solution.problem.varies else [1, 1, 1]
+    figure = pyplot.figure(figsize=(6.4, 6.8 if solution.problem.varies else 5.6), layout="constrained")
+    return figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+
+
+def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.float64], size: float) -> None:
+    """The slip rate on a logarithmic axis: a contact that never sticks creeps and rushes."""
+    panel.clear()
+    speed = np.abs(rate)
+    panel.semilogy(time / size, np.where(speed > 0.0, speed, np.nan), color=GREEN)
+
+
+def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size: float) -> None:
+    """Traction and load; as changes from the initial load where they hardly change."""
+    units = solution.problem.load_unit
+    (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
+    unit, scale = readable(float(np.abs(load).max()), units)
+    offset, text = 0.0, f"traction, load ({unit})"
+    if nearly_flat(load, traction):
+        scale, offset, text = 1.0, solution.problem.load, f"change of\ntraction, load ({units})"
+    panel.plot(time / size, (load - offset) / scale, color=INK, linewidth=1.0, linestyle="--", label=r"load $\beta$")
+    panel.plot(time / size, (traction - offset) / scale, color=VERMILLION, label=r"traction $\tau$")
+    panel.set_ylabel(text)
+    panel.legend(loc="best")
+
+
+def _shock_times(solution: Readings, start: float, end: float) -> NDArray[np.float64]:
+    times = np.asarray(solution.shocks["time"], dtype=float)
+    times = times[(times >= start) & (times <= end)]
+    return times if times.size <= MANY else times[:0]
+
+
+def _title(solution: Readings) -> str:
+    problem = solution.problem
+    body = type(problem.body).kind.replace("-", " ").capitalize()
+    return f"{body}, {type(problem.friction).kind} friction"

@@ -1,0 +1,167 @@
+"""What figures of the slab's inside share: the time that they show, and how places, times and stresses are drawn.
+
+The slab stands as in the paper: the contact below, the driver above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.figures.runs.curves import nearly_flat
+from stickslip.figures.style import length_unit, quantity, readable, time_unit
+from stickslip.foundation.errors import InputError
+from stickslip.observables.field import slab_of
+from stickslip.solution.solution import Solution
+from stickslip.solution.window import Window
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Curve, Readings
+
+Floats = NDArray[np.float64]
+
+LONG = 50
+"""A run over more round trips than this is shown around a slip event."""
+ROUNDING = 64.0
+"""Of a difference of displacements, in units of their last place."""
+
+
+def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
+    """What is drawn, from when to when (s): what is asked for; else all, or of a long run the last of its largest events.
+
+    Long counts round trips of a slab, periods of a block. Raises InputError where nothing lies between them.
+    """
+    round_trip = readings.history.row_time
+    if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
+        slips = readings.events.slip.to_numpy(float)
+        if len(slips):
+            chosen = int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
+            readings = readings.window(chosen, before=0.25 * round_trip)
+            end = min(readings.shown[1] + round_trip, readings.history.span[1])
+    start, end = (given if given is not None else edge for given, edge in zip((start, end), readings.shown, strict=True))
+    if not start < end:
+        raise InputError(f"figure: must end after it starts, at {start:g} s; got {end:g} s")
+    return readings, start, end
+
+
+def run_of(readings: Readings) -> Solution:
+    """The run itself."""
+    run = readings.solution if isinstance(readings, Window) else readings
+    assert isinstance(run, Solution)
+    return run
+
+
+def about(readings: Readings) -> dict[str, Any]:
+    """Attributes: a title, what times count from, and the slab's thickness (m)."""
+    problem = readings.problem
+    clock = "time since the event began" if "event_slip" in readings.curves else "time $t$"
+    title = f"Elastic slab, {type(problem.friction).kind} friction"
+    return {"title": title, "clock": clock, "thickness": slab_of(readings).thickness}
+
+
+def places(readings: Readings, count: int) -> Floats:
+    """Evenly from the contact to the driver, m."""
+    return np.linspace(0.0, slab_of(readings).thickness, count)
+
+
+def snapshots(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
+    """Displacement since the start of the run or of the window's event, velocity and stress over time and x, in SI."""
+    found, start = readings.field(x, time[:, None]), readings.field(x, 0.0)
+    since = "the event began" if "event_slip" in readings.curves else "$t=0$"
+    dims = ("time", "x")
+    return axes_variables(time, x) | {
+        "displacement": quantity(dims, found.displacement - start.displacement, f"displacement since {since}", "u", "m"),
+        "velocity": quantity(dims, found.velocity, "velocity", r"\dot u", "m/s"),
+        "stress": quantity(dims, found.stress, "shear stress", r"\sigma", "Pa"),
+    }
+
+
+def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
+    """Velocity and stress in the cells between times and places, in SI: exact means over the time and over the width of a cell.
+
+    They come from differences of the displacement, so that no pulse is lost between two times.
+    """
+    when, where = 0.5 * (time[1:] + time[:-1]), 0.5 * (x[1:] + x[:-1])
+    body, middle = slab_of(readings), readings.field(where, when[:, None])
+    sheared = readings.problem.strength / body.stiffness  # displacements are differences from that
+    velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
+    strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.shear_modulus, sheared)
+    dims = ("time", "x")
+    return axes_variables(when, where) | {
+        "velocity": quantity(dims, velocity, "velocity, mean over a step of time", r"\dot u", "m/s"),
+        "stress": quantity(dims, body.shear_modulus * strain, "shear stress, mean over a step of x", r"\sigma", "Pa"),
+    }
+
+
+def _slope(displacement: Floats, step: Floats, axis: int, middle: Floats, size: float) -> Floats:
+    """Mean slopes between values; where rounding could explain how they differ from the one in the middle, that one."""
+    mean = np.diff(displacement, axis=axis) / step
+    rounding = ROUNDING * np.spacing(max(float(np.abs(displacement).max()), size)) / step
+    return np.where(np.abs(mean - middle) <= rounding, middle, mean)
+
+
+def axes_variables(time: Floats, x: Floats) -> dict[str, xr.Variable]:
+    """Times and places."""
+    return {"time": quantity("time", time, "time", "t", "s"), "x": quantity("x", x, "distance from the contact", "x", "m")}
+
+
+def contact_variables(readings: Readings, start: float, end: float, names: Sequence[Curve]) -> dict[str, xr.Variable]:
+    """Curves of the contact against `contact_time`, with both limits at every shock, in SI."""
+    about: dict[str, tuple[str, str, str]] = {
+        "slip": ("slip", "u", "m"),
+        "event_slip": ("slip in the event", "u", "m"),
+        "slip_rate": ("slip rate", "v", "m/s"),
+        "traction": ("traction", r"\tau", "Pa"),
+    }
+    contents: dict[str, xr.Variable] = {}
+    for name in names:
+        time, values = readings.curve(name, start, end)
+        shown_as = "slip" if name == "event_slip" else name
+        contents[f"contact_{shown_as}"] = quantity("contact_point", values, *about[name])
+    return contents | {"contact_time": quantity("contact_point", time, "time", "t", "s")}
+
+
+def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
+    """A figure of this size (inches) to draw on: the one that is given, or a new one that pyplot does not know."""
+    figure = Figure() if figure is None else figure
+    figure.set_size_inches(*size)
+    figure.set_layout_engine("constrained")
+    return figure
+
+
+def narrow(text: str) -> str:
+    """A label in two lines."""
+    return text if "\n" in text else text.replace(" (", "\n(")
+
+
+class Scales:
+    """Units in which a dataset's times, places and stresses are drawn; stresses that hardly change as changes from the first."""
+
+    def __init__(self, dataset: xr.Dataset) -> None:
+        time, stress = dataset.time.values, dataset.stress.values
+        self.time_unit, self.time = time_unit(float(np.ptp(time)))
+        self.place_unit, self.place = length_unit(dataset.attrs["thickness"])
+        self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0
+        self.stress_unit, self.stress = readable(float(np.abs(stress - self.offset).max()), "Pa")
+        self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
+
+    def name_stress(self, name: str) -> str:
+        """Label of a stress."""
+        what = "change of\n" if self.offset else ""
+        return f"{what}{name} ({self.stress_unit})"
+
+    def stresses(self, values: Any) -> Floats:
+        """Stresses as they are drawn."""
+        return np.asarray((np.asarray(values, float) - self.offset) / self.stress)
+
+    def set_places(self, axes: Axes, dataset: xr.Dataset, *, named: bool = True) -> None:
+        """The axis across the slab: contact below, driver above."""
+        axes.set_ylim(0.0, dataset.attrs["thickness"] / self.place)
+        if named:
+            axes.set_ylabel(f"distance from\nthe contact $x$ ({self.place_unit})")

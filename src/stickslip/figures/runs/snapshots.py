@@ -1,0 +1,68 @@
+"""Displacement, velocity and stress across the slab at some moments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps, pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from stickslip.figures.runs.slab_panels import Scales, about, places, seen, sheet, snapshots
+from stickslip.figures.style import label, length_unit, letter, styled
+from stickslip.observables.field import slab_of
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Readings
+
+COUNT, PLACES = 6, 1500
+
+
+def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
+    """The field at times (s; default: six over the first round trip of what `figures.runs.slab_panels.seen` shows); SI.
+
+    Raises InputError for a block, and for times outside the run.
+    """
+    if times is None:
+        readings, start, end = seen(readings, None, None)
+        start = max(start, 0.0) if "event_slip" in readings.curves else start
+        shares = (np.arange(COUNT) + 0.35) / COUNT  # fronts on their way back are not where others were on their way out
+        times = start + shares * min(slab_of(readings).two_way_time, end - start)
+    moments = np.atleast_1d(np.asarray(times, float))
+    return xr.Dataset(snapshots(readings, moments, places(readings, PLACES)), attrs=about(readings))
+
+
+@styled
+def plot(readings: Readings, times: ArrayLike | None = None) -> Figure:
+    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    return draw(data(readings, times), pyplot.figure())
+
+
+@styled
+def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
+    """Three panels, contact below; a line a moment, later ones darker."""
+    scales = Scales(dataset)
+    figure = sheet(figure, (7.6, 3.8))
+    axes: Any = figure.subplots(1, 3, sharey=True)
+    unit, size = length_unit(float(np.abs(dataset.displacement).max()))
+    drawn = (dataset.displacement.values / size, dataset.velocity.values, scales.stresses(dataset.stress.values))
+    since = dataset.displacement.attrs["long_name"].replace(" ", f" ({unit})\n", 1)
+    texts = (since, label(dataset.velocity), scales.name_stress(r"shear stress $\sigma$"))
+    for panel, values in zip(axes, drawn, strict=True):
+        _draw_lines(panel, dataset, values, scales)
+    for panel, text in zip(axes, texts, strict=True):
+        panel.set_xlabel(text)
+        scales.set_places(panel, dataset, named=panel is axes[0])
+    letter(axes[0], dataset.attrs["title"])
+    lines, names = axes[0].get_legend_handles_labels()
+    figure.legend(lines, names, title=scales.clock.replace("since ", "since\n"), loc="outside right upper", alignment="left")
+    return figure
+
+
+def _draw_lines(panel: Axes, dataset: xr.Dataset, values: np.ndarray, scales: Scales) -> None:
+    colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, len(values)))
+    for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
+        panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.4g}")

@@ -1,0 +1,132 @@
+"""Velocity and stress in the slab over time, with the characteristics of what happens at the contact, which is drawn below."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from stickslip.figures.runs.run import MANY
+from stickslip.figures.runs.slab_panels import Floats, Scales, about, contact_variables, means, narrow, places, run_of, seen, sheet
+from stickslip.figures.style import GREEN, INK, VERMILLION, label, letter, quantity, styled, zero_line
+from stickslip.observables.field import slab_of
+from stickslip.trajectory.tables import shocks_table
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Readings
+
+TIMES, PLACES = 900, 300
+FAINT = 0.1
+"""A characteristic ends when the driver has let out all but this share of the wave."""
+
+
+def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Field and contact from `start` to `end` (s), by default as `figures.runs.slab_panels.seen`; characteristics as lines in time
+    and x; SI.
+
+    Raises InputError for a block, and for times outside the run.
+    """
+    readings, start, end = seen(readings, start, end)
+    body = slab_of(readings)
+    contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
+    contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
+    lines = [_bounces(time, end, body.two_way_time, body.reflection) for time in _origins(readings, start, end)]
+    points = max((len(line) for line in lines), default=0)
+    across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(len(lines), points)
+    contents["front_time"] = quantity(("front", "corner"), across, "time of a characteristic", "t", "s")
+    corners = np.where(np.arange(points) % 2, body.thickness, 0.0)
+    contents["front_x"] = quantity("corner", corners, "place of a characteristic", "x", "m")
+    return xr.Dataset(contents, attrs=about(readings))
+
+
+def _origins(readings: Readings, start: float, end: float) -> Floats:
+    """Times (s) at which shocks, starts and ends of slip leave the contact, from a round trip before; those of echoes left before.
+
+    None if they are too many to be told apart.
+    """
+    history, round_trip = readings.history, slab_of(readings).two_way_time
+    events = run_of(readings).events
+    begin = history.seconds(events.start_row.to_numpy(), events.start_offset.to_numpy(float))
+    shocks = shocks_table(history, start - round_trip, end).time.to_numpy(float)
+    times = np.sort(np.concatenate([shocks, begin, begin + events.duration.to_numpy(float)]))
+    times = times[(times >= start - round_trip) & (times <= end)]
+    kept: list[float] = []
+    for time in times:
+        phases = (time - np.array(kept)) / round_trip
+        if not (np.abs(phases - np.round(phases)) < 1e-6).any():
+            kept.append(float(time))
+    return np.array(kept if len(kept) <= MANY else [])
+
+
+def _bounces(time: float, end: float, round_trip: float, reflection: float) -> Floats:
+    """Times at which a wave that leaves the contact then is at the driver, at the contact, and so on; until the end, or faint."""
+    count = 1 + int(np.ceil(2.0 * (end - time) / round_trip))
+    share = abs(reflection)
+    if share < 1.0:
+        trips = 0 if share == 0.0 else int(np.log(FAINT) / np.log(share))
+        count = min(count, 2 + 2 * trips)
+    return np.asarray(time + 0.5 * round_trip * np.arange(max(count, 2)))
+
+
+@styled
+def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
+    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    return draw(data(readings, start, end), pyplot.figure())
+
+
+@styled
+def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
+    """Velocity and stress as images, contact below; below them slip rate and traction of the contact."""
+    scales = Scales(dataset)
+    figure = sheet(figure, (7.2, 7.4))
+    axes: Any = figure.subplots(4, 1, sharex=True, height_ratios=(2.2, 2.2, 1.0, 1.0))
+    velocity = dataset.velocity.values
+    largest = float(np.abs(velocity).max()) or 1.0
+    rates: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
+    images = (
+        (axes[0], velocity, "velocity\n(m/s)", rates),
+        (
+            axes[1],
+            scales.stresses(dataset.stress.values),
+            narrow(scales.name_stress("shear stress")),
+            {"cmap": "viridis"},
+        ),
+    )
+    for panel, values, text, colours in images:
+        image = panel.imshow(values.T, origin="lower", aspect="auto", extent=_edges(dataset, scales), **colours)
+        figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
+        _draw_fronts(panel, dataset, scales)
+        scales.set_places(panel, dataset)
+    _draw_contact(axes[2:], dataset, scales)
+    letter(axes[0], dataset.attrs["title"])
+    figure.align_ylabels()
+    return figure
+
+
+def _edges(dataset: xr.Dataset, scales: Scales) -> tuple[float, float, float, float]:
+    """First and last time, contact and driver, as drawn."""
+    time = dataset.time.values
+    half = 0.5 * (time[1] - time[0])
+    return (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, dataset.attrs["thickness"] / scales.place
+
+
+def _draw_fronts(panel: Axes, dataset: xr.Dataset, scales: Scales) -> None:
+    places = dataset.front_x.values / scales.place
+    for times in dataset.front_time.values:
+        panel.plot(times / scales.time, places, color=INK, linewidth=0.6)
+        panel.plot(times / scales.time, places, color="white", linewidth=0.6, linestyle=(0, (4, 4)))  # seen on dark and on light
+
+
+def _draw_contact(panels: Any, dataset: xr.Dataset, scales: Scales) -> None:
+    time = dataset.contact_time.values / scales.time
+    panels[0].plot(time, dataset.contact_slip_rate, color=GREEN)
+    panels[0].set_ylabel(narrow(label(dataset.contact_slip_rate)))
+    panels[1].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
+    panels[1].set_ylabel(narrow(scales.name_stress(r"traction $\tau$")))
+    panels[1].set_xlabel(scales.clock)
+    panels[1].set_xlim(time[0], time[-1])
+    zero_line(panels[0])

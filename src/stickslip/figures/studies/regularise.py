@@ -1,0 +1,176 @@
+"""A study of regularisations: errors against size, and the runs approaching a jump of the rule's exact answer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from stickslip.figures.contact import resistance
+from stickslip.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    PURPLE,
+    VERMILLION,
+    label,
+    letter,
+    quantity,
+    shown,
+    styled,
+    zero_line,
+)
+from stickslip.studies.regularisations import kind_of
+
+if TYPE_CHECKING:
+    from stickslip.solution.solution import Solution
+    from stickslip.studies.regularise import Regularisation
+
+RULE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
+SHADES = ("#C6DBEF", "#85BCDC", "#3F8FC5", "#0B559F")
+"""Runs from large to small sizes."""
+CASE = "contact"
+MEAN = r"\langle|\Delta u|\rangle"
+POINTS = 1200
+BEFORE, AFTER = 0.8, 1.6
+"""What is shown around a jump, in delays of the largest size drawn."""
+
+
+def data(study: Regularisation) -> xr.Dataset:
+    """Errors for each group of rules, and a few runs with the exact answer: around the jump that they do latest, or from start to
+    end where they tend to no rule."""
+    contents: dict[str, xr.Variable] = {
+        "size": quantity("size", study.sizes, "size", "L", "s"),
+        "error": quantity(("rules", "size"), [study.errors(group[0]) for group in study.groups], "mean slip difference", MEAN, "m"),
+        "change": quantity("size", study.changes, "mean slip difference", MEAN, "m"),
+    }
+    order = study.verdict.order
+    attributes = {
+        "title": f"Regularised by {kind_of(study.by).title}",
+        "rules": [", ".join(group) for group in study.groups],
+        "target": study.target,
+        "target_row": next(i for i, group in enumerate(study.groups) if study.target in group),
+        "tends": int(bool(study.verdict.rules)),
+        "order": order.power,
+        "order_points": order.points,
+    }
+    dataset = xr.Dataset(contents, attrs=attributes)
+    jump = _jump(study) if study.verdict.rules else None
+    if jump is not None:
+        return _around_jump(dataset, study, jump)
+    return _with_runs(dataset, study, list(range(len(study.sizes)))[: len(SHADES)], (0.0, study.until), 0.0)
+
+
+def _jump(study: Regularisation) -> int | None:
+    """The jump that the runs do latest, as far as at least two of them do it."""
+    late = np.abs(study.delays)
+    done = np.isfinite(late).sum(axis=0) >= 2
+    if not done.any():
+        return None
+    last = np.array([column[np.isfinite(column)][-1] if ok else -1.0 for column, ok in zip(late.T, done, strict=True)])
+    return int(np.argmax(last))
+
+
+def _around_jump(dataset: xr.Dataset, study: Regularisation, jump: int) -> xr.Dataset:
+    drawn = [i for i in range(len(study.sizes)) if np.isfinite(study.delays[i, jump])][: len(SHADES)]
+    at, delay = float(study.shocks.time.iloc[jump]), float(np.abs(study.delays[drawn, jump]).max())
+    window = max(0.0, at - BEFORE * delay), min(study.until, at + AFTER * delay)
+    with_runs = _with_runs(dataset, study, drawn, window, at).assign_attrs(jump_time=at)
+    fastest = max(float(with_runs[name].max()) for name in with_runs.data_vars if str(name).endswith("_rate"))
+    return with_runs.merge(resistance.data({CASE: study.problem}, 1.1 * fastest), combine_attrs="override")
+
+
+def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], window: tuple[float, float], at: float) -> xr.Dataset:
+    contents: dict[str, xr.Variable] = {}
+    for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
+        contents |= _curves(name, run, window, at)
+    return dataset.assign(contents).assign_attrs(drawn=drawn)
+
+
+def _curves(name: str, run: Solution, window: tuple[float, float], at: float) -> dict[str, xr.Variable]:
+    (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
+    meaning = ("time after the jump", "t - t_J") if at else ("time", "t")
+    return {
+        f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
+        f"{name}_rate": quantity(f"{name}_time", rate, "slip rate", "v", "m/s"),
+        f"{name}_load": quantity(f"{name}_time", load, "load", r"\beta", "Pa"),
+        f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
+        f"{name}_slip": quantity(f"{name}_slip_time", slip, "slip", "u", "m"),
+    }
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """Errors on the left, the runs on the right: around a jump in time and over the set K, or slip and slip rate all the way."""
+    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
+    axes: Any = figure.subplot_mosaic([["errors", "upper"], ["errors", "lower"]], width_ratios=(1.2, 1))
+    _draw_errors(axes["errors"], dataset)
+    letter(axes["errors"], f"a   {dataset.attrs['title']}")
+    if "jump_time" in dataset.attrs:
+        _draw_time(axes["upper"], dataset, "rate")
+        letter(axes["upper"], f"b   The jump at {float(dataset.attrs['jump_time']):.6g} s")
+        _draw_path(axes["lower"], dataset)
+    else:
+        _draw_time(axes["upper"], dataset, "slip")
+        letter(axes["upper"], "b   The runs, and the nearest rule")
+        _draw_time(axes["lower"], dataset, "rate")
+        letter(axes["lower"], "c   The same, slip rate")
+        axes["lower"].get_legend().remove()
+    figure.align_ylabels([axes["upper"], axes["lower"]])
+    return figure
+
+
+def _draw_errors(axes: Axes, dataset: xr.Dataset) -> None:
+    size = shown(dataset["size"])
+    for i, rule in enumerate(np.atleast_1d(dataset.attrs["rules"])):
+        values = np.where(dataset["error"].values[i] > 0.0, dataset["error"].values[i], np.nan)
+        axes.loglog(size, values, "o-", color=RULE_COLOURS[i % 4], markersize=3.5, label=f"from {rule}")
+    axes.loglog(size, shown(dataset["change"]), "o--", color=GREY, markersize=3, linewidth=1.0, label="from the size before")
+    if dataset.attrs["tends"] and dataset.attrs["order_points"]:
+        _draw_slope(axes, size, dataset["error"].values[int(dataset.attrs["target_row"])], float(dataset.attrs["order"]))
+    axes.set(xlabel=label(dataset["size"]), ylabel=label(dataset["error"]))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high * (high / low) ** 0.08)
+    axes.legend(loc="best", fontsize=7.5)
+
+
+def _draw_slope(axes: Axes, size: NDArray[np.float64], error: NDArray[np.float64], order: float) -> None:
+    """A triangle below the smallest sizes whose slope is the fitted order."""
+    right, left = size[-3], size[-1]
+    low = 0.45 * error[-1]
+    high = low * (right / left) ** order
+    axes.loglog([left, right, right, left], [low, low, high, low], color=GREY, linewidth=0.9)
+    axes.annotate(f"{order:.2f}", (right, np.sqrt(low * high)), (4, 0), textcoords="offset points", va="center", fontsize=8)
+    axes.annotate("1", (np.sqrt(left * right), low), (0, -3), textcoords="offset points", va="top", ha="center", fontsize=8)
+
+
+def _runs(dataset: xr.Dataset) -> list[tuple[str, str, float, str]]:
+    """Name, colour, line width and legend of each curve, the exact answer last and on top."""
+    drawn = [int(i) for i in np.atleast_1d(dataset.attrs["drawn"])]
+    sizes = dataset["size"].values
+    runs = [(f"run{i}", SHADES[k - len(drawn)], 1.5, f"{sizes[i]:.2g} s") for k, i in enumerate(drawn)]
+    return [*runs, ("exact", INK, 1.0, str(dataset.attrs["target"]))]
+
+
+def _draw_time(axes: Axes, dataset: xr.Dataset, name: str) -> None:
+    for run, colour, width, text in _runs(dataset):
+        time = dataset[f"{run}_slip_time" if name == "slip" else f"{run}_time"]
+        axes.plot(shown(time), shown(dataset[f"{run}_{name}"]), color=colour, linewidth=width, label=text)
+    zero_line(axes)
+    axes.set(xlabel=label(dataset["exact_time"]), ylabel=label(dataset[f"exact_{name}"]))
+    axes.legend(loc="best", fontsize=7, ncols=2 if name == "slip" else 1)
+
+
+def _draw_path(axes: Axes, dataset: xr.Dataset) -> None:
+    resistance.draw_set(axes, dataset, CASE, quiet=True)
+    for name, colour, width, _ in _runs(dataset):
+        axes.plot(shown(dataset[f"{name}_rate"]), shown(dataset[f"{name}_load"]), color=colour, linewidth=width)
+    loads = np.concatenate([shown(dataset[f"{name}_load"]) for name, *_ in _runs(dataset)])
+    margin = max(0.35 * np.ptp(loads), 1e-3 * abs(loads).max())
+    axes.set(ylim=(loads.min() - margin, loads.max() + margin), ylabel=label(dataset["exact_load"]))
+    letter(axes, "c   The same, over the set K (grey)")

@@ -1,0 +1,97 @@
+"""How the numbers of a map become colours: a key of few values, or a scale; and what is drawn where there is no number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from stickslip.figures.style import BLUE, GREY, ORANGE, PALE
+from stickslip.figures.sweeps.varied import Shown
+
+Floats = NDArray[np.float64]
+
+FEW = 10
+"""At most so many whole numbers have a colour each in a key; more have a scale."""
+TWO = ("#D6E6F4", ORANGE)
+"""No and yes, or the only two numbers there are."""
+FAILED, HATCH = "#EDEDED", "////"
+
+
+@dataclass(frozen=True)
+class Colours:
+    """A colour for every number; `key` holds the numbers that have an entry in a key, none where there is a scale."""
+
+    cmap: Any
+    norm: Any
+    key: tuple[tuple[float, str], ...]
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """What pcolormesh and scatter need."""
+        return {"cmap": self.cmap, "norm": self.norm}
+
+    def of(self, value: float) -> Any:
+        """The colour of a number."""
+        return self.cmap(self.norm(value))
+
+
+def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
+    """Colours for the numbers of a quantity, or for those of them that are drawn: the same in all panels."""
+    known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
+    if quantity.is_flag:
+        return _key(np.array([0.0, 1.0]), ("no", "yes"))
+    different = np.unique(known)
+    if known.size and quantity.is_whole and different.size <= FEW:
+        return _key(different, [f"{value:.0f}" for value in different])
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    if low == high:
+        low, high = low - abs(low or 1.0), high + abs(high or 1.0)
+    return Colours(mpl.colormaps["viridis"], LogNorm(low, high) if quantity.is_wide else Normalize(low, high), ())
+
+
+def _key(different: Floats, texts: Sequence[str]) -> Colours:
+    count = len(different)
+    shades = TWO if count == 2 else [BLUE] if count == 1 else mpl.colormaps["viridis"](np.linspace(0.05, 0.95, count))
+    between = 0.5 * (different[1:] + different[:-1])
+    edges = np.concatenate([[different[0] - 1.0], between, [different[-1] + 1.0]])
+    return Colours(ListedColormap(list(shades)), BoundaryNorm(edges, count), tuple(zip(different.tolist(), texts, strict=True)))
+
+
+def prepare(axes: Axes, quantity: Shown) -> None:
+    """A background that says failed where nothing is drawn over it."""
+    axes.set_facecolor(FAILED if quantity.has(2) else "white")
+    if quantity.has(2):
+        axes.patch.set(hatch=HATCH, edgecolor=GREY, linewidth=0.0)
+
+
+def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist) -> None:
+    """The key or the scale, under the name of the quantity, and what areas without a number mean."""
+    marks: list[Artist] = [Patch(facecolor=colours.of(value), label=text) for value, text in colours.key]
+    marks += [Patch(facecolor=PALE, label="no such number")] if quantity.has(1) else []
+    marks += [Patch(facecolor="white", edgecolor=GREY, linewidth=0.5, label="not run")] if quantity.has(3) else []
+    marks += more
+    scale = not colours.key and quantity.known.size > 0
+    if scale:
+        figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=quantity.title, pad=0.02, aspect=25)
+    if marks:
+        heading = None if scale else quantity.title
+        narrow = {"handlelength": 1.3, "columnspacing": 1.2, "handletextpad": 0.5}
+        figure.legend(
+            handles=marks, title=heading, loc="outside lower center", ncols=min(len(marks), 12), title_fontsize=9.0, **narrow
+        )
+
+
+def failed_area(quantity: Shown) -> list[Artist]:
+    """The entry of a key for the background of `prepare`."""
+    return [Patch(facecolor=FAILED, edgecolor=GREY, hatch=HATCH, linewidth=0.0, label="failed")] if quantity.has(2) else []

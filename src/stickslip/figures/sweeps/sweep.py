@@ -1,0 +1,71 @@
+"""A sweep: one of its quantities over what was varied - curves, a map, small multiples of it, or the members as points.
+
+A grid's dataset has one dimension for each varied key; samples, lists and refined maps have the dimension `member`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stickslip.figures.style import styled
+from stickslip.figures.sweeps.cells import draw_cells
+from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
+from stickslip.figures.sweeps.maps import draw_maps
+from stickslip.figures.sweeps.members import draw_members
+from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.sweeps.design.design import MEMBER
+from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE
+
+
+def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None) -> Figure:
+    """Draw a quantity of a sweep (default: its first) over what was varied, and save it if a file is named.
+
+    One varied key gives a curve, two a map (or a family of curves where one has few values), three maps side by side; members
+    that are no grid are points or, of a refined map, its cells. Raises InputError for a quantity that is none, and for a grid of
+    more than three keys: select some values of the others first.
+    """
+    figure = draw(data(dataset, quantity))
+    if path is not None:
+        write_atomically(Path(path), figure.savefig)
+    return figure
+
+
+def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
+    """What is drawn: the quantity, `state` (0: a number, 1: the run has no such number, 2: failed, 3: not run), what was varied."""
+    names = [str(name) for name in dataset.data_vars if _can_be_drawn(dataset, str(name))]
+    name = quantity or next(iter(names), "")
+    if name not in names:
+        raise InputError(f"plot_sweep: {ascii(name)[:60]} is no quantity of this sweep; {nearest(name, names)}")
+    values = dataset[name].load()
+    status = dataset["status"].transpose(*values.dims)
+    kinds = [status.values >= FIRST_FAILURE, status.values == NOT_RUN, np.isnan(values.values)]
+    state = xr.Variable(values.dims, np.select(kinds, [2, 3, 1], 0))
+    drawn = dataset[[name, "status"]].assign({name: values.where(state == 0), "state": state}).squeeze(drop=False)
+    if len(drawn[name].dims) > 3:
+        raise InputError(f"plot_sweep: a grid of {len(drawn[name].dims)} keys: select some values first, dataset.sel(KEY=VALUE)")
+    if not drawn[name].dims:
+        raise InputError("plot_sweep: nothing is varied in this sweep, it has one member")
+    title = str(dataset.attrs.get("title", "")).removeprefix("stickslip sweep: ")
+    return drawn.assign_attrs(dataset.attrs, quantity=name, title=title)
+
+
+def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
+    values = dataset[name]
+    numbers = bool(np.issubdtype(values.dtype, np.number))
+    return numbers and name != "status" and values.dims == dataset["status"].dims
+
+
+@styled
+def draw(dataset: xr.Dataset) -> Figure:
+    """The figure that fits the members."""
+    shape = dataset["state"].shape
+    if MEMBER in dataset["state"].dims:
+        whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()
+        return draw_cells(dataset) if whole else draw_members(dataset)
+    return draw_curves(dataset) if len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES) else draw_maps(dataset)

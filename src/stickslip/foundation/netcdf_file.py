@@ -1,0 +1,168 @@
+"""netCDF files with a checksum at their end, which is looked at before anything else in them.
+
+Behind what netCDF readers see, a file ends with the line `stickslip sha256 HEX`, the SHA-256 of every byte before it. Other
+programs ignore it. A file that was damaged, cut off or changed is refused before the HDF5 library, which may crash on it, opens it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+MAGIC = b"\x89HDF\r\n\x1a\n"
+MARK = b"\nstickslip sha256 "
+SEAL = len(MARK) + 64 + 1
+"""Bytes of the line with the checksum."""
+AT_A_TIME = 2**20
+
+
+class FullDiskError(InputError):
+    """Raised where there is no room for a file; `solution` is what could not be written, to be saved elsewhere, if there is one."""
+
+    solution: Any = None
+
+
+def write(dataset: xr.Dataset, path: Path) -> Path:
+    """Write a netCDF file, whole or not at all. Raises InputError where it cannot be written, FullDiskError if for lack of room."""
+    from xarray.backends import H5NetCDFStore
+
+    encoding = {name: {"_FillValue": None} for name, variable in dataset.variables.items() if variable.dtype.kind == "f"}
+
+    def fill(file: Any) -> None:
+        dataset.dump_to_store(H5NetCDFStore(file), encoding=encoding)
+
+    return write_with(fill, path)
+
+
+def write_with(fill: Callable[[Any], object], path: Path) -> Path:
+    """Let `fill` write into an `h5netcdf.File`, else as `write`."""
+    try:
+        return write_atomically(path, lambda draft: _sealed(draft, fill))
+    except OSError as error:
+        raise cannot_be_written(path, error) from None
+
+
+def cannot_be_written(path: Path, error: OSError, kept: str = "") -> InputError:
+    """Return the one line for a file that could not be written, with what is kept where the disk is full."""
+    kind = FullDiskError if error.errno in FULL else InputError
+    return kind(f"{path}: cannot be written: {error.strerror or error}{kept if kind is FullDiskError else ''}")
+
+
+def _sealed(draft: Path, fill: Callable[[Any], object]) -> None:
+    """Write the file, then its checksum. The HDF5 library never sees that a write failed: it does not survive that."""
+    import h5netcdf
+
+    sink = Sink(draft)
+    try:
+        try:
+            with h5netcdf.File(sink, "w") as file:
+                fill(file)
+        except Exception:
+            sink.check()  # the reason, if HDF5 has read back what was not written
+            raise
+        sink.check()
+    finally:
+        sink.close()
+    seal(draft)
+
+
+def seal(path: Path) -> None:
+    """Write the checksum behind the end of a file."""
+    with path.open("rb+") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        file.seek(0, os.SEEK_END)
+        file.write(MARK + digest.encode() + b"\n")
+
+
+def check(path: Path, what: str = "a file") -> None:
+    """Refuse a file that is not as it was written. Raises InputError, which names what it should be."""
+    try:
+        with path.open("rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            if file.read(len(MAGIC)) != MAGIC:
+                raise InputError(f"{path}: not a netCDF file that can be read: it does not begin as one")
+            file.seek(max(size - SEAL, 0))
+            seal = file.read(SEAL)
+            if not (seal.startswith(MARK) and seal.endswith(b"\n")):
+                lacks = "it does not end with its checksum: another program or an older version wrote it, or its end was cut off"
+                raise InputError(f"{path}: not {what} of this version of stickslip ({lacks})")
+            if _digest(file, size - SEAL) != seal[len(MARK) : -1]:
+                raise InputError(f"{path}: damaged: its content does not have its checksum; take a copy of it, or run again")
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+
+
+def _digest(file: Any, size: int) -> bytes:
+    digest = hashlib.sha256()
+    file.seek(0)
+    while size > 0:
+        some = file.read(min(size, AT_A_TIME))
+        digest.update(some)
+        size -= len(some) or size
+    return digest.hexdigest().encode()
+
+
+def read(path: Path, what: str = "a file") -> xr.Dataset:
+    """Read a file that `write` wrote. Raises InputError for any other one, and for one that claims more than it holds."""
+    check(path, what)
+    try:
+        _check_sizes(path)
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:
+            return opened.load()
+    except InputError:
+        raise
+    except Exception as error:  # whatever a library says of a file that was made by hand
+        raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())[:200]}") from None
+
+
+def attributes(path: Path) -> dict[str, Any]:
+    """Return the attributes of a file that `write` wrote; none of any other one."""
+    try:
+        check(path)
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:
+            return dict(opened.attrs)
+    except Exception:
+        return {}
+
+
+def _check_sizes(path: Path) -> None:
+    """Refuse a file that leads elsewhere, or whose tables are larger than itself: ours are never compressed. Raises InputError."""
+    import h5py
+
+    size, claimed = path.stat().st_size, 0
+    with h5py.File(path, "r") as file:
+        for name in file:
+            if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+                raise InputError(f"{path}: not a file of stickslip: '{name}' in it is a link")
+            claimed += _claimed(file[name], path)
+    if claimed > size:
+        raise InputError(f"{path}: not a file of stickslip: its tables claim {claimed:.3g} bytes, it has {size}")
+
+
+def _claimed(found: Any, path: Path) -> int:
+    """Return the bytes that a table claims; the length of an axis without values claims none."""
+    import h5py
+
+    if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:
+        raise InputError(f"{path}: not a file of stickslip: '{found.name}' in it is no plain table")
+    if _is_axis(found):
+        return 0
+    return int(found.size or 0) * int(found.dtype.itemsize)
+
+
+def _is_axis(found: h5py.Dataset) -> bool:
+    name = found.attrs.get("NAME", b"")
+    return isinstance(name, bytes) and name.startswith(b"This is a netCDF dimension but not a netCDF variable")

@@ -1,0 +1,104 @@
+"""Text such as "10 km" to a number in SI. Only a number, unit names and small powers are let through; nothing is evaluated."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from stickslip.foundation.errors import InputError, nearest
+
+LONGEST = 64
+"""Characters allowed in a quantity: units come from untrusted files."""
+COMMON_UNITS = (
+    *("m", "mm", "cm", "km", "s", "ms", "min", "hour", "day", "year", "kg", "tonne", "m/s", "m/year"),
+    *("Pa", "kPa", "MPa", "GPa", "bar", "N", "kN", "MN", "GN", "kg/m^3", "g/cm^3", "N/m", "GN/m", "Pa s/m", "1/m", "s/m"),
+)
+
+_NAME = r"[A-Za-zµ][A-Za-zµ_]*"
+_FACTOR = rf"{_NAME}(?:\s*(?:\^|\*\*)\s*-?[1-9])?"
+_QUANTITY = re.compile(
+    rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)\s*(?P<unit>(?:/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*)\s*"
+)
+
+
+def split_quantity(text: str) -> tuple[float, str] | None:
+    """Number and unit of a text such as "0.05 m/year", or None where it is not of that form."""
+    found = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    return (float(found["number"]), found["unit"]) if found else None
+
+
+def si_factor(unit: str, si: str) -> Fraction:
+    """How many `si` one `unit` is, exactly. A year is the Julian year of 31 557 600 s.
+
+    Raises InputError, the end of a sentence that begins with the place, for a name that is no unit and for another dimension.
+    """
+    import pint
+
+    registry = _registry()
+    try:
+        parsed = registry.parse_units(_with_one(unit))
+        target = registry.parse_units(si)
+        factor = registry.get_root_units(parsed)[0]
+        same = parsed.dimensionality == target.dimensionality
+    except pint.UndefinedUnitError as error:
+        name = str(error.args[0]).removeprefix("delta_")  # decibels and the like: no factor leads from them to SI
+        raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
+    except pint.PintError:
+        raise InputError(f"'{unit}' is not a unit; write it like {si}") from None
+    if not same:
+        raise InputError(f"'{unit}' does not convert to {si}")
+    return Fraction(factor) / Fraction(registry.get_root_units(target)[0])
+
+
+def to_si(number: float, unit: str, si: str) -> float:
+    """`number` times `unit` in `si`: 0.05 m/year is 0.05 / 31557600 to the last digit. Raises InputError like `si_factor`."""
+    factor = si_factor(unit, si)
+    if max(factor.numerator, factor.denominator) < 2**53:
+        return number * factor.numerator / factor.denominator
+    return number * float(factor)
+
+
+_BASE = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
+
+
+def si_base(text: str) -> tuple[float, str]:
+    """Number in SI and unit in powers of m, kg and s of a text such as "1 mm/s": 0.001, "m s^-1". Raises InputError."""
+    import pint
+
+    parts = split_quantity(text)
+    if parts is None:
+        raise InputError(
+            f"{ascii(text)[:60]} is not a number with a unit" + (f" up to {LONGEST} characters" * (len(text) > LONGEST))
+        )
+    registry = _registry()
+    try:
+        powers = dict(registry.parse_units(_with_one(parts[1])).dimensionality)
+    except pint.UndefinedUnitError as error:
+        name = str(error.args[0]).removeprefix("delta_")
+        raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
+    except pint.PintError:
+        raise InputError(f"'{parts[1]}' is not a unit") from None
+    if not set(powers) <= set(_BASE) or any(power != int(power) or abs(power) > 9 for power in powers.values()):
+        raise InputError(f"'{parts[1]}' is not made of whole powers of m, kg and s")
+    named = sorted((_BASE[base], int(power)) for base, power in powers.items())
+    si = " ".join(name if power == 1 else f"{name}^{power}" for name, power in named)
+    return to_si(*parts, si), si
+
+
+def _with_one(unit: str) -> str:
+    """ "/ m" as "1/ m": the form that unit parsers know."""
+    return f"1{unit}" if unit.startswith("/") else unit
+
+
+def _unit_hint(name: str) -> str:
+    hint = nearest(name, COMMON_UNITS)
+    return hint if hint.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
+
+
+@cache
+def _registry() -> Any:
+    import pint  # 0.3 s: only where a scenario holds a unit
+
+    return pint.UnitRegistry(non_int_type=Fraction)

@@ -1,0 +1,1 @@
+"""Friction laws of what users bring: expressions, functions, measured points."""

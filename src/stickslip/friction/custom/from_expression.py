@@ -1,0 +1,174 @@
+"""A friction law from an expression in u and v with named parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import quantity
+from stickslip.foundation.units import si_base
+from stickslip.friction.custom.sampled import check_samples
+from stickslip.friction.formula.bounds import bounds
+from stickslip.friction.formula.dimensions import check_dimensions
+from stickslip.friction.formula.expression import SLIP, Expression, depends_on, evaluate, nodes_of
+from stickslip.friction.formula.parse import LARGEST_EXPONENT, LONGEST, RESERVED, parse
+from stickslip.friction.law import Formula
+from stickslip.friction.memory import RemembersSlip
+from stickslip.friction.parameters import Choice, Named, NamedNumbers, Text, declare
+
+MOST_PARAMETERS = 50
+LONGEST_NAME = 40
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExpressionLaw(RemembersSlip):
+    """mu(u, v) as the user writes it, u the slip (m) that `counts` names and v >= 0 the slip rate (m/s).
+
+    It must have all derivatives where slip begins, at v = 0, and must not be negative: checked on samples up to 10 m and 10 m/s.
+    `static` is the coefficient at rest where it exceeds the expression at v = 0+. With a unit on any value all units are checked.
+    """
+
+    kind: ClassVar[str] = "expression"
+    source: ClassVar[str] = "the user's formula"
+    example: ClassVar[dict[str, Any]] = {
+        "expression": "mu_d + (mu_s - mu_d) / (1 + alpha*v)",
+        "values": {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"},
+    }
+
+    expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
+    values: tuple[Named, ...] = declare(NamedNumbers("values of the parameters", "parameters"), ())
+    static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
+    counts: Literal["net", "path"] = declare(Choice("slip that u stands for", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
+
+    def check(self) -> None:
+        self._check_names()
+        units = {value.name: value.unit for value in self.values}
+        try:
+            if any(units.values()):
+                check_dimensions(self.tree, units)
+            self._check_exponents()
+            check_samples(self.tree, self.numbers(), backwards=self.counts == "net")
+        except InputError as error:
+            raise InputError(f"ExpressionLaw: expression: {error}") from None
+        if self.static is not None:
+            self._check_static(self.static)
+
+    def _check_names(self) -> None:
+        names = [value.name for value in self.values]
+        if len(names) > MOST_PARAMETERS:
+            raise InputError(f"ExpressionLaw: parameters: more than {MOST_PARAMETERS}")
+        for name in names:
+            if not (isinstance(name, str) and name.isidentifier() and name.isascii() and len(name) <= LONGEST_NAME):
+                raise InputError(f"ExpressionLaw: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
+            if name in RESERVED or names.count(name) > 1:
+                raise InputError(f"ExpressionLaw: parameters: the name {name} is taken")
+        used = {node.name for node in nodes_of(self.tree) if node.operation == "parameter"}
+        for name in names:
+            if name not in used:
+                hint = nearest(name, used) if used else "the expression has no parameters"
+                raise InputError(f"ExpressionLaw: parameters: {name} does not occur in the expression; {hint}")
+
+    def _check_exponents(self) -> None:
+        for node in nodes_of(self.tree):
+            if node.operation == "pow":
+                with np.errstate(all="ignore"):
+                    exponent = float(evaluate(node.arguments[1], self.numbers(), 0.0, 0.0))
+                if not abs(exponent) <= LARGEST_EXPONENT:
+                    raise InputError(f"an exponent is {exponent:g}, it must be within {LARGEST_EXPONENT:g}")
+
+    def _check_static(self, static: float) -> None:
+        if depends_on(self.tree, SLIP):
+            raise InputError("ExpressionLaw: static needs an expression without u: the step at rest would differ from slip to slip")
+        sliding = float(self.coefficient(0.0))
+        if static < sliding:
+            raise InputError(f"ExpressionLaw: static must be at least the expression at v = 0, got {static:g} < {sliding:g}")
+
+    @property
+    def tree(self) -> Expression:
+        """The formula as a tree."""
+        try:
+            return parse(self.expression, tuple(value.name for value in self.values))
+        except InputError as error:
+            raise InputError(f"ExpressionLaw: expression: {error}") from None
+
+    @property
+    def pieces(self) -> tuple[Formula, ...]:
+        tree, names = self.tree, self.parameters()
+        return (lambda law, u, v: evaluate(tree, {name: getattr(law, name) for name in names}, u, v),)
+
+    def parameters(self) -> tuple[str, ...]:
+        return tuple(value.name for value in self.values)
+
+    def piece_values(self, i: int) -> tuple[float, ...]:
+        return tuple(value.value for value in self.values)
+
+    def literals(self) -> dict[str, float]:
+        return {}
+
+    @property
+    def static_excess(self) -> float:
+        return 0.0 if self.static is None else self.static - float(self.coefficient(0.0))
+
+    def range(self) -> tuple[float, float]:
+        """Sure bounds: those of the expression for any slip and slip rate, and never below 0."""
+        slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
+        low, high = bounds(self.tree, self.numbers(), slip, (0.0, math.inf))
+        return max(low, 0.0), max(high, self.static or 0.0)
+
+    @property
+    def variation(self) -> float:
+        """Of the values up to 10 m and 10 m/s, if the bounds are not finite."""
+        low, high = self.range()
+        if math.isfinite(high):
+            return high - low
+        slip, rate = np.linspace(0.0, 10.0, 201)[:, None], np.append(0.0, np.geomspace(1e-9, 10.0, 200))
+        values = self.coefficient(slip, rate)
+        return max(float(np.ptp(values)), self.static_excess)
+
+    @property
+    def rate_scales(self) -> tuple[float, ...]:
+        """Values in m/s, inverses of those in s/m; without units any number of the expression may be either."""
+        units = {value.unit for value in self.values} - {""}
+        scales = [
+            abs(value.value) ** (1 if value.unit == "m s^-1" else -1)
+            for value in self.values
+            if value.value and value.unit in _RATES
+        ]
+        if units:
+            return tuple(scales)
+        constants = [node.value for node in nodes_of(self.tree) if node.operation == "constant"]
+        sizes = [abs(number) for number in (*self.piece_values(0), *constants) if number]
+        return tuple(dict.fromkeys(scale for size in sizes for scale in (size, 1.0 / size)))
+
+
+_RATES = ("m s^-1", "m^-1 s")
+
+
+def FromExpression(  # noqa: N802 - reads as the law it makes
+    expression: str,
+    parameters: Mapping[str, float | str] | None = None,
+    static: float | None = None,
+    counts: Literal["net", "path"] = "net",
+    memory: Literal["all", "since-arrest"] = "all",
+) -> ExpressionLaw:
+    """A law from text such as "mu_d + (mu_s - mu_d) / (1 + alpha*v)", with the parameters' values: numbers in SI or "1 mm/s".
+
+    Raises InputError: one line that says which part is wrong. Nothing is evaluated as Python.
+    """
+    values = tuple(named_value(name, value, "ExpressionLaw:") for name, value in (parameters or {}).items())
+    return ExpressionLaw(expression=expression, values=values, static=static, counts=counts, memory=memory)
+
+
+def named_value(name: str, value: float | str, where: str) -> Named:
+    """A parameter from a number or from a text with a unit. Raises InputError beginning with `where`."""
+    if not isinstance(value, str):
+        return Named(name, value)
+    try:
+        return Named(name, *si_base(value))
+    except InputError as error:
+        raise InputError(f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None

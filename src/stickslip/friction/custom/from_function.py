@@ -1,0 +1,84 @@
+"""A friction law from a plain Python function: traced once with symbols, so that it has derivatives and compiles."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.custom.from_expression import ExpressionLaw, FromExpression
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
+from stickslip.friction.formula.text import to_text
+
+OPTIONS = ("static", "counts", "memory")
+
+
+def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
+    """A law from mu(u, v, **parameters): u slip (m), v >= 0 slip rate (m/s).
+
+        law = ss.friction.FromFunction(my_function, mu_s=0.8, mu_d=0.3)
+
+        @ss.friction.FromFunction(mu_s=0.8, mu_d=0.3)
+        def law(u, v, mu_s, mu_d): return mu_d + (mu_s - mu_d) * np.exp(-v / 0.1)
+
+    The function is called once, with symbols: ordinary operators and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh and what
+    they make up are recorded as an `ExpressionLaw`, which a scenario can hold. Branches on values cannot be. Values are numbers
+    in SI or texts with a unit; `static`, `counts` and `memory` go to the law where the function has no parameter of that name.
+    Raises InputError: one line that says what cannot be traced.
+    """
+    if function is None:
+        return lambda decorated: FromFunction(decorated, **given)
+    values = _values(function, given)
+    options = {name: value for name, value in given.items() if name in OPTIONS and name not in values}
+    tree = _traced(function, tuple(values))
+    used = {node.name for node in nodes_of(tree) if node.operation == "parameter"}
+    return _law(function, tree, {name: value for name, value in values.items() if name in used}, options)
+
+
+def _law(function: Callable[..., Any], tree: Expression, values: dict[str, Any], options: dict[str, Any]) -> ExpressionLaw:
+    try:
+        return FromExpression(to_text(tree), values, **options)
+    except InputError as error:
+        raise InputError(f"FromFunction: {_name(function)}: {str(error).removeprefix('ExpressionLaw: ')}") from None
+
+
+def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:
+    """Values of the function's parameters beyond u and v, from its defaults and what is given."""
+    name = _name(function)
+    try:
+        signature = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        raise InputError(f"FromFunction: {name} is not a Python function whose parameters can be read") from None
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    first, rest = list(signature)[:2], list(signature)[2:]
+    if len(first) < 2 or any(p.kind not in kinds for p in rest):
+        raise InputError(f"FromFunction: {name} must be a function of u and v, then named parameters")
+    names = [p.name for p in rest]
+    for extra in given:
+        if extra not in names and extra not in OPTIONS:
+            raise InputError(f"FromFunction: {name} has no parameter {extra}; {nearest(extra, [*names, *OPTIONS])}")
+    values = {p.name: given.get(p.name, p.default) for p in rest}
+    missing = [p for p, value in values.items() if value is inspect.Parameter.empty]
+    if missing:
+        raise InputError(f"FromFunction: {name}: parameter {missing[0]} has no value")
+    return values
+
+
+def _traced(function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
+    name = _name(function)
+    try:
+        result = function(SLIP, RATE, **{p: Parameter(p) for p in names})
+        return as_expression(result)
+    except InputError as error:
+        raise InputError(f"FromFunction: {name}: {str(error).removeprefix('formula: ')}") from None
+    except Exception as error:  # whatever a user's function raises when it meets symbols
+        said = " ".join(str(error).split())[:120]
+        raise InputError(
+            f"FromFunction: {name} cannot be traced ({type(error).__name__}: {said}); "
+            "use + - * / ** and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh"
+        ) from None
+
+
+def _name(function: Any) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))

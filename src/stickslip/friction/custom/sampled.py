@@ -1,0 +1,71 @@
+"""A formula tried at many slips and slip rates: finite, not negative, and with derivatives where slip begins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, depends_on, evaluate_nodes
+from stickslip.friction.formula.text import to_text
+
+LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
+"""m and m/s: how far a formula is tried; no earthquake and no machine goes much farther."""
+TOLERANCE = 1e-12
+
+
+def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool) -> None:
+    """Raise InputError, with the place, where the formula is negative, not a number, or has no derivative."""
+    slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
+    if backwards:
+        slip = np.concatenate((-slip[:0:-1], slip))
+    rate = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
+    u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
+    with np.errstate(all="ignore"):
+        found = evaluate_nodes(tree, numbers, u, v)
+        _check_constants(found)
+        values = np.broadcast_to(found[tree], u.shape)
+        _refuse(~np.isfinite(values), u, v, "is not a finite number")
+        negative = np.where(values < -TOLERANCE, values, 0.0)
+        lowest = int(np.argmin(negative))
+        _refuse(np.arange(len(u)) == lowest if negative[lowest] < 0.0 else np.zeros(len(u), bool), u, v, f"is {values[lowest]:.3g}")
+    for node in found:
+        if node.operation in ("sqrt", "log", "pow") and np.ndim(found[node.arguments[0]]):
+            _check_argument(node, found[node.arguments[0]], u, v)
+
+
+def samples(largest: float) -> NDArray[np.float64]:
+    """0 and numbers up to `largest`: evenly spaced, and in geometric progression below."""
+    return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 55), np.linspace(0.0, largest, 51))))
+
+
+def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float64], what: str) -> None:
+    if bad.any():
+        i = int(np.argmax(bad))
+        raise InputError(f"friction must be a number >= 0, but at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it {what}")
+
+
+def _check_constants(found: Mapping[Expression, Any]) -> None:
+    """Refuse a part without u and v that has no value, such as 0/0 or a root of -1, also where nothing shows of it."""
+    for node, value in found.items():
+        if np.ndim(value) == 0 and not np.isfinite(value):
+            raise InputError(f"the part '{_shown(node)}' is not a finite number: it is {value:g}")
+
+
+def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:
+    bad = ~(values > 0.0)
+    if bad.any():
+        i = int(np.argmax(bad))
+        where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
+        what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
+        raise InputError(
+            f"{what}, '{_shown(node.arguments[0])}', must stay above 0 to have derivatives, but {where}; add a small number to it"
+        )
+
+
+def _shown(node: Expression) -> str:
+    part = to_text(node)
+    return part if len(part) <= 60 else f"{part[:57]}..."

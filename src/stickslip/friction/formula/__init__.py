@@ -1,0 +1,1 @@
+"""Formulas of friction laws as expression trees: reading, units, differences, bounds, text."""

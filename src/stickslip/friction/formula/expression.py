@@ -1,0 +1,246 @@
+"""Formulas as trees: what a friction law is made of.
+
+A law writes its formula once, with ordinary operators and the functions of this module. Called with numbers or arrays the
+formula is a number or an array; called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter` it is an `Expression` tree, from
+which `stickslip.engine.codegen.taylor_series` writes compiled code. Nothing here is ever evaluated as Python text.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import numpy as np
+
+from stickslip.foundation.errors import InputError
+
+FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh")
+LARGEST_SIZE = 10_000
+"""Nodes of a formula written out in full: repeated multiplication doubles them."""
+LARGEST_POWER = 16
+"""Whole exponents up to this size become products: they have series at 0 too."""
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A node: an operation on other nodes, a parameter, a constant, or one of the variables."""
+
+    operation: str
+    arguments: tuple[Expression, ...] = ()
+    name: str = ""
+    value: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Work out hash and size from those of the arguments: a walk over a formula with shared parts may be exponential."""
+        size = 1 + sum(argument.size for argument in self.arguments)
+        if size > LARGEST_SIZE:
+            raise InputError(f"formula: longer than {LARGEST_SIZE} operations")
+        object.__setattr__(self, "_size", size)
+        object.__setattr__(self, "_hash", hash((self.operation, self.arguments, self.name, self.value)))
+
+    def __hash__(self) -> int:
+        return int(self._hash)  # type: ignore[attr-defined] # set above
+
+    def __eq__(self, other: object) -> bool:
+        """Whether two formulas are the same tree; a comparison with a number is a branch on a value."""
+        if isinstance(other, int | float | np.number):
+            self._refuse()
+        if not isinstance(other, Expression):
+            return False
+        ours, theirs = ((node.operation, node.name, node.value) for node in (self, other))
+        return self is other or (hash(self) == hash(other) and ours == theirs and self.arguments == other.arguments)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copies in other processes work out their own hash."""
+        return Expression, (self.operation, self.arguments, self.name, self.value)
+
+    @property
+    def size(self) -> int:
+        """Nodes of the formula written out in full."""
+        return int(self._size)  # type: ignore[attr-defined] # set above
+
+    def __add__(self, other: Any) -> Expression:
+        return Expression("add", (self, as_expression(other)))
+
+    def __radd__(self, other: Any) -> Expression:
+        return as_expression(other) + self
+
+    def __sub__(self, other: Any) -> Expression:
+        return Expression("sub", (self, as_expression(other)))
+
+    def __rsub__(self, other: Any) -> Expression:
+        return as_expression(other) - self
+
+    def __mul__(self, other: Any) -> Expression:
+        return Expression("mul", (self, as_expression(other)))
+
+    def __rmul__(self, other: Any) -> Expression:
+        return as_expression(other) * self
+
+    def __truediv__(self, other: Any) -> Expression:
+        return Expression("div", (self, as_expression(other)))
+
+    def __rtruediv__(self, other: Any) -> Expression:
+        return as_expression(other) / self
+
+    def __neg__(self) -> Expression:
+        return as_expression(0.0) - self
+
+    def __pos__(self) -> Expression:
+        return self
+
+    def __pow__(self, exponent: Any) -> Expression:
+        power = as_expression(exponent)
+        if power.operation == "constant" and power.value.is_integer() and abs(power.value) <= LARGEST_POWER:
+            product = _product(self, abs(int(power.value)))
+            return product if power.value >= 0 else 1.0 / product
+        return Expression("pow", (self, power))
+
+    def __rpow__(self, base: Any) -> Expression:
+        return as_expression(base) ** self
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Expression:
+        """numpy's functions of an expression are expressions: np.exp(v) in a user's function."""
+        rule = _UFUNCS.get(ufunc.__name__)
+        if rule is None or method != "__call__" or options:
+            allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *_EXTRA))
+            raise InputError(f"formula: np.{ufunc.__name__} cannot be traced; allowed: {allowed} and + - * / **")
+        if any(isinstance(value, np.ndarray) and value.ndim for value in inputs):
+            raise InputError("formula: an array cannot be traced: u and v are single numbers")
+        return as_expression(rule(*inputs))
+
+    def _refuse(self, *_: Any) -> NoReturn:
+        raise InputError(
+            "formula: a branch on the value of u, v or a parameter cannot be traced; "
+            "use a smooth function such as np.tanh, or a piecewise or table law"
+        )
+
+    __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
+
+    def __abs__(self) -> Expression:
+        if self == RATE:  # a magnitude already
+            return self
+        raise InputError("formula: abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth")
+
+    def __float__(self) -> float:
+        raise InputError("formula: math functions and float() cannot be traced; use numpy's: np.exp instead of math.exp")
+
+    __int__ = __float__
+
+
+SLIP = Expression("slip", name="u")
+RATE = Expression("rate", name="v")
+STATE = Expression("state", name="w")
+
+
+def _product(base: Expression, count: int) -> Expression:
+    """base**count by squaring."""
+    if count == 0:
+        return as_expression(1.0)
+    half = _product(base, count // 2) if count > 1 else None
+    square = base if half is None else half * half
+    return square * base if half is not None and count % 2 else square
+
+
+def Parameter(name: str) -> Expression:  # noqa: N802 - reads as the node it makes
+    """A named number of the law, known when the run starts."""
+    return Expression("parameter", name=name)
+
+
+def as_expression(value: Any) -> Expression:
+    """Wrap a plain number as a constant node; a node stays what it is."""
+    return value if isinstance(value, Expression) else Expression("constant", value=float(value))
+
+
+def _function(name: str) -> Callable[[Any], Any]:
+    numeric = getattr(np, name)
+
+    def apply(argument: Any) -> Any:
+        return Expression(name, (argument,)) if isinstance(argument, Expression) else numeric(argument)
+
+    apply.__name__ = name
+    apply.__doc__ = f"{name} of a number, an array or an expression."
+    return apply
+
+
+sin, cos, exp, log, sqrt, tanh, arcsinh = (_function(name) for name in FUNCTIONS)
+
+
+_EXTRA: dict[str, Callable[..., Any]] = {
+    "square": lambda x: x * x,
+    "reciprocal": lambda x: 1.0 / x,
+    "log1p": lambda x: log(1.0 + x),
+    "log10": lambda x: log(x) / math.log(10.0),
+    "log2": lambda x: log(x) / math.log(2.0),
+    "exp2": lambda x: exp(x * math.log(2.0)),
+    "expm1": lambda x: exp(x) - 1.0,
+    "tan": lambda x: sin(x) / cos(x),
+    "cosh": lambda x: 0.5 * (exp(x) + exp(-x)),
+    "sinh": lambda x: 0.5 * (exp(x) - exp(-x)),
+}
+"""Other functions of numpy, by those that formulas have."""
+
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "pow": lambda a, b: a**b,
+} | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh), strict=True))
+"""What the operations of nodes do, to numbers and to expressions."""
+
+_UFUNCS: dict[str, Callable[..., Any]] = (
+    {name: OPERATIONS[name] for name in FUNCTIONS}
+    | _EXTRA
+    | {
+        "add": lambda a, b: as_expression(a) + b,
+        "subtract": lambda a, b: as_expression(a) - b,
+        "multiply": lambda a, b: as_expression(a) * b,
+        "divide": lambda a, b: as_expression(a) / b,
+        "power": lambda a, b: as_expression(a) ** b,
+        "float_power": lambda a, b: as_expression(a) ** b,
+        "negative": lambda a: -a,
+        "positive": lambda a: a,
+        "absolute": abs,
+    }
+)
+
+
+def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> Any:
+    """The formula at slip u (m) and slip rate v (m/s), with the parameters' values by name: numbers, arrays or expressions."""
+    return evaluate_nodes(tree, numbers, u, v)[tree]
+
+
+def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> dict[Expression, Any]:
+    """As `evaluate`, with the values of all parts of the formula."""
+    found: dict[Expression, Any] = {SLIP: u, RATE: v}
+    for node in nodes_of(tree):
+        if node.operation == "parameter":
+            number = numbers[node.name]
+            found[node] = np.float64(number) if isinstance(number, int | float) else number  # as numpy divides by zero
+        elif node.operation == "constant":
+            found[node] = np.float64(node.value)
+        elif node.arguments:
+            found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
+    return found
+
+
+def depends_on(node: Expression, variable: Expression) -> bool:
+    """Whether the formula contains the variable (SLIP, RATE or STATE)."""
+    return variable in nodes_of(node)
+
+
+def nodes_of(root: Expression) -> list[Expression]:
+    """Every distinct node below `root`, arguments before the nodes that use them, `root` last."""
+    found: dict[Expression, None] = {}
+
+    def visit(node: Expression) -> None:
+        if node not in found:
+            for argument in node.arguments:
+                visit(argument)
+            found[node] = None
+
+    visit(root)
+    return list(found)

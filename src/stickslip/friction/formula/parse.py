@@ -1,0 +1,157 @@
+"""Text to a formula tree, by a whitelist over Python's own syntax tree: nothing is ever evaluated.
+
+Allowed are numbers, the variables u (slip, m) and v (slip rate, m/s), pi, declared parameters, + - * /, ** with an exponent that
+does not vary, and the functions of `stickslip.friction.formula.expression`. Length, depth and size are limited: the text is
+untrusted.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import warnings
+from collections.abc import Collection
+from functools import lru_cache
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.formula.expression import (
+    FUNCTIONS,
+    OPERATIONS,
+    RATE,
+    SLIP,
+    Expression,
+    Parameter,
+    as_expression,
+    depends_on,
+    nodes_of,
+)
+
+LONGEST = 1000
+"""Characters of an expression."""
+DEEPEST = 100
+"""Levels of nesting; a sum of n terms has n."""
+MOST_OPERATIONS = 250
+"""Different nodes of the tree: each is compiled for every order of the series."""
+LARGEST_EXPONENT = 100.0
+RESERVED = ("u", "v", "pi", *FUNCTIONS)
+ALLOWED = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
+
+_BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div", ast.Pow: "pow"}
+
+
+@lru_cache(maxsize=256)
+def parse(text: str, names: tuple[str, ...]) -> Expression:
+    """The tree of an expression in u, v and parameters of these names. Raises InputError: one line that says which part."""
+    if len(text) > LONGEST:
+        raise InputError(f"longer than {LONGEST} characters")
+    if not text.isascii() or not text.isprintable():
+        odd = next(c for c in text if not (c.isascii() and c.isprintable()))
+        raise InputError(f"the character {odd!a} is not allowed; {ALLOWED}")
+    tree = _Reader(text, names).read(_syntax(text), 0)
+    if len(nodes_of(tree)) > MOST_OPERATIONS:
+        raise InputError(f"more than {MOST_OPERATIONS} operations, powers written out as products")
+    return tree
+
+
+def _syntax(text: str) -> ast.expr:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Python warns of odd code that is refused below
+            return ast.parse(text.strip(), mode="eval").body
+    except (RecursionError, MemoryError):
+        raise InputError("nested too deeply") from None
+    except (SyntaxError, ValueError) as error:
+        where = f" at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
+        raise InputError(f"{_shown(text)} is not an expression: mistake{where}; {ALLOWED}") from None
+
+
+class _Reader:
+    """Reads one expression."""
+
+    def __init__(self, text: str, names: Collection[str]) -> None:
+        self.text, self.names = text.strip(), names
+
+    def read(self, node: ast.expr, depth: int) -> Expression:
+        """The tree of a part. Raises InputError for anything that is not allowed."""
+        if depth > DEEPEST:
+            raise InputError(f"nested more than {DEEPEST} deep, at {self.part(node)}")
+        if isinstance(node, ast.Constant):
+            return self.number(node)
+        if isinstance(node, ast.Name):
+            return self.variable(node)
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+            return self.signed(node, depth)
+        if isinstance(node, ast.BinOp):
+            return self.binary(node, depth)
+        if isinstance(node, ast.Call):
+            return self.call(node, depth)
+        raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+
+    def number(self, node: ast.Constant) -> Expression:
+        if type(node.value) not in (int, float):
+            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+        try:
+            value = float(node.value)  # type: ignore[arg-type] # a number, see above
+        except OverflowError:
+            value = math.inf
+        if not math.isfinite(value):
+            raise InputError(f"the number {self.part(node)} is too large")
+        return as_expression(value)
+
+    def variable(self, node: ast.Name) -> Expression:
+        if node.id in self.names:
+            return Parameter(node.id)
+        if node.id in ("u", "v", "pi"):
+            return {"u": SLIP, "v": RATE, "pi": as_expression(math.pi)}[node.id]
+        if node.id in FUNCTIONS:
+            raise InputError(f"{self.part(node)} is a function: write {node.id}(...)")
+        raise InputError(
+            f"{self.part(node)} is neither u, v, pi nor a declared parameter; {nearest(node.id, [*self.names, 'u', 'v'])}"
+        )
+
+    def signed(self, node: ast.UnaryOp, depth: int) -> Expression:
+        inner = self.read(node.operand, depth + 1)
+        if isinstance(node.op, ast.UAdd):
+            return inner
+        return as_expression(-inner.value) if isinstance(node.operand, ast.Constant) else -inner
+
+    def binary(self, node: ast.BinOp, depth: int) -> Expression:
+        if type(node.op) not in _BINARY:
+            hint = "; a power is written **" if isinstance(node.op, ast.BitXor) else ""
+            raise InputError(f"the operator in {self.part(node)} is not allowed{hint}; {ALLOWED}")
+        left, right = self.read(node.left, depth + 1), self.read(node.right, depth + 1)
+        if isinstance(node.op, ast.Pow):
+            self.check_exponent(node, right)
+        return self.made(node, _BINARY[type(node.op)], left, right)
+
+    def check_exponent(self, node: ast.BinOp, exponent: Expression) -> None:
+        if depends_on(exponent, SLIP) or depends_on(exponent, RATE):
+            raise InputError(f"the exponent of {self.part(node)} must not contain u or v; exp(y * log(x)) is x**y")
+        if exponent.operation == "constant" and abs(exponent.value) > LARGEST_EXPONENT:
+            raise InputError(f"the exponent of {self.part(node)} must be within {LARGEST_EXPONENT:g}")
+
+    def call(self, node: ast.Call, depth: int) -> Expression:
+        if not isinstance(node.func, ast.Name):
+            raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
+        name = node.func.id
+        if name not in FUNCTIONS:
+            raise InputError(f"the function {self.part(node.func)} is unknown; {nearest(name, FUNCTIONS)}")
+        if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
+            raise InputError(f"{self.part(node)}: {name} takes one number")
+        return self.made(node, name, self.read(node.args[0], depth + 1))
+
+    def made(self, node: ast.expr, operation: str, *arguments: Expression) -> Expression:
+        try:
+            result: Expression = OPERATIONS[operation](*arguments)
+        except InputError:
+            raise InputError(f"too many operations with powers written out as products, at {self.part(node)}") from None
+        return result
+
+    def part(self, node: ast.expr) -> str:
+        """The part of the text that a message is about."""
+        return _shown(ast.get_source_segment(self.text, node) or self.text)
+
+
+def _shown(text: str) -> str:
+    shown = ascii(text)
+    return shown if len(shown) <= 60 else f"{shown[:56]}...'"

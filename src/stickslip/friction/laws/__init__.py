@@ -1,0 +1,1 @@
+"""Friction laws, one a file; the registry beside this folder lists them."""

@@ -1,0 +1,106 @@
+"""A rate law whose friction follows the slip rate with a lag, and may have a direct effect: a regularisation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.composite import PREFIXES, Prefixed
+from stickslip.friction.formula.expression import arcsinh
+from stickslip.friction.law import Formula, FrictionLaw, StateVariable
+from stickslip.friction.parameters import Part, declare
+
+_PREFIX = PREFIXES[1]
+_OWN = ("time", "direct", "direct_rate")
+
+
+@dataclass(frozen=True)
+class LaggedFriction(FrictionLaw):
+    """mu = law(w) + direct [arcsinh(v / (2 direct_rate)) - arcsinh(w / (2 direct_rate))], with time dw/dt = v - w.
+
+    In steady sliding, w = v, it is the law itself. On a massless slab without direct effect Z time dw/dt = load - g(w): the lag
+    does what a contact mass of Z time does. It heals at rest: w falls to 0 there.
+    """
+
+    kind: ClassVar[str] = "lagged"
+    source: ClassVar[str] = (
+        "Campillo et al. 1996, section 3 (why a solution must be selected); Hess & Soom 1990, J. Tribol. 112, 147 (a time lag); "
+        "Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
+    )
+    state: ClassVar[StateVariable | None] = StateVariable("w", "m/s", "slip rate that friction has caught up with")
+    example: ClassVar[dict[str, Any]] = {
+        "rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"},
+        "time": "10 ms",
+    }
+
+    rate: FrictionLaw = declare(Part("a law of slip rate"))  # noqa: RUF009 - makes a dataclass field
+    time: float = quantity("s", "time in which friction catches up with the slip rate", above=0)
+    direct: float = quantity("1", "friction gained at once per factor e of slip rate", at_least=0, default=0.0)
+    direct_rate: float = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)
+
+    def check(self) -> None:
+        if not isinstance(self.rate, FrictionLaw):
+            raise InputError(f"LaggedFriction: rate must be a friction law, got {type(self.rate).__name__}")
+        if self.rate.depends_on_slip or not self.rate.depends_on_rate or self.rate.state is not None:
+            raise InputError(f"LaggedFriction: rate must be a law of slip rate only, {self.rate.kind} is not")
+        if self.rate.knots or self.rate.static_excess:
+            raise InputError(f"LaggedFriction: rate must be a smooth law, {self.rate.kind} has kinks or a step at rest")
+
+    @property
+    def pieces(self) -> tuple[Formula, ...]:
+        lagged = _with_lag(self.rate.pieces[0])
+        return (_with_direct_effect(lagged) if self.direct > 0.0 else lagged,)
+
+    @property
+    def state_rate(self) -> Formula:
+        return _catch_up
+
+    def parameters(self) -> tuple[str, ...]:
+        return (*(_PREFIX + name for name in self.rate.parameters()), *_OWN)
+
+    def piece_values(self, i: int) -> tuple[float, ...]:
+        return (*self.rate.piece_values(0), *(float(getattr(self, name)) for name in _OWN))
+
+    def literals(self) -> dict[str, float]:
+        return {_PREFIX + name: value for name, value in self.rate.literals().items()}
+
+    def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
+        """mu as in every law. A lag that a run's polynomials leave below zero, by their tolerance, is none."""
+        return super().coefficient(u, v, np.maximum(np.asarray(w, float), 0.0))
+
+    def range(self) -> tuple[float, float]:
+        low, high = self.rate.range()
+        return low, math.inf if self.direct > 0.0 else high
+
+    @property
+    def variation(self) -> float:
+        return self.rate.variation
+
+    @property
+    def rate_scales(self) -> tuple[float, ...]:
+        return self.rate.rate_scales
+
+
+def _with_lag(formula: Formula) -> Formula:
+    def lagged(law: Any, u: Any, v: Any, w: Any) -> Any:
+        return formula(Prefixed(law, _PREFIX), u, w)
+
+    return lagged
+
+
+def _with_direct_effect(formula: Formula) -> Formula:
+    def direct(law: Any, u: Any, v: Any, w: Any) -> Any:
+        gained = arcsinh(v / (2.0 * law.direct_rate)) - arcsinh(w / (2.0 * law.direct_rate))
+        return formula(law, u, v, w) + law.direct * gained
+
+    return direct
+
+
+def _catch_up(law: Any, u: Any, v: Any, w: Any) -> Any:
+    return (v - w) / law.time

@@ -1,0 +1,34 @@
+"""Friction that grows with slip rate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.formula.expression import log
+from stickslip.friction.law import FrictionLaw
+
+
+@dataclass(frozen=True)
+class VelocityStrengthening(FrictionLaw):
+    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. One slip rate at every load."""
+
+    kind: ClassVar[str] = "velocity-strengthening"
+    source: ClassVar[str] = (
+        "Marone, Scholz & Bilham 1991, J. Geophys. Res. 96, 8441 (logarithm, here with 1 + v / rate for v / rate)"
+    )
+    example: ClassVar[dict[str, Any]] = {"static": 0.6, "a": 0.01, "rate": "1e-6 m/s"}
+
+    static: float = quantity("1", "friction coefficient at rest", at_least=0)
+    a: float = quantity("1", "friction gained per factor e of slip rate beyond `rate`", at_least=0, default=0.0)
+    rate: float = quantity("m/s", "slip rate at which the logarithm sets in", above=0, default=1e-6)
+    viscosity: float = quantity("s/m", "friction gained per slip rate", at_least=0, default=0.0)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.static + law.a * log(1.0 + v / law.rate) + law.viscosity * v
+
+    def range(self) -> tuple[float, float]:
+        return self.static, math.inf if self.a > 0.0 or self.viscosity > 0.0 else self.static

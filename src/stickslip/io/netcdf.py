@@ -1,0 +1,292 @@
+"""Solutions as netCDF: everything needed to evaluate them again, a drawing of them for other tools, and where they come from."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+import stickslip
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Store
+from stickslip.foundation import netcdf_file
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.netcdf_file import FullDiskError, write
+from stickslip.io.soundness import check_history, number
+from stickslip.loading import HISTORIES, LoadingHistory
+from stickslip.observables.predictability import attributes_of, is_followed, predictability
+from stickslip.observables.rule_influence import choices
+from stickslip.problem.problem import MAY_VARY
+from stickslip.problem.selection_rule import names as rule_names
+from stickslip.scenarios import Scenario, read_scenario
+from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution.solution import Solution
+from stickslip.solution.window import Window
+from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
+from stickslip.trajectory.history import NO_LEAPS, History
+from stickslip.trajectory.status import Status
+from stickslip.trajectory.tables import EVENT_COLUMNS
+
+FORMAT = 1
+"""Version of the layout below; a file with another one is refused."""
+CATALOGUE = "stickslip_catalogue"
+KINDS = {
+    "stickslip_format": "a solution: take it up with stickslip.resume",
+    CATALOGUE: "a catalogue's checkpoint: take it up with stickslip.resume_catalogue",
+}
+"""Attributes that hold the version, and what a file with one of them is."""
+
+DRAWN_POINTS = 2000
+
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("levels", "branches"), ("one",), ("times",))
+"""Names of the axes of a checkpoint's arrays."""
+
+LONG_NAMES = {
+    "slip": "slip of the contact, u",
+    "event_slip": "slip of the contact since the start of the event",
+    "slip_rate": "slip rate of the contact, v",
+    "traction": "friction on the contact, tau",
+    "load": "load on the contact, beta",
+    "state": "state of the friction law",
+}
+
+PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
+
+
+def units(solution: Readings) -> dict[str, str]:
+    """Unit of each curve of a solution."""
+    load, state = solution.problem.load_unit, solution.problem.friction.state
+    known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
+    return known | ({"state": state.unit} if state else {})
+
+
+def provenance(solution: Solution) -> dict[str, Any]:
+    """Who made this, from what, under which rule and tolerance: attributes of every file and dataset."""
+    chosen = choices(solution)
+    return origin(solution) | {
+        "selection_note": solution.selection_note,
+        "selection_regime": chosen.regime,
+        "selection_decided_shocks": int(chosen.shocks.sum()),
+        **attributes_of(predictability(solution) if is_followed(solution.problem) else None),
+    }
+
+
+def origin(solution: Solution) -> dict[str, Any]:
+    """The same without what has to be worked out."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
+        "source": f"stickslip {stickslip.__version__}",
+        "references": PAPER,
+        "scenario": Scenario.of(solution).to_toml(),
+        "selection_rule": solution.problem.rule,
+        "rtol": solution.rtol,
+        "duration": solution.duration,
+        "status": solution.status.name,
+        "status_message": solution.status.message,
+        "status_ok": int(solution.status.ok),
+        "lumping": solution.lumping_note,
+        "rounding": solution.rounding_note,
+    }
+
+
+def solution_dataset(solution: Solution, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+    """Slip, slip rate, traction and load at times t (s), right limits, with units and provenance; with x (m) also the field."""
+    return _readings(solution, t, x).assign_attrs(provenance(solution))
+
+
+def window_dataset(window: Window, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+    """As `solution_dataset`, in local time; attributes say when the event begins: `epoch_row` whole rows and `epoch_offset` s."""
+    dataset = _readings(window, t, x)
+    dataset.time.attrs["long_name"] = "time since the start of the event"
+    about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
+    return dataset.assign_attrs(provenance(window.solution) | about)
+
+
+def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Dataset:
+    time = np.atleast_1d(np.asarray(t, float))
+    dataset = _curves(readings, time, {name: getattr(readings, name)(time) for name in readings.curves})
+    return dataset if x is None else dataset.merge(_field(readings, time, np.atleast_1d(np.asarray(x, float))))
+
+
+def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -> xr.Dataset:
+    """Displacement, velocity and stress over time and x."""
+    found = readings.field(x, t[:, None])._asdict()
+    since = "since the event began, from where the contact stood then" if "event_slip" in readings.curves else "u"
+    about = {
+        "displacement": ("m", f"displacement, {since}"),
+        "velocity": ("m s-1", "velocity, v"),
+        "stress": ("Pa", "shear stress, sigma"),
+    }
+    variables = {name: (("time", "x"), found[name], {"units": unit, "long_name": text}) for name, (unit, text) in about.items()}
+    return xr.Dataset(variables, coords={"x": ("x", x, {"units": "m", "long_name": "distance from the contact"})})
+
+
+def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
+    unit = units(solution)
+    variables = {name: ("time", value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()}
+    time = ("time", t, {"units": "s", "long_name": "time since the start of the run"})
+    return xr.Dataset(variables, coords={"time": time})
+
+
+def save(solution: Solution, path: str | Path) -> Path:
+    """Write a solution to a netCDF file (atomically); `load` gives it back bit for bit.
+
+    Besides the history, the file holds curves for drawing (both limits at shocks), the tables of events and shocks, and as
+    attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError where the folder cannot
+    be written; where the disk is full, it is a FullDiskError, whose attribute `solution` can be saved elsewhere.
+    """
+    dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
+    try:
+        return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+    except FullDiskError as error:
+        error.solution = solution
+        raise
+
+
+def save_checkpoint(solution: Solution, path: Path) -> Path:
+    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables.
+
+    A full disk does not end the run: the checkpoint before stays, and a warning says so.
+    """
+    try:
+        return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+    except FullDiskError as error:
+        warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
+        return path
+
+
+def history_dataset(solution: Solution) -> xr.Dataset:
+    """The history, and where the engine stands behind it. Raises InputError for a loading that no file could be read back with."""
+    for loading in (getattr(solution.problem, name) for name in MAY_VARY):
+        if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
+            name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
+            raise InputError(f"save: {name} is not known to files: {place} = {name} tells them")
+    if solution.checkpoint is None:
+        return _history(solution)
+    return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")
+
+
+def _history(solution: Solution) -> xr.Dataset:
+    store, history = solution.history.store, solution.history
+    dataset = xr.Dataset(
+        {
+            "history_whole": (("piece", "whole_column"), store.whole),
+            "history_real": (("piece", "real_column"), store.real),
+            "history_load": (("piece", "term"), store.load),
+            "history_rate": (("piece", "term"), store.rate),
+            "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
+            "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
+            "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
+        }
+    )
+    if len(history.creep):
+        about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
+        dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
+    if solution.problem.friction.state is not None:
+        about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
+        dataset["history_state"] = (("piece", "term"), store.state, about)
+    dataset.history_whole.attrs = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
+    dataset.history_real.attrs = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
+    dataset.history_load.attrs = {"long_name": "load minus reference, Taylor coefficients", "units": solution.problem.load_unit}
+    dataset.history_rate.attrs = {"long_name": "slip rate, Taylor coefficients", "units": "m s-1"}
+    return dataset
+
+
+def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
+    """Where the engine stands, with the code that made it: what `resume` goes on from."""
+    axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
+    variables = {f"engine_{name}": (axes[name], getattr(checkpoint, name)) for name in ARRAYS}
+    return xr.Dataset(variables, attrs={"engine": checkpoint.engine})
+
+
+def _drawing(solution: Solution) -> xr.Dataset:
+    end = float(solution.breaks[-1])
+    time, _ = solution.curve("slip_rate", 0.0, end, DRAWN_POINTS)
+    return _curves(solution, time, {name: solution.curve(name, 0.0, end, DRAWN_POINTS)[1] for name in solution.curves})
+
+
+def _tables(solution: Solution) -> xr.Dataset:
+    load = solution.problem.load_unit
+    shock = {"time": ("s", ""), "cause": ("", ""), "rule": ("", "selection rule, where several slip rates are possible")}
+    variables = {}
+    for prefix, table, columns in (("event", solution.events, EVENT_COLUMNS), ("shock", solution.shocks, shock)):
+        for name in table.columns:
+            words = name in ("cause", "rule")
+            values = table[name].to_numpy(dtype=object if words else None)
+            unit, meaning = columns.get(name, ("m s-1" if "rate" in name else "load", ""))
+            about = {"units": load if unit == "load" else unit} | ({"long_name": meaning} if meaning else {})
+            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if words else values, about)
+    return xr.Dataset(variables)
+
+
+def column_unit(name: str, load_unit: str) -> str:
+    """Unit of a column of the table of events."""
+    unit, _ = EVENT_COLUMNS[name]
+    return load_unit if unit == "load" else unit
+
+
+def load(path: str | Path) -> Solution:
+    """Read a solution that `save` wrote. Raises InputError for a file that is not one."""
+    path = Path(path)
+    return to_solution(read(path), path)
+
+
+def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
+    """Read a file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
+    what = KINDS[kind].partition(":")[0]
+    dataset = netcdf_file.read(path, what)
+    if dataset.attrs.get(kind) != FORMAT:
+        other = next((KINDS[attribute] for attribute in KINDS if attribute != kind and attribute in dataset.attrs), None)
+        found = f"it is {other}" if other else f"format {FORMAT} expected, found {dataset.attrs.get(kind, 'none')}"
+        raise InputError(f"{path}: not {what} of this version of stickslip ({found})")
+    return dataset
+
+
+def is_catalogue(path: Path) -> bool:
+    """Return True if a file is the checkpoint of a catalogue."""
+    return CATALOGUE in netcdf_file.attributes(path)
+
+
+def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
+    """Return the solution in a file. Raises InputError for a rule that is not known here, and where something is out of range."""
+    try:
+        found = _solution(dataset, path)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{path}: not a file that stickslip has written: {' '.join(str(error).split())} is missing or wrong"
+        ) from None
+    check_history(found.history, path)
+    return found
+
+
+def _solution(dataset: xr.Dataset, path: Path) -> Solution:
+    attributes = dataset.attrs
+    if attributes["selection_rule"] not in rule_names():
+        rule = attributes["selection_rule"]
+        raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
+    scenario = read_scenario(attributes["scenario"], str(path))
+    whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
+    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, at.TERMS))
+    duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
+    store = Store(whole, real, load, rate, state)
+    creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
+    row_time, ramp, reached = (float(dataset[name].item()) for name in ("row_time", "ramp", "reached"))
+    history = History(store, scenario.problem, row_time, ramp, reached, creep=creep)
+    status = Status(str(attributes["status"]), str(attributes["status_message"]), bool(attributes["status_ok"]))
+    checkpoint = None
+    if "engine" in attributes:
+        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
+        checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
+    about = scenario.events, scenario.creep_rtol, scenario.shortest_event
+    lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding)
+
+
+def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:
+    return np.ascontiguousarray(dataset[name].to_numpy())

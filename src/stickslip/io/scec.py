@@ -1,0 +1,104 @@
+"""On-fault time series as text, in the layout of the SCEC/USGS spontaneous rupture benchmarks.
+
+Comment lines begin with # and say what was run and what the columns are; one line names the fields; then a line a sample. Stress
+is in MPa, as in the benchmarks. Source: R.A. Harris et al. 2009, Seismol. Res. Lett. 80, 119; scecdata.usc.edu/cvws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+import stickslip
+from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError
+from stickslip.io.sampling import Series, sample
+from stickslip.problem.problem import Problem
+from stickslip.solution.evaluation import Readings
+from stickslip.solution.window import Window
+
+FIELDS = (
+    ("t", "Time (s)"),
+    ("slip", "slip (m)"),
+    ("slip-rate", "slip rate (m/s)"),
+    ("shear-stress", "shear stress (MPa)"),
+)
+VERTICAL = (
+    ("v-slip", "vertical slip (m)"),
+    ("v-slip-rate", "vertical slip rate (m/s)"),
+    ("v-shear-stress", "vertical shear stress (MPa)"),
+)
+NORMAL = ("n-stress", "normal stress (MPa)")
+
+
+def write_scec(
+    run: Readings,
+    path: str | Path,
+    sampling_rate: float,
+    *,
+    start: float | None = None,
+    end: float | None = None,
+    antialias: bool = False,
+    problem: str = "stickslip",
+    station: str = "contact",
+    components: bool = False,
+) -> Path:
+    """Write t, slip, slip rate and shear stress of a run or a window on it (see `sample` for rate, times and filter).
+
+    Slip counts from the start of the run (of the event, in a window). `problem` and `station` go into the header. With
+    `components` the columns are the eight of the three-dimensional benchmarks: h- for our slip, v- zero, and the normal stress
+    (tension positive, as in TPV29 to TPV37: here it is negative). A block's forces are written over 1 m^2.
+    Raises InputError like `sample`, and for a header text of several lines.
+    """
+    for name, text in (("problem", problem), ("station", station)):
+        if not text.isprintable():
+            raise InputError(f"{name} must be one line of text, got {text!r}")
+    series = sample(run, sampling_rate, start=start, end=end, antialias=antialias)
+    columns = _columns(series, run.problem, components)
+    fields = _fields(components)
+    header = [f"# {line}" for line in _about(run, series, problem, station, fields)]
+    numbers = np.column_stack(columns)
+    lines = (" ".join((f"{row[0]: .13E}", *(f"{value: .12E}" for value in row[1:]))) for row in numbers.tolist())
+    text = "\n".join([*header, " ".join(name for name, _ in fields), *lines, ""])
+    return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
+
+
+def _fields(components: bool) -> tuple[tuple[str, str], ...]:
+    if not components:
+        return FIELDS
+    return FIELDS[0], *((f"h-{name}", f"horizontal {meaning}") for name, meaning in FIELDS[1:]), *VERTICAL, NORMAL
+
+
+def _columns(series: Series, problem: Problem, components: bool) -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:
+    columns = [series.time, series.slip, series.slip_rate, 1e-6 * series.traction]
+    if components:
+        zero = np.zeros_like(series.slip)
+        columns += [zero, zero, zero, np.full_like(zero, -1e-6 * problem.normal)]
+    return columns
+
+
+def _about(run: Readings, series: Series, problem: str, station: str, fields: tuple[tuple[str, str], ...]) -> Iterator[str]:
+    solution = run.solution if isinstance(run, Window) else run
+    yield f"problem={problem}"
+    yield "code=stickslip"
+    yield f"code_version={stickslip.__version__}"
+    yield f"body={run.problem.body!r}"
+    yield f"friction={run.problem.friction!r}"
+    yield from (f"{name}={text}" for name, text in run.problem.loading_texts.items())
+    yield f"initial_load={run.problem.load!r} {run.problem.load_unit}"
+    yield f"selection_rule={run.problem.rule}"
+    yield f"rtol={solution.rtol:g}"  # type: ignore[attr-defined]
+    if isinstance(run, Window):
+        row, offset = run.epoch
+        late = f"{row} rows of {run.history.row_time!r} s (round trips; block: periods) and {offset!r} s after t = 0"
+        yield f"origin=start of the slip event {late}"
+    yield "element_size=0 (no grid: exact waves)"
+    yield f"time_step={1.0 / series.rate:.13E} s"
+    yield f"num_time_steps={len(series.slip)}"
+    yield f"location={station}"
+    yield f"Time series in {len(fields)} columns: E21.13, then E20.12"
+    for number, (_, meaning) in enumerate(fields, 1):
+        yield f"Column #{number} = {meaning}"
+    yield "The line below lists the names of the data fields:"

@@ -1,0 +1,213 @@
+"""Check what was read from a file before compiled code, which trusts it, works on it.
+
+A file whose checksum fits may still have been made by hand, or by a program with an error. Every array has its shape and type, and
+every number that the engine uses as an index or as a code lies in its range; anything else is one line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine.codegen.records import Record
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts, Setup, State
+from stickslip.engine.state.workspace import REAL, WHOLE, WORK_ROWS
+from stickslip.engine_input.branch_table import STORM_OF, branch_rows, folds_move, has_levels_to_set
+from stickslip.engine_input.forcing import row_time
+from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.errors import InputError
+from stickslip.solution.solution import Solution
+from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.trajectory.history import History
+
+ROUNDING = 1e-9
+"""Of the length of a row: offsets lie in it, but for rounding."""
+LAST_CAUSE = at.HEALING
+SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
+"""Counts that follow from the problem alone."""
+FLAGS = ("moved", "jump", "stiff", "leaving", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+SIGNS = ("mode", "edge")
+NOT_NEGATIVE = ("row", "source", "steps", "slip_row", "tiny", "pause_at", "pause_for", "stalled", "lumped_since", "rough")
+FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
+"""Numbers of the state that may be infinite or no number."""
+Fault = tuple[str, Any]
+"""Name of what is wrong, and whether it is."""
+
+
+def number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float = 0.0) -> float:
+    """Return an attribute that is a finite number, at least `lowest`. Raises InputError."""
+    value = attributes[name]
+    if np.ndim(value) or isinstance(value, str | bytes) or not (math.isfinite(value) and value >= lowest):
+        raise InputError(f"{path}: not a file that stickslip has written: {name} is {value!r}")
+    return float(value)
+
+
+def whole_number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float = 0.0, highest: float = 2.0**62) -> int:
+    """Return an attribute that is a whole number between two others. Raises InputError."""
+    value = number(attributes, name, path, lowest)
+    if value != int(value) or value > highest:
+        raise InputError(f"{path}: not a file that stickslip has written: {name} is {value!r}")
+    return int(attributes[name])
+
+
+def check_place(about: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """Return where a checkpoint says that its catalogue stood. Raises InputError for a number out of range, or a name that leads
+    elsewhere."""
+    name = about["catalogue"]
+    if not isinstance(name, str) or name != Path(name).name or set(name) & set("/\\\0") or name in ("", ".", ".."):
+        raise InputError(f"{path}: not a file that stickslip has written: its catalogue is named {name!r}, which is no bare name")
+    counts = {key: whole_number(about, key, path) for key in ("bytes", "told", "first", "forgotten")}
+    return counts | {
+        "catalogue": name,
+        "digest": str(about["digest"]),
+        "last_piece": whole_number(about, "last_piece", path, -(2.0**62)),
+        "last_xi": number(about, "last_xi", path),
+        "event_rate": number(about, "event_rate", path),
+        "energies": whole_number(about, "energies", path, highest=1),
+    }
+
+
+def check_history(history: History, path: Path) -> None:
+    """Refuse a history that no run leaves. Raises InputError."""
+    _refuse(_shapes_of_history(history), path)
+    _refuse(_faults_of_history(history), path)
+
+
+def _shapes_of_history(history: History) -> Iterator[Fault]:
+    store, pieces = history.store, len(history)
+    has_state = history.problem.friction.state is not None
+    yield "number of pieces of the history", pieces < 1
+    for name, columns, kind in (("whole", WHOLE, "i"), ("real", REAL, "f"), ("load", at.TERMS, "f"), ("rate", at.TERMS, "f")):
+        yield f"shape or type of history_{name}", not _is(getattr(store, name), (pieces, columns), kind)
+    yield "shape or type of history_state", not _is(store.state, (pieces if has_state else 0, at.TERMS), "f")
+    yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
+
+
+def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:
+    return array.shape == shape and array.dtype == {"i": np.dtype(np.int64), "f": np.dtype(np.float64)}[kind]
+
+
+def _faults_of_history(history: History) -> Iterator[Fault]:
+    store, pieces, row = history.store, len(history), row_time(history.problem)
+    yield "row_time", not math.isclose(history.row_time, row, rel_tol=1e-9)
+    yield "ramp or reached", not (math.isfinite(history.ramp) and math.isfinite(history.duration) and history.duration >= 0.0)
+    yield "row of a piece", (store.row < 0).any() or (np.diff(store.row) < 0).any() or store.row[-1] >= at.NEVER
+    yield "mode of a piece", _outside(store.mode, -1, 1)
+    yield "law piece of a piece", _outside(store.whole[:, at.S_PIECE], 0, len(history.problem.friction.pieces) - 1)
+    yield "jump of a piece", _outside(store.whole[:, at.S_JUMP], 0, 1)
+    yield "cause of a piece", _outside(store.cause, 0, LAST_CAUSE)
+    yield "echo of a piece", (store.echo_of < -1).any() or (store.echo_of >= np.arange(pieces)).any()
+    yield "times of a piece", _no_interval(store.theta_from, store.theta_to, math.inf)  # a leap over creep spans many rows
+    numbers = (store.real[:, : at.S_AMPLIFIED], store.load, store.rate, store.state, history.creep)
+    yield "numbers of a piece, which are not finite,", not all(np.isfinite(table).all() for table in numbers)
+
+
+def _outside(values: NDArray[Any], low: float, high: float) -> bool:
+    return bool(((values < low) | (values > high)).any())
+
+
+def _no_interval(begin: Any, end: Any, row: float) -> bool:
+    """Return True unless offsets lie in a row, and follow each other."""
+    return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= row * (1.0 + ROUNDING))))
+
+
+def check_checkpoint(solution: Solution, path: Path) -> None:
+    """Refuse a checkpoint with which the engine would read or write beyond its tables, or not return. Raises InputError."""
+    checkpoint, history = solution.checkpoint, solution.history
+    assert checkpoint is not None
+    setup, _, count = prepare(solution.problem, solution.rtol, solution.shortest_event)
+    _refuse(_shapes_of_checkpoint(checkpoint), path)
+    _refuse(_faults_of_places(Counts(checkpoint.count), setup, len(history), len(history.creep)), path)
+    _refuse(_faults_of_codes(Counts(checkpoint.count), count), path)
+    _refuse(_faults_of_state(checkpoint, history), path)
+    _refuse(_faults_of_branch(checkpoint, setup, solution), path)
+
+
+def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
+    branches = checkpoint.branch.shape[1] if checkpoint.branch.ndim == 2 else 0
+    shapes = {"state": (State.total,), "scratch": (WORK_ROWS, at.TERMS), "branch": (6, max(branches, 1)), "stick_to": (1,)}
+    for name, shape in shapes.items():
+        yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
+    yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
+    crossings = checkpoint.crossings
+    yield "engine_crossings", not _is(crossings, (min(crossings.size, STORM_OF),), "f") or not np.isfinite(crossings).all()
+
+
+def _places(record: Record, *names: str) -> Any:
+    """Return some of a record's numbers as an array."""
+    return record.numbers[[record.places[name].first for name in names]]
+
+
+def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
+    """What the engine uses as an index."""
+    length = int(count.length)
+    begins = count.row == 0 and (count.source == 0 or count.ready != 0)
+    yield "number of pieces", not 0 <= length <= pieces or (length == 0 and not begins)
+    if count.sparse == 0:  # else these are not used, and a catalogue counts them down below zero
+        for name in ("row_from", "previous_from", "previous_to"):
+            yield f"engine_count {name}", not 0 <= getattr(count, name) <= length
+        yield "engine_count previous_from", count.previous_from > count.previous_to
+    else:
+        yield "engine_count new_from", not 1 <= count.new_from <= length
+        echoes = setup.par.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
+        yield "engine_count sparse", not (echoes and count.sticks == 1)
+    yield "engine_count echo_of", not -1 <= count.echo_of < length
+    yield "engine_count piece", not 0 <= count.piece < setup.address.shape[1]
+    yield "engine_count segment", not 0 <= count.row_segment <= count.segment < setup.loading.shape[1]
+    yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
+    yield "engine_count degree", not 0 <= count.degree < at.TERMS
+
+
+def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
+    """What the engine takes as a code, a flag or a number of rows."""
+    yield "engine_count: what follows from the problem", (_places(count, *SAME) != _places(fresh, *SAME)).any()
+    yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
+    yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
+    yield "engine_count: a number of rows or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)
+    yield "engine_count stuck_rows", not -1 <= count.stuck_rows <= at.NEVER
+    yield "engine_count creep_in or LUMP_ABOVE", _outside(_places(count, "creep_in", "lump_above"), -at.NEVER, at.NEVER)
+    yield "engine_count: a cause", _outside(_places(count, "cause", "arriving"), 0, LAST_CAUSE)
+    yield "engine_count ready", not 0 <= count.ready <= at.BROUGHT
+    yield "engine_count at_fold", not 0 <= count.at_fold <= 3
+    yield "engine_count waits", count.waits != 0
+    yield "engine_count breach", count.breach not in (0, at.OFF_THE_LAW, at.NEGATIVE_FRICTION)
+
+
+def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:
+    state, row = State(checkpoint.state), history.row_time
+    finite = _places(state, *(name for name in State.places if name not in FREE))
+    yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
+    yield "engine_state xi", not -ROUNDING <= state.xi <= 1.0 + ROUNDING
+    yield "engine_state: times", _no_interval(state.theta_from, state.theta_to, row)
+    yield "engine_state last_step", not state.last_step > 0.0
+    rows = history.store.row[: checkpoint.length]
+    yield "engine_count row, before the end of the history,", bool((rows[-1:] > Counts(checkpoint.count).row).any())
+
+
+def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
+    """Branches follow from the problem, and where folds move, from the slip at which they were worked out."""
+    problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
+    yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < branch.shape[1]
+    yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
+    if not folds_move(problem):
+        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branch) or stick_to != setup.par.stick_to
+        return
+    rows, level = branch_rows(problem, float(State(checkpoint.state).table_slip))
+    compared = [*range(6)]
+    if has_levels_to_set(problem):  # by compiled code, to rounding
+        compared = [at.RATE_FROM, at.RATE_TO, at.EXCESS_FROM, at.EXCESS_TO]
+    same = branch.shape == rows.shape and np.array_equal(branch[compared], rows[compared])
+    yield "engine_branch", not same
+    yield "engine_stick_to", not has_levels_to_set(problem) and stick_to != level
+
+
+def _refuse(faults: Iterator[Fault], path: Path) -> None:
+    for name, is_wrong in faults:
+        if is_wrong:
+            raise InputError(f"{path}: not a state that a run can have: {name} is out of range; run it again from the start")

@@ -1,0 +1,1 @@
+"""Energy of a run, of its slip events and of their pulses."""

@@ -1,0 +1,225 @@
+"""Energy of a run, as differences from its start.
+
+Per unit area of the slab (J/m^2); for the block in J. The slab's elastic and kinetic energy is that of its two travelling parts,
+[(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness; which of it is kinetic takes both at the same place. The
+heat is computed from the law at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an
+identity.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.observables.energy.kinetic import kinetic
+from stickslip.observables.quadrature import Integrand, between, up_to
+from stickslip.observables.waves import Radiation, Waves
+from stickslip.trajectory.history import Epoch, History, Moments
+
+if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Readings
+    from stickslip.solution.solution import Solution
+
+Floats = NDArray[np.float64]
+
+LONG_NAMES = {
+    "work": "work of the driver",
+    "stored": "elastic and kinetic energy",
+    "elastic": "elastic energy",
+    "kinetic": "kinetic energy, of a contact mass too",
+    "heat": "friction heat, from the law",
+    "damped": "dissipated by the block's damping",
+    "radiated": "gone in waves through a driver of finite impedance: work is net of it",
+    "balance": "work - stored - heat - damped: zero for an exact solution",
+    "trapped": "of the waves inside the slab, beyond a state of uniform stress",
+}
+
+
+def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
+    """Energies at times t (s) minus their values at `origin` (s; default: the start of the run): work, stored (elastic + kinetic),
+    elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J).
+
+    Work is what the driver puts in, net of radiated: what leaves through a driver of finite impedance. Balance is
+    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that bounces to and fro in
+    waves. Raises InputError for times outside the run, and in a leap over creep or within a round trip behind it: the waves that
+    left the contact there are not known.
+    """
+    time = np.atleast_1d(np.asarray(t, float))
+    history = readings.history
+    begin = history.span[0] if origin is None else origin
+    parts = energies(history, history.find(np.append(begin, time), "right"))
+    since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
+    since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
+    unit = "J m-2" if isinstance(history.problem.body, ElasticSlab) else "J"
+    variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
+    return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
+
+
+def event_energies(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    """Energies of slip events from their first to their last moments: the columns of `trajectory.tables.ENERGY_COLUMNS`.
+
+    What an event does is integrated over the event alone: its digits do not depend on what the run did before.
+    """
+    parts = (_slab_events if isinstance(history.problem.body, ElasticSlab) else _block_events)(history, first, last)
+    parts["heat"] = between(history, first, last, _heating(history))
+    parts["balance"] = parts["released"] + parts["work"] - parts["heat"] - parts["damped"]
+    return parts
+
+
+def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    body = history.problem.body
+    assert isinstance(body, ElasticSlab)
+    waves = Waves(history, body)
+    spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
+    moving = 0.5 * body.contact_mass * (history.rate(first) ** 2 - history.rate(last) ** 2)
+    return {
+        "released": np.array([waves.stored(begin) - waves.stored(end) for begin, end in spans]) + moving,
+        "work": np.array([waves.work_between(begin, end) for begin, end in spans]),
+        "damped": np.zeros(len(spans)),
+        "trapped": np.array([waves.trapped(end) for _, end in spans]),
+    }
+
+
+def _block_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+    problem = history.problem
+    body = problem.body
+    assert isinstance(body, SpringBlock)
+    force, left = history.excess(first), history.excess(last)
+    spring = _stretching(history, left, force)
+    pulling = between(history, first, last, _pulling(history))
+    return {
+        "released": spring + 0.5 * body.mass * (history.rate(first) ** 2 - history.rate(last) ** 2),
+        "work": pulling,
+        "damped": between(history, first, last, _damping(history)),
+        "trapped": np.zeros(len(force)),
+    }
+
+
+def trapped_note(solution: Solution) -> str:
+    """One line on the waves that bounce in the slab at the end of a run; empty for a block, which has none."""
+    history, body = solution.history, solution.problem.body
+    if not isinstance(body, ElasticSlab):
+        return ""
+    end = epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
+    energy = Waves(history, body).trapped(end)
+    holds = solution.problem.strength**2 / (2.0 * body.stiffness)
+    share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
+    return f"{energy:.6g} J/m2 in waves at the end{share}"
+
+
+def epochs(history: History, at: Moments) -> list[Epoch]:
+    """Moments without rounding."""
+    return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
+
+
+def energies(history: History, at: Moments) -> dict[str, Floats]:
+    """Work, heat, damped and radiated since the start of the run, stored and elastic less a constant, kinetic and trapped, at
+    moments of a history.
+
+    All of them at exactly these moments: late in a run, too, their differences balance.
+    """
+    return _slab(history, at) if isinstance(history.problem.body, ElasticSlab) else _block(history, at)
+
+
+def _slab(history: History, at: Moments) -> dict[str, Floats]:
+    body = history.problem.body
+    assert isinstance(body, ElasticSlab)
+    waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
+    contact = 0.5 * body.contact_mass * history.rate(at) ** 2
+    stored, moving = (np.array([of(epoch) for epoch in now]) + contact for of in (waves.stored, partial(kinetic, waves)))
+    return {
+        "work": np.array([waves.work(epoch) for epoch in now]),
+        "stored": stored,
+        "elastic": stored - moving,
+        "kinetic": moving,
+        "heat": heat(history, at),
+        "damped": np.zeros(len(now)),
+        "radiated": np.array([radiation.work(epoch) for epoch in now]),
+        "trapped": np.array([waves.trapped(epoch) for epoch in now]),
+    }
+
+
+def _block(history: History, at: Moments) -> dict[str, Floats]:
+    problem = history.problem
+    body = problem.body
+    assert isinstance(body, SpringBlock)
+    force, rate = history.excess(at), history.rate(at)
+    spring = _stretching(history, np.full(len(force), problem.excess), force)
+    slipping = np.flatnonzero(history.store.mode)
+    return {
+        "work": up_to(history, at, _pulling(history)) + _at_rest(history, at),
+        "stored": spring + 0.5 * body.mass * rate**2,
+        "elastic": spring,
+        "kinetic": 0.5 * body.mass * rate**2,
+        "heat": heat(history, at),
+        "damped": up_to(history, at, _damping(history), slipping),
+        "radiated": np.zeros(len(force)),
+        "trapped": np.zeros(len(force)),
+    }
+
+
+def _pulling(history: History) -> Integrand:
+    """Work of the block's driver in a second."""
+    problem = history.problem
+
+    def power(at: Moments) -> Floats:
+        row, offset = history.placed(at)
+        rate = problem.pull_rate_at(row * history.row_time + offset)
+        return np.asarray(rate * (problem.strength + history.excess(at)))
+
+    return power
+
+
+def _at_rest(history: History, at: Moments) -> Floats:
+    """Work of the block's driver up to each moment in rests that were not recorded: it is in the spring."""
+    row = history.store.row
+    before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
+    force, left = (history.excess(Moments.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
+    whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
+    last = history.excess(Moments.inside(at.last, 1.0))
+    part = np.where(at.at_rest, _stretching(history, last, history.excess(at)), 0.0)
+    return np.asarray(whole[np.searchsorted(before, at.last)] + part)
+
+
+def _stretching(history: History, force: Floats, later: Floats) -> Floats:
+    """Energy (J) that the block's spring gains from one force minus the reference to another."""
+    body = history.problem.body
+    assert isinstance(body, SpringBlock)
+    return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
+
+
+def heat(history: History, at: Moments) -> Floats:
+    """Friction heat up to each moment, from the law. Slab: J/m^2, block: J."""
+    return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
+
+
+def resistance(history: History) -> Integrand:
+    """Traction against the slip (slab: Pa, block: N) while the contact slips, from the law: S mu(u, |v|)."""
+    problem, law = history.problem, history.problem.friction
+
+    def traction(at: Moments) -> Floats:
+        mode, grown = history.store.mode[at.piece], history.grown(at)
+        walked = mode * grown if law.counts == "path" else grown
+        slip = problem.law_slip + history.store.law_slip[at.piece] + walked
+        return problem.normal * law.coefficient(slip, np.abs(history.rate(at)), history.state(at))
+
+    return traction
+
+
+def _heating(history: History) -> Integrand:
+    """Friction heat in a second."""
+    traction = resistance(history)
+    return lambda at: traction(at) * np.abs(history.rate(at))
+
+
+def _damping(history: History) -> Integrand:
+    """What the block's damping dissipates in a second."""
+    body = history.problem.body
+    assert isinstance(body, SpringBlock)
+    damping = body.damping
+    return lambda at: damping * history.rate(at) ** 2

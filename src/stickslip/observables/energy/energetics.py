@@ -1,0 +1,134 @@
+"""Slip events as seismologists account for them: where the energy goes, stress drops, apparent stress, efficiencies.
+
+    elastic + work = kinetic + heat + damped + balance
+
+With `waves` = what is radiated through the driver, what the slab traps at the end more than at the start, and what the damping of a
+block takes, which is to a block what radiation is to a slab. Waves of events before may feed an event: then it is negative.
+Source: Kanamori & Brodsky 2004, Rep. Prog. Phys. 67, 1429; Kanamori & Rivera 2006, AGU Geophysical Monograph 170, 3.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.observables.energy.balance import epochs, event_energies
+from stickslip.observables.energy.kinetic import kinetic
+from stickslip.observables.energy.pulses import Pulses
+from stickslip.observables.waves import Radiation, Waves
+from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.slip_events import SlipEvents
+from stickslip.trajectory.tables import friction_before
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ENERGETICS_COLUMNS = {
+    "start": ("s", "when |v| rises above the threshold"),
+    "slip": ("m", "slip within the event, positive in either direction"),
+    "work": ("energy", "work of the driver, net of what is radiated"),
+    "elastic": ("energy", "elastic energy that the event takes from the body"),
+    "kinetic": ("energy", "kinetic energy at the end less that at the start"),
+    "heat": ("energy", "all work of friction, from the law: fracture energy is part of it"),
+    "fracture": ("energy", "fracture energy, summed over the pulses"),
+    "damped": ("energy", "dissipated by the block's damping"),
+    "radiated": ("energy", "gone in waves through a driver of finite impedance during the event"),
+    "trapped": ("energy", "in waves that bounce in the slab at the end, beyond the same mean stress at rest"),
+    "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
+    "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
+    "static_drop": ("load", "stiffness (G/h, or K) times slip"),
+    "dynamic_drop": ("load", "traction at rest before the slip less the smallest one while it slips"),
+    "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
+    "apparent_stress": ("load", "waves / slip"),
+    "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
+    "radiation_efficiency": ("1", "waves / (waves + fracture)"),
+}
+"""Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+
+
+ROUNDING = 1e-12
+"""Of a stress drop, relative to the normal load."""
+
+
+def energetics_table(history: History, threshold: float) -> pd.DataFrame:
+    """One row a slip event above a threshold (m/s); columns as in ENERGETICS_COLUMNS. Ratios of nothing to nothing are NaN."""
+    import pandas as pd
+
+    events = SlipEvents.of(history, threshold)
+    begin, end = events.begin, events.end
+    columns = {
+        "start": history.seconds(*history.placed(begin)),
+        "slip": np.abs(history.slipped_within(begin, end)),
+        **_energies(history, begin, end),
+    }
+    pulses = Pulses.of(history, events, threshold)
+    columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
+    columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
+    before, smallest = extreme_tractions(history, begin, pulses)
+    columns["dynamic_drop"] = before - smallest
+    table = pd.DataFrame(columns | _ratios(history, columns))
+    return table[list(ENERGETICS_COLUMNS)]
+
+
+def _energies(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+    parts = event_energies(history, begin, end)
+    extra = (_of_slab if isinstance(history.problem.body, ElasticSlab) else _of_block)(history, begin, end)
+    made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
+    return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
+
+
+def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+    body = history.problem.body
+    assert isinstance(body, ElasticSlab)
+    waves, radiation = Waves(history, body), Radiation(history, body)
+    first, last = epochs(history, begin), epochs(history, end)
+    before, after = (np.array([kinetic(waves, epoch) for epoch in moments]) for moments in (first, last))
+    contact = 0.5 * body.contact_mass * (history.rate(end) ** 2 - history.rate(begin) ** 2)
+    return {
+        "kinetic": after - before + contact,
+        "radiated": np.array([radiation.work_between(*span) for span in zip(first, last, strict=True)]),
+        "trapped_before": np.array([waves.trapped(epoch) for epoch in first]),
+    }
+
+
+def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+    body = history.problem.body
+    assert not isinstance(body, ElasticSlab)
+    nothing = np.zeros(len(begin.piece))
+    moving = 0.5 * body.mass * (history.rate(end) ** 2 - history.rate(begin) ** 2)
+    return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
+
+
+def extreme_tractions(history: History, begin: Moments, pulses: Pulses) -> tuple[Floats, Floats]:
+    """Tractions against the slip of events: at rest before each, and the smallest of its pulses (Pa, block: N)."""
+    smallest = np.full(len(begin.piece), np.inf)
+    np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
+    return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
+
+
+def friction_at_rest_before(history: History, begin: Moments) -> Floats:
+    """Traction (minus the reference) at rest before the slip in which events begin: the load, also where it only turns round.
+
+    Of a law that never sticks: just before the event. A block, or a contact with mass, moves for a while before its slip rate
+    counts as an event: where friction falls at once it has its sliding value by then.
+    """
+    if not history.problem.friction.sticks:
+        return friction_before(history, begin)
+    mode = history.store.mode
+    begins = np.append(True, (np.diff(mode) != 0) | history.rests[:-1])
+    first = np.maximum.accumulate(np.where(begins, np.arange(len(mode)), 0))
+    return history.excess(history.just_before(first[begin.piece]))
+
+
+def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
+    drop, rounding = columns["dynamic_drop"], ROUNDING * history.problem.normal
+    with np.errstate(invalid="ignore", divide="ignore"):
+        waves = columns["waves"]
+        return {
+            "overshoot": np.where(drop > rounding, columns["static_drop"] / drop - 1.0, np.nan),
+            "apparent_stress": waves / columns["slip"],
+            "efficiency": waves / (waves + columns["heat"]),
+            "radiation_efficiency": waves / (waves + columns["fracture"]),
+        }

@@ -1,0 +1,145 @@
+"""The pulses of slip events, and what each spends on weakening the contact: its fracture energy.
+
+Fracture energy is Tinti's breakdown work: the work of friction above the smallest traction of the pulse, from its start until that
+is reached. For a contact that weakens with slip to a residual traction it is the area between that and the curve of traction
+against slip. It is a part of the friction heat of the run, not another loss.
+Source: Tinti et al. 2005, J. Geophys. Res. 110, B12303; Abercrombie & Rice 2005, Geophys. J. Int. 162, 406.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.observables.energy.balance import resistance
+from stickslip.observables.quadrature import between
+from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.slip_events import SlipEvents, walk
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PULSE_COLUMNS = {
+    "event": ("1", "row of the event in the catalogue"),
+    "start": ("s", "start of the event, or where |v| is smallest since the pulse before"),
+    "start_after": ("s", "the same since the event began, without rounding"),
+    "duration": ("s", "until the next pulse, or the end of the event"),
+    "slip": ("m", "in the meantime, positive in either direction"),
+    "peak_rate": ("m s-1", "largest |v|"),
+    "smallest_traction": ("load", "of the pulse while it slips, against the slip"),
+    "weakening_slip": ("m", "slip until that is reached"),
+    "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
+}
+"""Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+
+GRID = 17
+REFINEMENTS = 14
+
+
+class Pulses(NamedTuple):
+    """Pulses in order of time: the event of each, where it begins, weakens most and ends, and its largest slip rate (m/s)."""
+
+    event: NDArray[np.intp]
+    begin: Moments
+    weakest: Moments
+    end: Moments
+    peak_rate: Floats
+
+    @classmethod
+    def of(cls, history: History, events: SlipEvents, threshold: float) -> Pulses:
+        """Of the slip events above a threshold (m/s)."""
+        piece, xi, rate, kind = walk(history, threshold)
+        starts = np.append(np.flatnonzero(kind == 1), len(kind))
+        places = [_starts(rate, begin, past) for begin, past in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)]
+        event = np.repeat(np.arange(len(places)), [len(found) for found in places])
+        first = np.concatenate([*places, np.empty(0, np.intp)]).astype(np.intp)
+        last_of_event = np.append(event[1:] != event[:-1], np.full(len(event[:1]), True))
+        past = np.where(last_of_event, starts[event + 1] - 1, np.append(first[1:], 0))
+        begin, end = (Moments.inside(piece[where], xi[where]) for where in (first, past))
+        peak = np.array([rate[a : b + 1].max() for a, b in zip(first.tolist(), past.tolist(), strict=True)])
+        return cls(event, begin, _weakest(history, begin, end), end, peak)
+
+    def fracture(self, history: History) -> Floats:
+        """Fracture energy of each, J/m^2 (block: J)."""
+        traction, reference = resistance(history), history.problem.strength
+
+        def power(at: Moments) -> Floats:
+            return (traction(at) - reference) * np.abs(history.rate(at))
+
+        spent = between(history, self.begin, self.weakest, power)
+        return spent - (traction(self.weakest) - reference) * self.weakening_slip(history)
+
+    def weakening_slip(self, history: History) -> Floats:
+        """Slip of each until its smallest traction, m."""
+        return np.abs(history.slipped_within(self.begin, self.weakest))
+
+    def smallest_traction(self, history: History) -> Floats:
+        """Of each, against its slip (Pa, block: N)."""
+        return resistance(history)(self.weakest)
+
+
+def pulses_table(history: History, threshold: float) -> pd.DataFrame:
+    """One row a pulse of the slip events above a threshold (m/s); columns as in PULSE_COLUMNS."""
+    import pandas as pd
+
+    events = SlipEvents.of(history, threshold)
+    pulses = Pulses.of(history, events, threshold)
+    begun = events.begin
+    event_begin = Moments.inside(begun.piece[pulses.event], begun.xi[pulses.event])
+    columns = {
+        "event": pulses.event,
+        "start": history.seconds(*history.placed(pulses.begin)),
+        "start_after": history.lasting(event_begin, pulses.begin),
+        "duration": history.lasting(pulses.begin, pulses.end),
+        "slip": np.abs(history.slipped_within(pulses.begin, pulses.end)),
+        "peak_rate": pulses.peak_rate,
+        "smallest_traction": pulses.smallest_traction(history),
+        "weakening_slip": pulses.weakening_slip(history),
+        "fracture": pulses.fracture(history),
+    }
+    return pd.DataFrame(columns)
+
+
+def _starts(rate: Floats, begin: int, past: int) -> list[int]:
+    """Where the pulses of an event begin among the turning points of |v|: as `trajectory.slip_events.count_pulses` counts them."""
+    found: list[int] = []
+    peak, low = 0.0, begin
+    for k in range(begin, past):
+        if rate[k] <= 0.0:
+            continue
+        if not found or rate[low] < 0.5 * min(peak, rate[k]):
+            found.append(low if found else begin)
+            peak, low = rate[k], k
+        elif rate[k] > peak:
+            peak, low = rate[k], k
+        elif rate[k] < rate[low]:
+            low = k
+    return found
+
+
+def _weakest(history: History, begin: Moments, end: Moments) -> Moments:
+    """Where the traction against the slip is smallest (the first, of several) between moments: on a grid, and refined."""
+    count = end.piece - begin.piece + 1
+    owner = np.repeat(np.arange(len(count)), count)
+    piece = begin.piece[owner] + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    low = np.where(piece == begin.piece[owner], begin.xi[owner], 0.0)
+    high = np.where(piece == end.piece[owner], end.xi[owner], 1.0)
+    xi, value = _lowest(history, piece, low, high)
+    order = np.lexsort((value, owner))
+    best = order[np.searchsorted(owner[order], np.arange(len(count)))]
+    piece, xi, low, high = piece[best], xi[best], low[best], high[best]
+    width = (high - low) / (GRID - 1)
+    for _ in range(REFINEMENTS):
+        xi, _ = _lowest(history, piece, np.maximum(xi - width, low), np.minimum(xi + width, high))
+        width = width / 8.0
+    return Moments.inside(piece, xi)
+
+
+def _lowest(history: History, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Of each piece, where on a grid from low to high (xi) the traction is smallest, and how much it is there."""
+    xi = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, GRID)
+    values = resistance(history)(Moments.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
+    chosen = np.arange(len(piece)), np.argmin(values, axis=1)
+    return xi[chosen], values[chosen]

@@ -1,0 +1,92 @@
+"""One number of a problem by its name: "friction.alpha", "friction.rate.alpha", "body.normal_stress", "initial.slip".
+
+A name is the place of the number in a scenario file, with [i] for one of a series; its end is enough where it is clear: "alpha".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity, quantities_of
+from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
+from stickslip.problem.problem import Problem
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of a problem: its place, its value in SI, and what it may be."""
+
+    name: str
+    value: float
+    declared: Quantity
+    _put: Callable[[float], Problem]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value (SI; "1" for a pure number)."""
+        return self.declared.unit
+
+    def put(self, value: float) -> Problem:
+        """The problem with another value there. Raises InputError where the problem refuses it."""
+        return self._put(value)
+
+
+def parameter(problem: Problem, name: str) -> Parameter:
+    """The number of that name. Raises InputError for a name that fits none, or several."""
+    found = {one.name: one for one in parameters(problem)}
+    if name in found:
+        return found[name]
+    fitting = [full for full in found if full.endswith(f".{name}")]
+    if len(fitting) > 1:
+        raise InputError(f"parameter '{name}' may be any of {', '.join(fitting)}: say which")
+    if not fitting:
+        single = [full for full in found if "[" not in full]
+        hint = nearest(name, [full.rpartition(".")[2] for full in single])
+        raise InputError(f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, single)}")
+    return found[fitting[0]]
+
+
+def parameters(problem: Problem) -> Iterator[Parameter]:
+    """Every number of the friction law, its parts included, then of the body, then the slip at the start."""
+    yield from _of_law(problem.friction, "friction", lambda law: replace(problem, friction=law))
+    for name, declared in quantities_of(type(problem.body)).items():
+        value = getattr(problem.body, name)
+        if value is not None:
+            yield Parameter(
+                f"body.{name}", value, declared, _in_field(problem.body, name, lambda body: replace(problem, body=body))
+            )
+    slip = quantities_of(Problem)["initial_slip"]
+    yield Parameter("initial.slip", problem.initial_slip, slip, lambda value: replace(problem, initial_slip=value))
+
+
+def _of_law(law: Any, place: str, put: Callable[[Any], Problem]) -> Iterator[Parameter]:
+    for name, (declared, _) in fields_of(type(law)).items():
+        value = getattr(law, name)
+        if isinstance(declared, Quantity) and value is not None:
+            yield Parameter(f"{place}.{name}", value, declared, _in_field(law, name, put))
+        elif isinstance(declared, Series) and value:
+            for i, one in enumerate(value):
+                yield Parameter(f"{place}.{name}[{i}]", one, declared.item, _in_series(law, name, i, put))
+        elif isinstance(declared, NamedNumbers):
+            for i, one in enumerate(value):
+                number = Quantity(one.unit or "1", "")
+                yield Parameter(f"{place}.{declared.key}.{one.name}", one.value, number, _in_names(law, name, i, put))
+        elif isinstance(declared, Part):
+            yield from _of_law(value, f"{place}.{name}", _in_field(law, name, put))
+
+
+def _in_field(owner: Any, name: str, put: Callable[[Any], Problem]) -> Callable[[Any], Problem]:
+    return lambda value: put(replace(owner, **{name: value}))
+
+
+def _in_series(law: Any, name: str, i: int, put: Callable[[Any], Problem]) -> Callable[[float], Problem]:
+    values = getattr(law, name)
+    return lambda value: put(replace(law, **{name: (*values[:i], value, *values[i + 1 :])}))
+
+
+def _in_names(law: Any, name: str, i: int, put: Callable[[Any], Problem]) -> Callable[[float], Problem]:
+    values = getattr(law, name)
+    return lambda value: put(replace(law, **{name: (*values[:i], values[i]._replace(value=value), *values[i + 1 :])}))

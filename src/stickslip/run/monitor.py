@@ -1,0 +1,129 @@
+"""Looks after a run between two calls of the engine: counts events, says how far it is, keeps checkpoints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Self
+
+from stickslip.engine.state import layout as at
+from stickslip.engine_input.forcing import row_time
+from stickslip.run.progress import Progress, Reporter
+from stickslip.run.run_loop import NowAndThen, repeat
+from stickslip.run.session import RunInProgress
+from stickslip.solution.solution import Solution
+from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.trajectory.event_stream import EventStream, Look
+from stickslip.trajectory.history import History
+from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY
+from stickslip.trajectory.tables import default_event_rate
+
+MAX_PIECES = 1_000_000
+"""Pieces of a history, if nothing is said."""
+PIECE_SIZE = 8 * (6 + 8 + 2 * at.TERMS)
+"""Bytes of a piece, in memory and in a file."""
+CHECKPOINT_EVERY = 30.0
+
+
+@dataclass(frozen=True)
+class Orders:
+    """How far to run, and what to keep on the way (see `simulate`)."""
+
+    duration: float
+    events: int | None = None
+    progress: Progress | None = None
+    checkpoint: Path | None = None
+    checkpoint_every: float = CHECKPOINT_EVERY
+    max_pieces: int | None = None
+    """None: MAX_PIECES, and a history that reaches them is not written."""
+
+    @property
+    def most_pieces(self) -> int:
+        """Pieces that the history may have."""
+        return MAX_PIECES if self.max_pieces is None else self.max_pieces
+
+    def keeps(self, code: int) -> bool:
+        """Return True if a run with this end is to be written to its file: no giant for which nobody has asked."""
+        return code != FULL_HISTORY or self.max_pieces is not None
+
+
+def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
+    """What there is of a run, and what ended it."""
+    kept = at.trimmed(run.store, run.length)
+    whole = code in (at.FINISHED, at.LOCKED)
+    reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
+    history = History(kept, run.problem, row_time(run.problem), float(run.setup.par.ramp), reached, creep=run.creep)
+    found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
+    found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
+    return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
+
+
+@dataclass(kw_only=True)
+class Keeper:
+    """Keeps the whole history. `looked` is where the run stood when events were last counted, if that is going to be needed."""
+
+    orders: Orders
+    stream: EventStream
+    reporter: Reporter | None
+    saving: NowAndThen
+    counting: NowAndThen = field(default_factory=lambda: NowAndThen(0.0))
+    looked: Checkpoint | None = None
+
+    @classmethod
+    def of(cls, run: RunInProgress, orders: Orders, stream: EventStream | None = None) -> Self:
+        """For a run and what is wanted of it; a stream that is given has told the events before."""
+        stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
+        reporter = Reporter.of(orders.progress, orders.duration, orders.events, stream.threshold)
+        keeper = cls(orders=orders, stream=stream, reporter=reporter, saving=NowAndThen.from_now(orders.checkpoint_every))
+        keeper.looked = keeper.stands(run)
+        return keeper
+
+    @property
+    def counts(self) -> bool:
+        """Whether events have to be counted."""
+        return self.reporter is not None or self.orders.events is not None
+
+    def look(self, run: RunInProgress, *, now: bool) -> int | None:
+        """See `run_loop.Watch`."""
+        enough = False
+        if self.counts and run.length > 0 and (now or self.counting.is_due):
+            with self.counting.done():
+                enough = self.count(run)
+        if self.reporter is not None:
+            self.reporter.report(run, self.stream.told)
+        if run.length > 0 and not enough and self.saving.is_due:
+            with self.saving.done():
+                self.save(run)
+        return ENOUGH_EVENTS if enough else None
+
+    def count(self, run: RunInProgress) -> bool:
+        """Note new events. Where they are enough, the run goes back to the piece by which the last of them is known."""
+        look, wanted = self.stream.look(run.store, run.length), self.orders.events
+        missing = None if wanted is None else wanted - self.stream.told
+        if missing is None or len(look.known_by) < missing:
+            self.note(run, look)
+            return False
+        assert self.looked is not None
+        repeat(run, self.looked, self.orders.duration, look.known_by[missing - 1] + 1)
+        self.note(run, replace(look, known_by=look.known_by[:missing]))
+        return True
+
+    def note(self, run: RunInProgress, look: Look) -> None:
+        """These events are over."""
+        look.tell()
+        self.looked = self.stands(run)
+
+    def stands(self, run: RunInProgress) -> Checkpoint | None:
+        """Where the run stands, if it may have to come back."""
+        return None if self.orders.events is None else run.stands()
+
+    def save(self, run: RunInProgress) -> None:
+        """Renew the checkpoint, if there is to be one."""
+        if self.orders.checkpoint is not None:
+            from stickslip.io.netcdf import save_checkpoint
+
+            save_checkpoint(as_solution(run, self.orders, UNDER_WAY), self.orders.checkpoint)
+
+    def make_room(self, run: RunInProgress) -> bool:
+        """See `run_loop.Watch`: the history grows."""
+        return run.grow(self.orders.most_pieces)

@@ -1,0 +1,199 @@
+"""A run in progress: the arrays that the engine works on, and what must be done for it between its calls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats, Integers, Setup, Store
+from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
+from stickslip.engine.waves.echo_queue import Echoes, new_echoes, replant
+from stickslip.engine.waves.echo_queue import resized as with_room
+from stickslip.engine_input.automatic import lumping_note
+from stickslip.engine_input.branch_table import OUT_OF_BUDGET, RuleFollower, renewed
+from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.engine_input.forcing import row_time
+from stickslip.engine_input.prepare import prepare
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.checkpoint import Checkpoint, engine
+from stickslip.trajectory.history import NO_LEAPS, History
+from stickslip.trajectory.phase_index import standing_behind
+from stickslip.trajectory.status import rounding_note
+
+FIRST_CAPACITY = 512
+SPARE = 16
+
+
+@dataclass(eq=False)
+class RunInProgress:
+    """Setup, state and history of a run, and where it stood before its end cut anything; pieces of history that it forgot."""
+
+    problem: Problem
+    rtol: float
+    setup: Setup
+    memory: Integers
+    """Where the engine works: see `workspace.Run`."""
+    store: Store
+    echoes: Echoes
+    follower: RuleFollower
+    leaps: CreepLeaps | None = None
+    creep_rtol: float | None = None
+    """As it was asked for, None where it is automatic; so is shortest_event (s)."""
+    shortest_event: float | None = None
+    before_end: Checkpoint | None = None
+    forgotten: int = 0
+
+    def __post_init__(self) -> None:
+        self.par, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
+        self.scratch = scratch_in(self.memory)
+        self._lend()
+
+    @classmethod
+    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = None, shortest_event: float | None = None) -> Self:
+        """Return a run at t = 0."""
+        setup, state, count = prepare(problem, rtol, shortest_event)
+        memory = memory_of(setup.par, state, count)
+        state, count = state_in(memory), counts_in(memory)
+        store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
+        follower = RuleFollower(problem, row_time(problem), state, count)
+        tolerance = creep_tolerance(problem, creep_rtol, rtol)
+        leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
+        if leaps is not None:
+            leaps.begin(count)
+        echoes = new_echoes(FIRST_CAPACITY)
+        return cls(problem, rtol, setup, memory, store, echoes, follower, leaps, creep_rtol, shortest_event)
+
+    @classmethod
+    def at_checkpoint(
+        cls,
+        history: History,
+        checkpoint: Checkpoint,
+        rtol: float,
+        creep_rtol: float | None = None,
+        shortest_event: float | None = None,
+    ) -> Self:
+        """Return a run where another one stood; in its history nothing is changed."""
+        run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)
+        if run.leaps is not None:
+            run.leaps.take_up(history.creep)
+        capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
+        run.store, run.echoes = at.resized(history.store, checkpoint.length, capacity), new_echoes(capacity)
+        run.restore(checkpoint)
+        return run
+
+    def _lend(self) -> None:
+        lend(self.memory, self.setup, self.store, self.echoes)
+
+    @property
+    def length(self) -> int:
+        """Pieces of the history so far."""
+        return int(self.count.length)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
+        return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
+
+    @property
+    def lumping_note(self) -> str:
+        """Return one line on automatic lumping; empty where it did not begin."""
+        return lumping_note(self.count, self.par, self.shortest_event)
+
+    @property
+    def rounding_note(self) -> str:
+        """Return one line on steps in which rounding hides the law; empty where there are none."""
+        return rounding_note(int(self.count.rough), float(self.state.roughest))
+
+    @property
+    def creep(self) -> Floats:
+        """Leaps over creep so far, as in `History.creep`."""
+        return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
+
+    def advance(self, last: tuple[int, float], budget: int) -> int:
+        """Go on by one call of the engine, or by one leap over creep. Returns the code of `loop.advance`."""
+        if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
+            self.leaps.at_row_end(self, last)
+            return OUT_OF_BUDGET
+        code = self.step(last, budget)
+        return OUT_OF_BUDGET if code == at.PAUSED else code
+
+    def step(self, last: tuple[int, float], budget: int) -> int:
+        """As `loop.advance`; the branches of a law of slip and slip rate are renewed where they are due."""
+        code = self.follower.advance(self.memory, self.store, last, budget)
+        if code != at.NEED_BRANCHES:
+            return code
+        self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
+        self._lend()
+        self.follower.set_levels(self.memory)
+        return OUT_OF_BUDGET
+
+    def grow(self, max_pieces: int) -> bool:
+        """Make room for more pieces; False where there are as many as there may be."""
+        if self.length >= max_pieces:
+            return False
+        self.reserve(min(4 * len(self.store.whole), max_pieces + SPARE))
+        return True
+
+    def reserve(self, pieces: int) -> None:
+        """Have room for at least so many pieces."""
+        if pieces > len(self.store.whole):
+            self.store, self.echoes = at.resized(self.store, self.length, pieces), with_room(self.echoes, self.length, pieces)
+            self._lend()
+
+    def forget_before(self, piece: int) -> int:
+        """Drop what stands nowhere in the body any more when a piece begins; returns how many pieces that were."""
+        piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
+        if piece == 0:
+            return 0
+        standing, _, _ = standing_behind(at.trimmed(self.store, piece), row_time(self.problem))
+        kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
+        dropped = self.length - len(kept)
+        place = at.keep_only(self.store, self.length, kept)
+        self.count.echo_of = place[self.count.echo_of]
+        for name in ("length", "row_from", "previous_from", "previous_to", "new_from"):
+            setattr(self.count, name, getattr(self.count, name) - dropped)
+        self._replant()
+        self.forgotten += dropped
+        return dropped
+
+    def _replant(self) -> None:
+        """Have the trees of echoes as the history says."""
+        self._lend()
+        if self.count.sparse == 0:
+            return
+        first = int(self.count.new_from)
+        pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
+        past, ahead = low < self.state.new_since, low >= self.state.taken_to
+        replant(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
+
+    def cut_at_end(self) -> None:
+        """From here on the end of the run decides what comes: keep where a longer run would go on."""
+        self.before_end = self.stands()
+        self.count.to_the_end = 1
+
+    def stands(self) -> Checkpoint:
+        """Where the engine stands."""
+        stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
+        state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
+        return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
+
+    def checkpoint(self) -> Checkpoint:
+        """From where this run, or a longer one, goes on."""
+        return self.before_end or self.stands()
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Go back to where the engine stood, on the same history or a copy of it."""
+        self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
+        self.scratch[:] = checkpoint.scratch
+        self.setup = self.setup._replace(branch=checkpoint.branch.copy())
+        self.par.stick_to = checkpoint.stick_to[0]
+        self.follower.times.clear()
+        self.follower.times.extend(checkpoint.crossings.tolist())
+        if self.count.to_the_end == 0:
+            self.before_end = None
+        self._replant()

@@ -1,0 +1,1 @@
+"""What a run gives: values at any time, tables, windows."""

@@ -1,0 +1,205 @@
+"""Runs side by side: what each of them is, what came of it, in one table and one figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+import stickslip
+from stickslip.foundation.atomic_write import write_table
+from stickslip.foundation.errors import InputError
+from stickslip.io.netcdf import PAPER, load
+from stickslip.observables.energy.energetics import extreme_tractions
+from stickslip.observables.energy.pulses import Pulses
+from stickslip.observables.rule_influence import choices
+from stickslip.run.progress import Progress
+from stickslip.scenarios import Scenario, load_scenario
+from stickslip.scenarios.schema import check_rtol
+from stickslip.solution.solution import Solution
+from stickslip.trajectory.slip_events import SlipEvents
+from stickslip.trajectory.tables import default_event_rate
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+COLUMNS = {
+    "name": ("", "scenario, file, or the name that was given"),
+    "body": ("", "what stands behind the contact"),
+    "friction": ("", "friction law"),
+    "rule": ("", "selection rule"),
+    "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
+    "events": ("", "slip events, see `Solution.events`"),
+    "pulses": ("", "of the largest event: maxima of the slip rate, see `Solution.events`"),
+    "slip": ("m", "slip of the largest event"),
+    "peak_rate": ("m/s", "largest slip rate of the run"),
+    "static_drop": ("load", "of the largest event: stiffness (G/h, or K) times its slip"),
+    "traction_drop": ("load", "of the largest event: traction at rest before it minus traction at rest after it"),
+    "dynamic_drop": ("load", "of the largest event: traction at rest before it minus the smallest one while it slips"),
+    "duration": ("s", "of the first event; NaN if it is not over"),
+    "shocks": ("", "jumps of the slip rate"),
+    "slip_rate": ("", "smooth, or jumps"),
+    "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
+    "status": ("", "what ended the run"),
+}
+"""Columns of the table: unit ("load" is what `load_unit` says) and meaning."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Something to compare or to export: its name, and how to come by its solution."""
+
+    name: str
+    run: Callable[[Progress | None], Solution]
+    finished: bool = True
+
+    def solution(self, progress: Progress | None = None) -> Solution:
+        """Its solution. Raises KeyboardInterrupt where Ctrl-C ends its run."""
+        found = self.run(progress)
+        if not self.finished and found.status.name == "interrupted":
+            raise KeyboardInterrupt
+        return found
+
+
+def read_source(source: str | Path | Scenario | Solution, until: float | None = None, rtol: float | None = None) -> Source:
+    """A bundled scenario by its name, a scenario file, a solution's file (.nc), a scenario or a solution.
+
+    until (s) and rtol stand for those of a scenario. Raises InputError for what is none of these, and for until or rtol with a
+    solution.
+    """
+    finished = isinstance(source, Solution) or Path(str(source)).suffix == ".nc"
+    if finished and (until is not None or rtol is not None):
+        raise InputError(f"{_shown(source)}: has been run: leave until and rtol away")
+    if isinstance(source, Solution):
+        return Source("run", lambda _: source)
+    if finished:
+        solution = load(str(source))
+        return Source(Path(str(source)).stem, lambda _: solution)
+    scenario = source if isinstance(source, Scenario) else load_scenario(source)
+    changed = replace(scenario, duration=until or scenario.duration, rtol=rtol or scenario.rtol)
+    return Source(scenario.name, changed.run, finished=False)
+
+
+def _shown(source: Any) -> str:
+    return "a solution" if isinstance(source, Solution) else str(source)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """Finished runs by their names. With `event` the figure shows that slip event of each, in local time (rows of `events`)."""
+
+    runs: dict[str, Solution]
+    event: int | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.runs) < 2:
+            raise InputError(f"compare: needs two runs or more, got {len(self.runs)}")
+        for name, solution in self.runs.items():
+            count = len(solution.events)
+            if self.event is not None and not -count <= self.event < count:
+                raise InputError(f"compare: {name} has no slip event {self.event}: it has {count}, counted from 0")
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """One row a run; columns and units in `stickslip.studies.compare.COLUMNS`."""
+        return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the table as CSV, behind comment lines (#) with the version, the columns' units and every scenario in SI."""
+        return write_table(Path(path), self.table, self._about())
+
+    def _about(self) -> Iterator[str]:
+        yield f"stickslip {stickslip.__version__}: runs side by side. Method: {PAPER}"
+        for name, (unit, meaning) in COLUMNS.items():
+            yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
+        for name, solution in self.runs.items():
+            yield f"\n---- {name}: {solution.status}"
+            yield Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted).to_toml()
+
+    def plot(self) -> Figure:
+        """Slip, slip rate and traction against time, one line a run."""
+        from stickslip.figures.studies.compare import data, draw
+
+        return draw(data(self.runs, self.event))
+
+    def __repr__(self) -> str:
+        return f"stickslip Comparison of {', '.join(self.runs)}\n{self.table.drop(columns='name').T.to_string()}"
+
+
+def compare(
+    *sources: str | Path | Scenario | Solution,
+    names: Sequence[str] | None = None,
+    event: int | None = None,
+    until: float | None = None,
+    rtol: float | None = None,
+    progress: Callable[[str], Any] | None = None,
+) -> Comparison:
+    """Runs side by side: scenarios (bundled names, files, `Scenario`s) are run; solutions, also from files (.nc), are taken.
+
+    names: what to call them, in the same order. event: show this slip event of each (0 the first, -1 the last) in local time.
+    until (s) and rtol stand for those of the scenarios; `progress` is told the name of each run as it begins. Ctrl-C raises
+    KeyboardInterrupt. Raises InputError for less than two runs, for what is no scenario, and for an event that there is not.
+    """
+    if len(sources) < 2:
+        raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
+    if rtol is not None:
+        check_rtol(rtol, "compare", "rtol")
+    if until is not None and not until > 0.0:
+        raise InputError(f"compare: until must be a positive time in s, got {until!r}")
+    read = [read_source(source, until, rtol) for source in sources]
+    called = distinct([source.name for source in read] if names is None else names)
+    if len(called) != len(read):
+        raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
+    runs = {}
+    for name, source in zip(called, read, strict=True):
+        if progress is not None:
+            progress(name)
+        runs[name] = source.solution()
+    return Comparison(runs, event)
+
+
+def distinct(names: Sequence[str]) -> list[str]:
+    """Names with (2), (3) ... behind those that came before."""
+    seen: dict[str, int] = {}
+    found = []
+    for name in names:
+        seen[name] = seen.get(name, 0) + 1
+        found.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return found
+
+
+def _row(name: str, solution: Solution) -> dict[str, Any]:
+    problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
+    row = {
+        "name": name,
+        "body": problem.body.kind,
+        "friction": problem.friction.kind,
+        "rule": problem.rule,
+        "regime": choices(solution).regime,
+        "events": len(events),
+        "pulses": 0,
+        "shocks": shocks,
+        "slip_rate": "jumps" if shocks else "smooth",
+        "peak_rate": solution.catalogue(0.0).peak_rate.max(),
+        "load_unit": problem.load_unit,
+        "status": solution.status.name,
+    }
+    if events.empty:
+        return row
+    n = int(events.slip.to_numpy().argmax())
+    largest, history, event_rate = events.iloc[n], solution.history, default_event_rate(problem)
+    found = SlipEvents.of(history, event_rate)
+    begin, pulses = found.begin, Pulses.of(history, found, event_rate)
+    before, smallest = extreme_tractions(history, begin, pulses)
+    return row | {
+        "pulses": int(largest.pulses),
+        "slip": largest.slip,
+        "static_drop": largest.static_drop,
+        "traction_drop": before[n] - history.mode(begin)[n] * largest.traction_after,
+        "dynamic_drop": before[n] - smallest[n],
+        "duration": events.duration.iloc[0],
+    }

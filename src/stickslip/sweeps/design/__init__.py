@@ -1,0 +1,1 @@
+"""Which members a sweep has, and what is kept of each."""

@@ -1,0 +1,181 @@
+"""What a sweep keeps of each member: summary quantities of its solution, by name, or functions of the user's own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.solution.solution import Solution
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A number that says something of a whole run: name, unit ("load" is Pa or N, "energy" J m-2 or J), meaning, and the function
+    of the solution that gives it. NaN where the run has no such number. `is_flag`: 1 for yes, 0 for no."""
+
+    name: str
+    unit: str
+    meaning: str
+    of: Callable[[Solution], Any]
+    is_flag: bool = False
+
+    def unit_for(self, problem: Problem) -> str:
+        """The unit under a body."""
+        energy = "J m-2" if isinstance(problem.body, ElasticSlab) else "J"
+        return {"load": problem.load_unit, "energy": energy}.get(self.unit, self.unit)
+
+    def value(self, solution: Solution) -> float:
+        """Of a solution."""
+        return float(self.of(solution))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A built-in one goes to other processes by its name."""
+        if QUANTITIES.get(self.name) is self:
+            return _built_in, (self.name,)
+        return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag)
+
+
+def _built_in(name: str) -> Summary:
+    return QUANTITIES[name]
+
+
+def _first(column: str) -> Callable[[Solution], float]:
+    def of(solution: Solution) -> float:
+        return float(solution.events[column].iloc[0]) if len(solution.events) else np.nan
+
+    return of
+
+
+def _energy(part: str) -> Callable[[Solution], float]:
+    return lambda solution: _energies(solution)[part]
+
+
+@lru_cache(maxsize=1)
+def _energies(solution: Solution) -> dict[str, float]:
+    """At the end of a run; several quantities ask for them one after the other."""
+    found = solution.energy(solution.history.duration)
+    return {str(name): float(values.item()) for name, values in found.items()}
+
+
+def _recurrences(solution: Solution) -> np.ndarray[Any, Any]:
+    return solution.events.recurrence.to_numpy(float)[1:]
+
+
+def _recurrence(solution: Solution) -> float:
+    between = _recurrences(solution)
+    return float(between.mean()) if len(between) else np.nan
+
+
+def _recurrence_cv(solution: Solution) -> float:
+    between = _recurrences(solution)
+    return float(between.std(ddof=1) / between.mean()) if len(between) > 1 else np.nan
+
+
+def _peak(column: str) -> Callable[[Solution], float]:
+    def of(solution: Solution) -> float:
+        events = solution.events
+        return float(events[column].iloc[int(events.peak_rate.argmax())]) if len(events) else np.nan
+
+    return of
+
+
+def _slip(solution: Solution) -> float:
+    return float(solution.slip(solution.history.duration)) - solution.problem.initial_slip
+
+
+def _irregular(solution: Solution) -> bool:
+    from stickslip.contact.uniqueness import uniqueness
+
+    return uniqueness(solution.problem).regime != "regular"
+
+
+def _branches(solution: Solution) -> int:
+    from stickslip.contact.uniqueness import uniqueness
+
+    return max(len(uniqueness(solution.problem).branches), 1)
+
+
+_ALL = (
+    Summary("events", "1", "slip events", lambda solution: len(solution.events)),
+    Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),
+    Summary("shocks", "1", "jumps of slip rate", lambda solution: len(solution.shocks)),
+    Summary("slip", "m", "slip of the whole run", _slip),
+    Summary("peak_rate", "m s-1", "largest slip rate of all slip events", _peak("peak_rate")),
+    Summary("peak_time", "s", "when the slip rate is largest", _peak("peak_time")),
+    Summary("first_start", "s", "start of the first slip event", _first("start")),
+    Summary("first_end", "s", "end of the first slip event", _first("end")),
+    Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
+    Summary("first_slip", "m", "slip of the first slip event", _first("slip")),
+    Summary("first_traction_drop", "load", "friction before less friction after the first slip event", _first("traction_drop")),
+    Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
+    Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence),
+    Summary("recurrence_cv", "1", "coefficient of variation of the recurrence times", _recurrence_cv),
+    Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
+    Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
+    Summary(
+        "irregular",
+        "1",
+        "several slip rates solve the contact equation at some load, at the slip of the start",
+        _irregular,
+        is_flag=True,
+    ),
+    Summary("branches", "1", "rising branches of the contact equation at the slip of the start", _branches),
+    *(
+        Summary(part, "energy", meaning, _energy(part))
+        for part, meaning in (
+            ("work", "work of the driver"),
+            ("heat", "friction heat"),
+            ("damped", "energy dissipated by the block's damping"),
+            ("radiated", "energy gone in waves through a driver of finite impedance"),
+            ("trapped", "energy of the waves inside the slab at the end"),
+            ("balance", "energy balance of the run: zero for an exact solution"),
+        )
+    ),
+)
+QUANTITIES = {one.name: one for one in _ALL}
+"""Those that are known by their name."""
+DEFAULT = ("events", "pulses", "slip", "peak_rate", "first_duration", "recurrence", "arrested")
+
+TAKEN = ("status", "reason", "time", "member")
+"""Other names in the dataset."""
+_NAME = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
+
+Wanted = str | tuple[str, str, Callable[["Solution"], Any]] | Summary
+"""A quantity by its name; one of the user's own as (name, unit, function of a solution), or in full."""
+
+
+def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
+    """The quantities that are wanted. Raises InputError for a name that is unknown, or twice."""
+    found = tuple(_one(item) for item in ([wanted] if isinstance(wanted, str) else wanted))
+    names = [one.name for one in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"sweep: the quantity '{name}' is wanted twice")
+    if not found:
+        raise InputError(f"sweep: no quantity is wanted; allowed: {', '.join(sorted(QUANTITIES))}")
+    return found
+
+
+def _one(item: Wanted) -> Summary:
+    if isinstance(item, Summary):
+        return item
+    if isinstance(item, str):
+        if item not in QUANTITIES:
+            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES)}")
+        return QUANTITIES[item]
+    if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
+        raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
+    name, unit, of = item
+    if name in QUANTITIES or name in TAKEN or not _NAME.fullmatch(name):
+        raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, of letters, digits, blanks and _")
+    return Summary(name, unit, name, of)

@@ -1,0 +1,65 @@
+"""Curves of every member at the same times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.evaluation import CURVES
+from stickslip.solution.solution import Solution
+from stickslip.sweeps.design.design import Design
+
+Floats = NDArray[np.float64]
+PREFIX = "series_"
+"""Before the name of a curve among the results: a slip over time is not the slip of the whole run."""
+TIME = "time"
+"""Dimension of the samples."""
+LARGEST = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Which curves of a solution are kept, right limits, and at which times (s)."""
+
+    curves: tuple[str, ...]
+    times: Floats
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names among the results."""
+        return tuple(PREFIX + curve for curve in self.curves)
+
+    def of(self, solution: Solution) -> dict[str, Floats]:
+        """Samples by name; NaN after the end of the run."""
+        there = self.times <= solution.history.duration
+        found = {}
+        for curve, name in zip(self.curves, self.names, strict=True):
+            values = np.full(len(self.times), np.nan)
+            values[there] = getattr(solution, curve)(self.times[there])
+            found[name] = values
+        return found
+
+
+def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> Series | None:
+    """The series that are wanted, at so many times from the start to the longest duration; None for no curves.
+
+    Raises InputError for an unknown curve or a number of samples out of range.
+    """
+    if not curves:
+        return None
+    allowed = [*CURVES, *(["state"] if scenario.problem.friction.state else [])]
+    for curve in curves:
+        if curve not in allowed:
+            raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")
+    if len(set(curves)) < len(curves):
+        raise InputError("sweep: a series is wanted twice")
+    if not (isinstance(samples, int) and 2 <= samples <= LARGEST):
+        raise InputError(f"sweep: samples must be a whole number from 2 to {LARGEST}, got {samples!r}")
+    names = [key.name for key in design.keys]
+    last = float(design.columns[names.index("run.duration")].max()) if "run.duration" in names else scenario.duration
+    return Series(tuple(curves), np.linspace(0.0, last, samples))

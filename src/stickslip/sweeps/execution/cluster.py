@@ -1,0 +1,196 @@
+"""Chunks of a sweep on the workers of a dask.distributed cluster, local or not; results come back as they are ready.
+
+Retries, the loss of workers and balancing are dask's. A chunk's task carries all that it needs, a few kilobytes: nothing is
+placed on the workers beforehand, so nothing is lost with one.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.errors import InputError
+from stickslip.sweeps.execution.chunk import run_chunk
+from stickslip.sweeps.execution.security import own_security
+from stickslip.trajectory.checkpoint import engine
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+    from stickslip.sweeps.sweep import Runner
+
+Chunk = TypeVar("Chunk")
+Result = TypeVar("Result")
+
+LOOPBACK = "127.0.0.1"
+"""Where a cluster that is started here listens: no other machine reaches it."""
+PATIENCE = 10.0
+"""Time (s) within which a scheduler must answer."""
+LARGEST_FILE = 1_000_000
+"""Bytes of the largest scheduler file."""
+AHEAD = 2
+"""Chunks in flight for each thread of the cluster: one that it works on, and the next."""
+LEAST = 8
+"""Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
+RETRIES = 2
+GONE = "sweep: the dask scheduler is gone; what is done is kept: the same command goes on"
+GONE_AGAIN = ("lost", "pending")
+"""A result that was ready went with its worker before it was fetched: dask works it out anew."""
+ENVIRON = "distributed.nanny.pre-spawn-environ"
+SETTINGS = {
+    "distributed.worker.profile.enabled": False,  # a few per cent of everything, and nobody looks at it here
+    f"{ENVIRON}.MALLOC_TRIM_THRESHOLD_": 2**28,  # dask's workers return every freed array to the system and fetch it again:
+    f"{ENVIRON}.MALLOC_MMAP_THRESHOLD_": 2**25,  # 15 per cent of a chunk of the compiled batch
+    "distributed.scheduler.http.routes": [],  # pages that show what runs, to whoever asks
+    "distributed.worker.http.routes": [],
+}
+"""Of workers that are started here."""
+LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+"""What workers that are started here do first: Ctrl-C reaches them too, but it is for the sweep to end them."""
+
+
+class ChunksLostError(RuntimeError):
+    """Chunks that no worker brought to an end: one line that says why, and what to do."""
+
+
+@contextmanager
+def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
+    """A client of the cluster at an address (or of a scheduler file), or of a local one with so many worker processes.
+
+    Raises InputError where dask.distributed is not installed or the scheduler does not answer within 10 s.
+    """
+    try:
+        from dask import config
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise InputError("sweep: a cluster needs dask.distributed: pip install 'stickslip[cluster]'") from None
+    if scheduler is not None:
+        with _quietly(), Client(_answering(scheduler), set_as_default=False) as client:
+            yield client
+    else:
+        many = {"n_workers": _checked(workers), "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
+        private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
+        with config.set(SETTINGS):
+            local = LocalCluster(**many, **private, security=own_security(), silence_logs=logging.ERROR)
+        with _quietly(), local, Client(local, set_as_default=False) as client:
+            yield client
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep dask's client from telling a lost connection with all that it was doing: one line tells it."""
+    log = logging.getLogger("distributed.client")
+    before = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log.setLevel(before)
+
+
+def _checked(workers: int | None) -> int:
+    if workers is None or workers < 1:
+        raise InputError(f"sweep: workers must be 1 or more, got {workers}")
+    return workers
+
+
+def _answering(scheduler: str) -> str:
+    """The address of a scheduler that answers. Raises InputError."""
+    from distributed import Security
+    from distributed.comm import connect
+
+    async def knock() -> None:
+        comm = await connect(address, timeout=PATIENCE, **Security().get_connection_args("client"))
+        await comm.close()
+
+    try:
+        path = Path(scheduler)
+        address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
+        with ThreadPoolExecutor(1) as aside:  # a notebook has an event loop of its own in this thread
+            aside.submit(lambda: asyncio.run(knock())).result()
+    except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError: tls:// without a key in dask's configuration
+        raise InputError(
+            f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"
+        ) from None
+    return address
+
+
+def on_cluster(client: Client) -> Runner:
+    """Runs chunks on the workers of a cluster, each chunk on one thread: a worker with more threads runs more chunks at a time."""
+    return lambda work, chunks: stream(client, partial(run_chunk, work, threads=1), chunks)
+
+
+def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
+    """Number and result of each chunk, in the order in which they are ready; few are in flight at a time.
+
+    `run` and the chunks must be picklable. A chunk that fails holds up no others: when these are done ChunksLostError is raised.
+    Raises InputError at once where a worker has another version of the engine, ChunksLostError where the scheduler is lost.
+    """
+    try:
+        yield from _streamed(client, run, chunks)
+    except (OSError, CancelledError):  # of the connection: what fails in a chunk is its result, what fails in the store is not here
+        raise ChunksLostError(GONE) from None
+
+
+def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
+    from distributed import as_completed
+
+    waiting = iter(chunks)
+    numbers: dict[Future, int] = {}
+    lost: list[str] = []
+
+    def send() -> list[Future]:
+        room = max(LEAST, AHEAD * sum(client.nthreads().values())) - len(numbers)
+        sent = {_submitted(client, run, chunk): number for number, chunk in islice(waiting, max(room, 0))}
+        numbers.update(sent)
+        return list(sent)
+
+    ready = as_completed(send(), loop=client.loop)
+    for future in ready:
+        if future.status in GONE_AGAIN:
+            ready.add(future)
+            continue
+        number = numbers.pop(future)
+        if future.status == "finished":
+            yield number, future.result()
+        else:
+            lost.append(f"chunk {number}: {_why(future)}")
+        future.release()
+        ready.update(send())
+    if lost:
+        more = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
+        raise ChunksLostError(f"sweep: no worker finished {lost[0]}{more}; all others are kept: the same command tries again")
+
+
+def _submitted(client: Client, run: Callable[[Chunk], Result], chunk: Chunk) -> Future:
+    return client.submit(_run_checked, run, chunk, engine(), pure=False, retries=RETRIES)
+
+
+def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:
+    """On the worker."""
+    if engine() != expected:
+        raise InputError("sweep: a worker of the cluster has another version of stickslip: install the same everywhere")
+    return run(chunk)
+
+
+def _why(future: Future) -> str:
+    """What became of a chunk. Raises what stops the whole sweep: a user's mistake, or a scheduler that is gone."""
+    from distributed import KilledWorker
+
+    if future.status != "error":
+        raise ChunksLostError(GONE)
+    error = future.exception()
+    if isinstance(error, InputError):
+        raise error
+    if isinstance(error, KilledWorker):
+        return f"it ended {error.allowed_failures + 1} worker(s), one after the other (out of memory?)"
+    return f"{type(error).__name__}: {error}"

@@ -1,0 +1,1 @@
+"""The store of a sweep and what is read from it."""

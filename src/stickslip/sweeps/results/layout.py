@@ -1,0 +1,114 @@
+"""How the store of a sweep is laid out: coordinates, variables and attributes, all before the first member is run."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import zarr
+from zarr.codecs import Crc32cCodec, ZstdCodec
+
+import stickslip
+from stickslip.io.netcdf import LONG_NAMES, PAPER
+from stickslip.sweeps.design.series import PREFIX, TIME
+from stickslip.sweeps.execution.outcome import MEANINGS, NOT_RUN
+from stickslip.sweeps.execution.plan import Plan
+from stickslip.trajectory.checkpoint import engine
+
+FORMAT = 1
+"""Version of the layout."""
+STATUS, REASON = "status", "reason"
+WORDS = "string"
+COMPRESSED = (ZstdCodec(), Crc32cCodec())
+"""With a checksum behind every chunk, which each reader of zarr looks at, whenever it reads it."""
+
+
+def lay_out(plan: Plan, place: Any) -> None:
+    """Begin a store (folder or zarr store) with everything but results."""
+    group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
+    design, series = plan.design, plan.work.series
+    for key, column in zip(design.keys, design.columns, strict=True):
+        about = {"long_name": key.meaning, "log": int(key.name in design.logs)} | ({"units": key.unit} if key.unit else {})
+        _put(group, key.name, column, (key.name,) if design.is_grid else design.dims, about)
+    if series is not None:
+        _put(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
+    for name, about in results(plan).items():
+        samples = ((TIME, len(series.times)),) if series and name.startswith(PREFIX) else ()
+        _new(group, plan, name, about, "float64", np.nan, samples)
+    _new(group, plan, REASON, {"long_name": "why a member failed"}, WORDS, "")
+    flags = {"flag_values": list(MEANINGS), "flag_meanings": " ".join(MEANINGS.values())}
+    _new(group, plan, STATUS, {"long_name": "how a member ended"} | flags, "int8", NOT_RUN)
+
+
+def _put(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple[str, ...], about: dict[str, Any]) -> None:
+    kind, fill = (WORDS, "") if values.dtype.kind == "T" else ("float64", np.nan)
+    array = group.create_array(
+        name,
+        shape=values.shape,
+        chunks=values.shape,
+        dtype=kind,
+        compressors=COMPRESSED,
+        fill_value=fill,
+        dimension_names=dims,
+        attributes=about,
+    )
+    array[...] = values
+
+
+def _new(
+    group: zarr.Group, plan: Plan, name: str, about: dict[str, Any], kind: str, fill: Any, samples: tuple[tuple[str, int], ...] = ()
+) -> None:
+    """An empty variable over the members; `samples` is one more dimension, its name and its length."""
+    more = tuple(length for _, length in samples)
+    group.create_array(
+        name,
+        shape=plan.design.shape + more,
+        chunks=plan.tile + more,
+        chunk_key_encoding={"name": "default", "separator": "."},  # no folders in folders
+        dtype=kind,
+        compressors=COMPRESSED,
+        fill_value=fill,
+        dimension_names=(*plan.design.dims, *(dim for dim, _ in samples)),
+        attributes=about | ({} if plan.design.is_grid else {"coordinates": " ".join(key.name for key in plan.design.keys)}),
+    )
+
+
+def array_of(group: zarr.Group, name: str) -> zarr.Array[Any]:
+    """A variable of a store."""
+    found = group[name]
+    assert isinstance(found, zarr.Array)
+    return found
+
+
+def results(plan: Plan) -> dict[str, dict[str, Any]]:
+    """Attributes of each result by its name."""
+    problem, series = plan.scenario.problem, plan.work.series
+    found: dict[str, dict[str, Any]] = {}
+    for one in plan.work.quantities:
+        flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
+        found[one.name] = {"long_name": one.meaning, "units": one.unit_for(problem), **flags}
+    if series is not None:
+        state = problem.friction.state
+        units = {"slip": "m", "slip_rate": "m s-1", "state": state.unit if state else ""}
+        for curve, name in zip(series.curves, series.names, strict=True):
+            found[name] = {"long_name": LONG_NAMES[curve], "units": units.get(curve, problem.load_unit)}
+    return found
+
+
+def attributes(plan: Plan) -> dict[str, Any]:
+    """Where the results come from: all that decides them, and nothing else."""
+    design, scenario = plan.design, plan.scenario
+    about = {"design": design.kind, "keys": [key.name for key in design.keys], "chunk": list(plan.tile)}
+    return {
+        "Conventions": "CF-1.11",
+        "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
+        "source": f"stickslip {stickslip.__version__}",
+        "engine": engine(),
+        "references": PAPER,
+        "scenario": plan.work.text,
+        "selection_rule": scenario.problem.rule,
+        "rtol": scenario.rtol,
+        "design": json.dumps(about if design.seed is None else about | {"seed": design.seed}),
+        "stickslip_sweep": FORMAT,
+    }

@@ -1,0 +1,129 @@
+"""What decides the members of a refined map; kept with them, so that its cells can be found again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.sweeps.design.adaptive_grid import Differ, Floats, Integers, Lattice, Refined, apart, refine_cells, unequal
+from stickslip.sweeps.design.axis import Axis
+from stickslip.sweeps.execution.outcome import NOT_RUN
+
+ATTRIBUTE = "refinement"
+"""Attribute of the dataset that holds the recipe (JSON)."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A search: the quantity whose changes are looked for, coarse values by key (SI, ascending), and how far to go.
+
+    Raises InputError for a factor that is not above 1, and like `Lattice`.
+    """
+
+    quantity: str
+    factor: float | None
+    depth: int
+    most: int
+    columns: dict[str, list[float]]
+    logarithmic: list[bool]
+    kept: list[str]
+
+    def __post_init__(self) -> None:
+        if self.factor is not None and not self.factor > 1.0:
+            raise InputError(f"refine: factor must be above 1, got {self.factor!r}")
+        if not (isinstance(self.depth, int) and isinstance(self.most, int)):
+            raise InputError(f"refine: depth and most must be whole numbers, got {self.depth!r} and {self.most!r}")
+        _ = self.lattice
+
+    @classmethod
+    def of(cls, quantity: str, axes: Sequence[Axis], kept: list[str], depth: int, factor: float | None, most: int) -> Self:
+        """Along these axes. Raises InputError for an axis that is not of numbers in ascending order."""
+        for axis in axes:
+            if not axis.key.unit or len(axis.values) < 2 or not (axis.values[1:] > axis.values[:-1]).all():
+                raise InputError(f"refine: {axis.key.name} needs two or more numbers in ascending order: LOW..HIGH:POINTS")
+        columns = {axis.key.name: axis.values.tolist() for axis in axes}
+        return cls(quantity, factor, depth, most, columns, [axis.log for axis in axes], kept)
+
+    @classmethod
+    def read(cls, dataset: xr.Dataset) -> Self:
+        """That of a dataset. Raises InputError where there is none."""
+        if ATTRIBUTE not in dataset.attrs:
+            raise InputError("this sweep was not made by stickslip.refine")
+        return cls(**json.loads(dataset.attrs[ATTRIBUTE]))
+
+    def __str__(self) -> str:
+        return json.dumps(asdict(self))
+
+    @cached_property
+    def lattice(self) -> Lattice:
+        """The points there may be."""
+        return Lattice(tuple(len(column) for column in self.columns.values()), self.depth)
+
+    @property
+    def differ(self) -> Differ:
+        """When answers differ."""
+        return unequal if self.factor is None else apart(self.factor)
+
+    def values(self, points: Integers) -> tuple[Floats, ...]:
+        """What members at points (members, axes) of the finest grid have for each key (SI): coarse steps in equal parts."""
+        found = []
+        for values, log, place in zip(self.columns.values(), self.logarithmic, points.T / self.lattice.size(0), strict=True):
+            column = np.array(values)
+            step = np.minimum(place.astype(np.intp), len(column) - 2)
+            low, high, part = column[step], column[step + 1], place - step
+            between = low * (high / low) ** part if log else low + (high - low) * part
+            found.append(np.where(part == 1.0, high, between))
+        return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedMap:
+    """The cells of a refined map: lower and upper ends by key, shape (cells,) (SI), the answer around each (NaN where it
+    changes, and where there is none), and whether it changes there."""
+
+    low: dict[str, Floats]
+    high: dict[str, Floats]
+    answer: Floats
+    changes: NDArray[np.bool_]
+
+    def at(self, key: str, value: float) -> RefinedMap:
+        """The cells that a value of one of the keys cuts; of two that touch there, the upper."""
+        low, high = self.low[key], self.high[key]
+        rows = (low <= value) & ((value < high) | (high == high.max()) & (value == high))
+        lower, upper = ({name: one[rows] for name, one in side.items()} for side in (self.low, self.high))
+        return RefinedMap(lower, upper, self.answer[rows], self.changes[rows])
+
+
+def cells_of(dataset: xr.Dataset) -> RefinedMap:
+    """The cells of what `stickslip.refine` returns; of a search that was stopped, those of the rounds that are complete.
+
+    Raises InputError for any other dataset, and where not even the coarse grid is complete.
+    """
+    recipe = Recipe.read(dataset)
+    missing = np.flatnonzero(dataset["status"].values == NOT_RUN)
+    answers = np.asarray(dataset[recipe.quantity].values, float)[: missing[0] if missing.size else None]
+    found = _again(recipe, answers)
+    cells = found.cells
+    size = (2 ** (recipe.depth - cells.level))[:, np.newaxis]
+    low, high = (dict(zip(recipe.columns, recipe.values(corner), strict=True)) for corner in (cells.corner, cells.corner + size))
+    return RefinedMap(low, high, np.where(found.changes, np.nan, 0.5 * (cells.least + cells.most)), found.changes)
+
+
+def _again(recipe: Recipe, answers: Floats) -> Refined:
+    """The same search, as far as there are answers."""
+    place = 0
+
+    def evaluate(points: Integers) -> Floats:
+        nonlocal place
+        place += len(points)
+        return answers[place - len(points) : place]
+
+    return refine_cells(recipe.lattice, evaluate, recipe.differ, len(answers))

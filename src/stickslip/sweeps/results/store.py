@@ -1,0 +1,199 @@
+"""Results of a sweep as a zarr store: written chunk by chunk, readable by `xarray.open_zarr` at any time.
+
+The store is laid out before the first member is run, and then only chunks are added, each file under a temporary name that is
+changed when it is whole. The status of a chunk is written last: a chunk without it is not done and is run again. Nothing in the
+store depends on when, in which order or by whom chunks were done. Each file has a checksum (see `checksums`), and that of a chunk
+is written behind its status; a chunk without it is not done either.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+import zarr
+from zarr.storage import MemoryStore
+
+from stickslip.foundation.atomic_write import draft_beside, sync_folder
+from stickslip.foundation.errors import InputError
+from stickslip.sweeps.execution.chunk import ChunkResult
+from stickslip.sweeps.execution.outcome import NOT_RUN
+from stickslip.sweeps.execution.plan import Plan
+from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, lay_out
+from stickslip.sweeps.results.store_compatibility import as_begun
+
+
+class ResultStore:
+    """The store of a plan, in memory or in a folder, which it holds against other sweeps until the end of its `with`."""
+
+    def __init__(self, plan: Plan, place: Path | MemoryStore, hold: int | None = None) -> None:
+        self.plan, self.place, self._hold = plan, place, hold
+        self.group = zarr.open_group(place, mode="r+")
+
+    @classmethod
+    def in_memory(cls, plan: Plan) -> Self:
+        """An empty one."""
+        place = MemoryStore()
+        lay_out(plan, place)
+        return cls(plan, place)
+
+    @classmethod
+    def at(cls, plan: Plan, path: Path) -> Self:
+        """A new one, or the one that is there if it is of the same plan. Raises InputError for anything else that is there."""
+        if not path.exists():
+            _create(plan, path)
+        check_store(path)
+        plan, hold = as_begun(plan, path), _held(path)
+        for draft in path.rglob("*.partial"):  # of a sweep that was killed while it wrote
+            draft.unlink()
+        store = cls(plan, path, hold)
+        with writing(path):
+            for chunk in store.chunks_without_checksums():
+                (path / store.files_of(chunk)[0]).unlink(missing_ok=True)
+        return store
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        if self._hold is not None:
+            os.close(self._hold)
+            self._hold = None
+
+    def files_of(self, chunk: int) -> list[str]:
+        """Return the files of a chunk in a folder, that of its status first."""
+        place = [str(int(at)) for at in np.unravel_index(chunk, self.plan.tiles)]
+        arrays = ((name, array_of(self.group, name)) for name in (STATUS, REASON, *self.plan.work.names))
+        return [f"{name}/c.{'.'.join(place + ['0'] * (array.ndim - len(place)))}" for name, array in arrays]
+
+    def chunks_without_checksums(self) -> list[int]:
+        """Return the chunks with a status for which no list of checksums vouches: a writer died there, or the list was lost."""
+        if not isinstance(self.place, Path):
+            return []
+        found = (chunk for chunk in range(self.plan.chunks) if not is_vouched_for(self.place, str(chunk)))
+        return [chunk for chunk in found if (self.place / self.files_of(chunk)[0]).exists()]
+
+    def missing(self) -> list[int]:
+        """Chunks that are not done."""
+        firsts = self.status[tuple(slice(None, None, part) for part in self.plan.tile)]
+        return [int(chunk) for chunk in np.flatnonzero(firsts.ravel() == NOT_RUN)]
+
+    @property
+    def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
+        """Codes of all members (`outcome.MEANINGS`), in the shape of the design."""
+        return np.asarray(array_of(self.group, STATUS)[...])
+
+    def write(self, chunk: int, result: ChunkResult) -> None:
+        """Keep what came of a chunk. Raises InputError where it cannot be written."""
+        region = self.plan.region(chunk)
+        shape = tuple(one.stop - one.start for one in region)
+        reasons = np.full(len(result.status), "", dtype=np.dtypes.StringDType())
+        for place, reason in result.reasons.items():
+            reasons[place] = reason
+        with writing(self.place):
+            for name, values in result.results.items():
+                array_of(self.group, name)[region] = values.reshape(shape + values.shape[1:])
+            array_of(self.group, REASON)[region] = reasons.reshape(shape)
+            array_of(self.group, STATUS)[region] = result.status.reshape(shape)
+            if isinstance(self.place, Path):
+                vouch_for(self.place, str(chunk), self.files_of(chunk))
+
+    def dataset(self) -> xr.Dataset:
+        """What is there: lazily from a folder, as arrays from memory."""
+        found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
+        ordered = found[[*self.plan.work.names, STATUS, REASON]]
+        return ordered if isinstance(self.place, Path) else ordered.load()
+
+
+@contextmanager
+def writing(place: Path | MemoryStore) -> Iterator[None]:
+    """Around what writes: an error of the file system becomes one line. Raises InputError."""
+    try:
+        yield
+    except OSError as error:
+        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+        kept = "; what is there can be read, and the same command goes on with it when there is room" if full else ""
+        raise InputError(f"{place}: cannot be written: {error.strerror or error}{kept}") from None
+
+
+def check_store(path: Path) -> set[str]:
+    """Check every file of a store against its checksum, and return their names.
+
+    Raises InputError for a file that is damaged, and for what is no store of ours.
+    """
+    if not is_vouched_for(path, LAYOUT):
+        ours = (path / FOLDER).exists() or _mentions(path / "zarr.json", b"stickslip_sweep")
+        what = "a store without its checksums, of an older version or damaged" if ours else "no store of a sweep"
+        raise InputError(f"{path}: is there, and is {what}: choose another name")
+    return check_all(path)
+
+
+def _mentions(path: Path, word: bytes) -> bool:
+    return path.is_file() and word in path.read_bytes()
+
+
+def open_store(path: str | Path) -> xr.Dataset:
+    """Open the store of a sweep or of a refined map to read it, lazily, once every file has been checked. Raises InputError."""
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"{path}: no such store")
+    listed = check_store(path)
+    for file in path.glob(f"{STATUS}/c*"):
+        if file.relative_to(path).as_posix() not in listed and file.suffix != ".partial":
+            raise InputError(f"{path}: has members without checksums, where a sweep was stopped: run the same sweep again")
+    try:
+        found: xr.Dataset = xr.open_zarr(path, chunks=None)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: cannot be read: {' '.join(str(error).split())[:200]}") from None
+    return found
+
+
+def _create(plan: Plan, path: Path) -> None:
+    publish(path, lambda draft: lay_out(plan, draft))
+
+
+def publish(path: Path, fill: Callable[[Path], object]) -> None:
+    """Let `fill` make a store under another name, then give it its own: whole or not at all. Raises InputError."""
+    draft = draft_beside(path)
+    try:
+        with writing(path):
+            fill(draft)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", category=UserWarning)  # not part of the format, but what xarray wishes
+                zarr.consolidate_metadata(draft)
+            vouch_for_layout(draft)
+            draft.replace(path)
+            sync_folder(path.parent)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _held(path: Path) -> int | None:
+    """Hold a store for one sweep, until the number that is returned is closed or the process ends, however it does.
+
+    Raises InputError where another one holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    folder = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(folder)
+        raise InputError(f"{path}: another sweep is writing into it") from None
+    except OSError:  # a file system without locks
+        os.close(folder)
+        return None
+    return folder

@@ -1,0 +1,56 @@
+"""Whether the store that is there is of the sweep that is wanted."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import zarr
+
+from stickslip.foundation.errors import InputError
+from stickslip.sweeps.design.series import TIME
+from stickslip.sweeps.execution.plan import Plan
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, attributes, results
+
+_SAME = {
+    "stickslip_sweep": "by another version of stickslip",
+    "source": "by another version of stickslip",
+    "engine": "by another version of stickslip",
+    "scenario": "from another scenario",
+}
+
+
+def as_begun(plan: Plan, path: Path) -> Plan:
+    """The plan with the chunks with which the store was begun. Raises InputError where the store is not of this plan."""
+    try:
+        group = zarr.open_group(path, mode="r")
+    except (OSError, ValueError, KeyError):
+        raise InputError(f"{path}: is there, and is no store of a sweep: choose another name") from None
+    if "stickslip_sweep" not in group.attrs:
+        raise InputError(f"{path}: is there, and is no store of a sweep: choose another name")
+    ours = attributes(plan)
+    different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
+    different = different or _design_differs(plan, group)
+    if different:
+        raise InputError(f"{path}: was made {different}: give what it was begun with, or another name")
+    return plan.with_tile(tuple(json.loads(str(group.attrs["design"]))["chunk"]))
+
+
+def _design_differs(plan: Plan, group: zarr.Group) -> str:
+    """What is another one in the store, in words; nothing if it is the same."""
+    design, series = plan.design, plan.work.series
+    theirs = json.loads(str(group.attrs["design"]))
+    if theirs["keys"] != [key.name for key in design.keys] or theirs["design"] != design.kind:
+        return f"over {', '.join(theirs['keys'])} (design {theirs['design']})"
+    for key, column in zip(design.keys, design.columns, strict=True):
+        if not np.array_equal(array_of(group, key.name)[...], column):
+            return f"with other values of {key.name}"
+    coordinates = {key.name for key in design.keys} | {TIME, STATUS, REASON}
+    found = {name: dict(array.attrs) for name, array in group.arrays() if name not in coordinates}
+    wanted = results(plan)
+    if {name: about["units"] for name, about in found.items()} != {name: about["units"] for name, about in wanted.items()}:
+        return f"for other quantities ({', '.join(sorted(found))})"
+    if series is not None and not np.array_equal(array_of(group, TIME)[...], series.times):
+        return "with other samples of time"
+    return ""

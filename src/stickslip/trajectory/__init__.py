@@ -1,0 +1,1 @@
+"""What a run leaves: its history, slip events, tables, status and checkpoints."""

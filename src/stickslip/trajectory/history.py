@@ -1,0 +1,321 @@
+"""The history of a run: pieces of load and slip rate, and how to read them at any time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.bodies import ElasticSlab
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.state.layout import Integers, Store
+from stickslip.engine_input.forcing import inflow_of
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.phase_index import Phases
+
+Floats = NDArray[np.float64]
+Side = Literal["left", "right"]
+
+
+def horner(coefficients: Floats, x: Floats) -> Floats:
+    """Polynomials (one a row, ascending) at x (one value a row)."""
+    value = coefficients[:, -1].copy()
+    for k in range(coefficients.shape[1] - 2, -1, -1):
+        value *= x
+        value += coefficients[:, k]
+    return value
+
+
+@kernel
+def add_up(values: Floats, past: Integers, sums: Floats) -> None:
+    """Sums of the values that end at places, each from where the one before ends, term by term."""
+    begin = 0
+    for n in range(len(past)):
+        sums[n] = 0.0
+        for k in range(begin, past[n]):
+            sums[n] += values[k]
+        begin = past[n]
+
+
+class Epoch(NamedTuple):
+    """A moment without rounding: whole rows (round trips of a slab) since t = 0, and an offset in s."""
+
+    row: int
+    offset: float
+
+
+ROUNDING = 1e-13
+"""Of the offsets of pieces that follow each other, relative to a row."""
+
+BLOCK = 1024
+"""Pieces that are integrated together: keeps the memory bounded, and in the cache."""
+
+START = Epoch(0, 0.0)
+"""t = 0, the start of the run."""
+
+NO_LEAPS = np.empty((0, 4))
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Times found in the history: in a piece, at a place xi in it; or at rest, where nothing was recorded.
+
+    There `leaped` counts the whole rows since the piece, whose echo is the load, and `last` is the last piece before that time.
+    """
+
+    piece: NDArray[np.intp]
+    xi: Floats
+    leaped: Floats
+    before: NDArray[np.bool_]
+    """Left of t = 0."""
+    last: NDArray[np.intp]
+
+    @classmethod
+    def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Moments:
+        """Places in the history by piece and xi."""
+        pieces, places = np.broadcast_arrays(np.atleast_1d(np.asarray(piece, np.intp)), np.atleast_1d(np.asarray(xi, float)))
+        return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool), pieces)
+
+    @property
+    def at_rest(self) -> NDArray[np.bool_]:
+        """Where nothing was recorded."""
+        return self.leaped > 0.0
+
+    def recorded(self) -> Moments:
+        """The last moments up to these that were recorded: slip has been the same since."""
+        piece, xi = np.where(self.at_rest, self.last, self.piece), np.where(self.at_rest, 1.0, self.xi)
+        return Moments(piece, xi, np.zeros(len(xi)), self.before, piece)
+
+
+@dataclass(frozen=True)
+class History:
+    """Pieces in order of time. Loads are minus the reference strength, slips minus the initial slip (see `layout.Store`).
+
+    Times go in and out as seconds since `epoch`, and are as sharp as their own rounding: take an epoch near what you look at.
+    """
+
+    store: Store
+    problem: Problem
+    row_time: float
+    ramp: float
+    duration: float
+    epoch: Epoch = START
+    creep: Floats = field(default_factory=NO_LEAPS.copy)
+    """Leaps over creep, one a row: round trips before it, round trips in it, bounds of the error of slip (m) where it lands and of
+    the time (s) at which that slip is reached."""
+
+    def seen_from(self, epoch: Epoch) -> History:
+        """The same history with its times counted from another epoch."""
+        return replace(self, epoch=epoch)
+
+    def seconds(self, row: Integers | Floats, offset: Floats) -> Floats:
+        """Times (s since the epoch) of offsets in whole rows."""
+        return np.asarray((row - self.epoch.row) * self.row_time + (offset - self.epoch.offset))
+
+    @cached_property
+    def start(self) -> Floats:
+        """Time at which each piece starts, s."""
+        return self.seconds(self.store.row, self.store.theta_from)
+
+    @cached_property
+    def end(self) -> Floats:
+        """Time at which each piece ends, s."""
+        return self.seconds(self.store.row, self.store.theta_to)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Times (s) of the start and the end of the run."""
+        start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
+        return start, start + self.duration
+
+    def __len__(self) -> int:
+        return len(self.store.whole)
+
+    def is_averaged(self, row: int) -> bool:
+        """Whether a stored row is a leap over creep: its pieces are averages over round trips."""
+        return bool((self.creep[:, 0] == row).any())
+
+    def find(self, time: Floats, side: Side) -> Moments:
+        """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
+        if side not in ("left", "right"):
+            raise InputError(f"side must be 'left' or 'right', got {side!r}")
+        begin, end = self.span
+        if not np.all((time >= begin) & (time <= end + 1e-12 * self.duration)):
+            raise InputError(f"times must lie between {begin:g} and the end of the run, {end:g} s")
+        piece = np.searchsorted(self.start, time, side="left" if side == "left" else "right") - 1
+        before = piece < 0
+        last: NDArray[np.intp] = np.maximum(piece, 0)
+        found = Moments(last.copy(), self.xi(last, time - self.start[last]), np.zeros(len(time)), before, last)
+        late = time >= self.end[last] if side == "right" else time > self.end[last]
+        rests = np.flatnonzero(late & self.rests[last])
+        if rests.size:
+            self._find_echoes(found, rests, time[rests], side)
+        return found
+
+    def _find_echoes(self, found: Moments, n: NDArray[np.intp], time: Floats, side: Side) -> None:
+        """Where the load at times at rest comes from: the n-th of those found behind recorded pieces."""
+        row = (self.store.row[found.last[n]] - self.epoch.row).astype(float)
+        rows = row + np.floor((time + self.epoch.offset - row * self.row_time) / self.row_time)
+        phase = time + self.epoch.offset - rows * self.row_time
+        if side == "left":
+            rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.row_time, phase)
+        self._set_echoes(found, n, rows + self.epoch.row, phase, side)
+
+    def _set_echoes(self, found: Moments, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
+        piece = self.phases.latest(phase, found.last[n], side)
+        known = piece >= 0
+        n, piece, row, phase = n[known], piece[known], row[known], phase[known]
+        found.piece[n], found.leaped[n] = piece, row - self.store.row[piece]
+        found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
+
+    def just_before(self, piece: Integers) -> Moments:
+        """The left limits at the starts of pieces."""
+        last = np.maximum(piece - 1, 0)
+        found = Moments(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
+        n = np.flatnonzero(self.rests[last] & (piece > 0))
+        if n.size:
+            row, phase = self.store.row[piece[n]].astype(float), self.store.theta_from[piece[n]]
+            at_edge = phase == 0.0
+            self._set_echoes(found, n, row - at_edge, np.where(at_edge, self.row_time, phase), "left")
+        return found
+
+    @cached_property
+    def phases(self) -> Phases:
+        """Its pieces, by phase."""
+        return Phases.of(self.store, self.row_time)
+
+    def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """What stands in the body at the end of a row: pieces in order of phase, each from where to where in the row (s)."""
+        first, past = (int(np.searchsorted(self.store.row, row, side=side)) for side in ("left", "right"))
+        own = np.arange(first, past)
+        low, high = self.store.theta_from[own], self.store.theta_to[own]
+        if len(own) and low[0] == 0.0 and high[-1] == self.row_time and not self.rests[own[:-1]].any():
+            return own, low, high
+        return self.phases.standing(past - 1)
+
+    def echo_edges(self, begin: float, end: float, most: int) -> Floats:
+        """Times (s) between two times at which echoes of recorded pieces begin, where the contact rests; none if they are many."""
+        behind = np.append(self.start[1:], self.span[1])
+        found: list[Floats] = []
+        for n in np.flatnonzero(self.rests & (self.end < end) & (behind > begin)):
+            low, high = max(begin, float(self.end[n])), min(end, float(behind[n]))
+            _, phase, _ = self.phases.standing(int(n))
+            trips = (high - low) / self.row_time + 1.0
+            most -= int(min(trips * len(phase), 1e18))
+            if most < 0:
+                return np.empty(0)
+            first = np.floor((low + self.epoch.offset) / self.row_time) + self.epoch.row
+            edges = self.seconds(first + np.arange(int(trips) + 1)[:, None], phase).ravel()
+            found.append(edges[(edges > low) & (edges < high)])
+        return np.concatenate([*found, np.empty(0)])
+
+    @cached_property
+    def rests(self) -> NDArray[np.bool_]:
+        """Whether the contact rests behind each piece, unrecorded, until the next one or the end."""
+        row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
+        follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
+        last = row[-1:] * self.row_time + end[-1:]
+        return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.row_time), last)
+
+    def placed(self, at: Moments) -> tuple[Integers, Floats]:
+        """Rows and offsets (s) of moments."""
+        store, piece, xi = self.store, at.piece, at.xi
+        inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
+        return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
+
+    def lasting(self, begin: Moments, end: Moments) -> Floats:
+        """Time from moments to others, s, without the rounding of either."""
+        (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
+        return np.asarray((later_row - row) * self.row_time + (later_offset - offset))
+
+    def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
+        """Place in [0, 1] of a time `local` s after the start of a piece."""
+        speed, bend = self.store.speed[piece], self.store.bend[piece]
+        root = np.sqrt(np.maximum(speed * speed + 4.0 * bend * local, 0.0))
+        pace = speed + root  # zero where a piece starts at a fold, and only at its very start
+        return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
+
+    # ---- values at moments --------------------------------------------------------------------------------------------------
+
+    def excess(self, at: Moments) -> Floats:
+        """Load minus the reference strength."""
+        value = horner(self.store.load[at.piece], at.xi)
+        if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
+            left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
+            value = np.where(at.at_rest, value - left, value)
+        return np.where(at.before, self.problem.excess, value + self._gained(at))
+
+    def _gained(self, at: Moments) -> Floats:
+        """By how much the load has grown in rows at rest since it was recorded."""
+        if not self.problem.varies or not at.at_rest.any():
+            return at.leaped * self.ramp
+        offset = self.store.theta_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
+        return inflow_of(self.problem).gathered(self.store.row[at.piece].astype(float), offset, at.leaped)
+
+    def rate(self, at: Moments) -> Floats:
+        """Slip rate, m/s."""
+        return np.where(at.before | at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
+
+    def mode(self, at: Moments) -> Integers:
+        """0 at rest, +1 in slip forwards, -1 backwards."""
+        return np.where(at.at_rest, 0, self.store.mode[at.piece])
+
+    def grown(self, at: Moments) -> Floats:
+        """Slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
+        rate = self.store.rate[at.piece]
+        powers = np.arange(1, rate.shape[1] + 1)
+        straight = at.xi * horner(self.store.speed[at.piece, None] * rate / powers, at.xi)
+        bend = self.store.bend[at.piece]
+        if not bend.any():
+            return straight
+        return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
+
+    def slipped(self, at: Moments) -> Floats:
+        """Slip since the start of the run, m."""
+        at = at.recorded()
+        return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
+
+    def slipped_since(self, origin: Moments, at: Moments) -> Floats:
+        """Slip since one moment, m: summed from there, so that it has all its digits however much has slipped before."""
+        origin, at = origin.recorded(), at.recorded()
+        begin = int(origin.piece[0])
+        first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
+        crossed = np.arange(first, last)
+        pieces, places = (np.concatenate(parts) for parts in ((crossed, origin.piece, at.piece), (crossed >= 0, origin.xi, at.xi)))
+        grown = self.grown(Moments.inside(pieces, places))
+        earlier, later, behind = np.split(grown, [begin - first, last - first])
+        sums = np.concatenate([-np.cumsum(earlier[::-1])[::-1], [0.0], np.cumsum(later)])
+        return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
+
+    def slipped_within(self, begin: Moments, end: Moments) -> Floats:
+        """Slip from each of some recorded moments to a later one, m: as `slipped_since`, of all of them at once."""
+        past = np.cumsum(end.piece - begin.piece)
+        crossed = np.arange(past[-1] if len(past) else 0) + np.repeat(end.piece - past, end.piece - begin.piece)
+        blocks = np.array_split(crossed, len(crossed) // BLOCK + 1)
+        whole = np.concatenate([self.grown(Moments.inside(block, 1.0)) for block in blocks])
+        sums = np.empty(len(past))
+        add_up(whole, past, sums)
+        return sums + (self.grown(end) - self.grown(begin))
+
+    def state(self, at: Moments) -> Floats:
+        """State of the friction law as its formulas see it; 0 for a law without one."""
+        if self.problem.friction.state is None:
+            return np.zeros(len(at.xi))
+        return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
+
+    def friction(self, at: Moments) -> Floats:
+        """Friction traction minus the reference strength, signed with the load."""
+        excess, rate = self.excess(at), self.rate(at)
+        body = self.problem.body
+        if isinstance(body, ElasticSlab) and body.contact_mass == 0.0:
+            return excess - body.impedance * rate
+        law, mode = self.problem.friction, self.mode(at)
+        grown = self.grown(at)
+        walked = mode * grown if law.counts == "path" else grown
+        law_slip = self.problem.law_slip + self.store.law_slip[at.piece] + walked
+        by_law = mode * self.problem.normal * law.coefficient(law_slip, np.abs(rate), self.state(at)) - self.problem.strength
+        return np.where((mode == 0) | at.before, excess, by_law)

@@ -1,0 +1,213 @@
+"""Slip events along a history: where each begins, is fastest and ends, and by which piece it is known what it left behind."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
+from stickslip.engine.state.layout import S_MODE, TERMS, Floats, Integers, Store
+from stickslip.trajectory.history import History, Moments
+
+MAXIMA_PER_PIECE = 32
+SAME = 1e-12
+"""Relative distance of a slip rate from the threshold within which rounding may decide on which side it is."""
+NOT_YET = -1
+
+
+@kernel
+def turning_points(
+    store: Store, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
+) -> int:
+    """Walk along |slip rate| from a piece on: note where and how much it is at starts, ends, extrema, crossings of the threshold.
+
+    kind: 0 a point above the threshold, +1 the rate rises above it here, -1 it falls to it here. Returns the number of points,
+    or -1 if the arrays are too short.
+    """
+    found = 0
+    p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
+    above = False
+    for n in range(begin, length):
+        if found + 3 * MAXIMA_PER_PIECE > len(piece):
+            return -1
+        sign = 1.0 if store.whole[n, S_MODE] >= 0 else -1.0
+        for k in range(TERMS):
+            p[k] = sign * store.rate[n, k]
+        contiguous = n > begin and store.whole[n, S_MODE] == store.whole[n - 1, S_MODE]
+        begins = store.whole[n, S_MODE] != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
+        if above and not (begins and contiguous):
+            found = _note(piece, xi, rate, kind, found, n - 1, 1.0, 0.0, -1)
+            above = False
+        if store.whole[n, S_MODE] == 0:
+            continue
+        if begins:
+            found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
+            above = True
+        turns_not, last = is_monotone(p, slope), total(p)
+        p[0] -= threshold
+        stays = turns_not and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
+        crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
+        for i in range(crossed):
+            above = not above
+            found = _note(piece, xi, rate, kind, found, n, places[i], threshold, 1 if above else -1)
+        p[0] += threshold
+        turns = 0 if turns_not else crossings(slope, places)
+        for i in range(turns):
+            height = evaluate(p, places[i])
+            if height > threshold:
+                found = _note(piece, xi, rate, kind, found, n, places[i], height, 0)
+        if above:
+            found = _note(piece, xi, rate, kind, found, n, 1.0, last, 0)
+    return found
+
+
+@kernel
+def is_monotone(p: Floats, slope: Floats) -> bool:
+    """Whether bounds show at once that p only rises or only falls on (0, 1]; `slope` receives its derivative or minus that."""
+    way = 1.0 if p[1] >= 0.0 else -1.0
+    for k in range(TERMS - 1):
+        slope[k] = way * (k + 1) * p[k + 1]
+    return keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope))
+
+
+@kernel
+def keeps_its_sign(c: Floats) -> bool:
+    """Whether bounds show at once that p does not change sign on (0, 1]: Horner's rule in intervals, leading zeros divided out."""
+    low = high = 0.0
+    lead = 0
+    while lead < TERMS - 1 and c[lead] == 0.0:
+        lead += 1
+    for k in range(TERMS - 1, lead - 1, -1):
+        low, high = c[k] + min(low, 0.0), c[k] + max(high, 0.0)
+    return low > 0.0 or high < 0.0
+
+
+@kernel
+def _rises(p: Floats) -> bool:
+    for k in range(1, len(p)):
+        if p[k] != 0.0:
+            return p[k] > 0.0
+    return False
+
+
+@kernel
+def _note(
+    piece: Integers, xi: Floats, rate: Floats, kind: Integers, n: int, where: int, place: float, height: float, what: int
+) -> int:
+    piece[n], xi[n], rate[n], kind[n] = where, place, height, what
+    return n + 1
+
+
+@kernel
+def highest(values: Floats, begin: Integers, past: Integers, found: Integers) -> None:
+    """Where the largest (the first, of several) of values[begin:past] is, for each of some stretches."""
+    for n in range(len(begin)):
+        found[n] = begin[n] + np.argmax(values[begin[n] : past[n]])
+
+
+@kernel
+def count_pulses(rate: Floats, begin: Integers, past: Integers, pulses: Integers) -> None:
+    """Maxima of |v| separated by minima below half the lower of their neighbours, in each of some stretches; 0 at rest."""
+    for n in range(len(begin)):
+        pulses[n], peak, low = 0, 0.0, 0.0
+        for k in range(begin[n], past[n]):
+            if rate[k] <= 0.0:
+                continue
+            if pulses[n] == 0 or low < 0.5 * min(peak, rate[k]):
+                pulses[n], peak, low = pulses[n] + 1, rate[k], rate[k]
+            elif rate[k] > peak:
+                peak = low = rate[k]
+            low = min(low, rate[k])
+
+
+@kernel
+def rises_over(c: Floats, rate: float) -> bool:
+    """Whether |slip rate| is seen above a rate in a piece."""
+    highest = 0.0
+    for k in range(1, 5):
+        highest = max(highest, abs(evaluate(c, 0.25 * k)))
+    return highest > rate
+
+
+@kernel
+def find_aftermath(store: Store, piece: Integers, xi: Floats, by: Integers) -> None:
+    """See `SlipEvents.known_by`."""
+    for n in range(len(piece)):
+        mode, rate = store.whole[piece[n], S_MODE], abs(evaluate(store.rate[piece[n]], xi[n]))
+        by[n] = NOT_YET
+        for k in range(piece[n] + 1, len(store.whole)):
+            if store.whole[k, S_MODE] != mode or rises_over(store.rate[k], rate):
+                by[n] = k
+                break
+
+
+def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, Any, Any]:
+    """`turning_points` with enough room, in order of time."""
+    room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
+    while True:
+        piece, kind = np.empty(room, np.int64), np.empty(room, np.int64)
+        xi, rate = np.empty(room), np.empty(room)
+        found = turning_points(history.store, begin, len(history), threshold, piece, xi, rate, kind)
+        if found >= 0:
+            order = np.lexsort((-kind[:found] * (xi[:found] < 1.0), xi[:found], piece[:found]))
+            return piece[:found][order], xi[:found][order], rate[:found][order], kind[:found][order]
+        room *= 2
+
+
+class SlipEvents(NamedTuple):
+    """Slip events in order of time. Begin, peak and end are places in the history: pieces, and xi in each."""
+
+    piece: Integers  # (3, events)
+    xi: Floats  # (3, events)
+    peak_rate: Floats
+    pulses: Integers
+    is_over: NDArray[np.bool_]
+    """Whether the slip rate falls to the threshold within the history."""
+
+    @classmethod
+    def of(cls, history: History, threshold: float, first: int = 0) -> Self:
+        """Maximal intervals with |slip rate| above the threshold (m/s) from a piece on."""
+        piece, xi, rate, kind = walk(history, threshold, first)
+        begin = np.flatnonzero(kind == 1)
+        past = np.append(begin, len(kind))[1:]
+        top, pulses = np.empty_like(begin), np.empty_like(begin)
+        highest(rate, begin, past, top)
+        count_pulses(rate, begin, past, pulses)
+        places = np.stack([begin, top, past - 1])
+        return cls(piece[places], xi[places], rate[top], pulses, kind[past - 1] == -1)
+
+    def some(self, which: slice) -> Self:
+        """Some of the events."""
+        return self._replace(**{name: column[..., which] for name, column in self._asdict().items()})
+
+    @property
+    def begin(self) -> Moments:
+        """When they begin."""
+        return Moments.inside(self.piece[0], self.xi[0])
+
+    @property
+    def peak(self) -> Moments:
+        """When they are fastest."""
+        return Moments.inside(self.piece[1], self.xi[1])
+
+    @property
+    def end(self) -> Moments:
+        """When they end, or the history does."""
+        return Moments.inside(self.piece[2], self.xi[2])
+
+    def largest(self, values: Floats) -> Floats:
+        """Of values by piece of the history, the largest in each event."""
+        ends = np.stack([self.piece[0], self.piece[2] + 1], axis=1).ravel()
+        found: Floats = np.maximum.reduceat(np.append(values, np.nan), ends)[::2] if len(ends) else np.empty(0)
+        return found
+
+    def known_by(self, history: History) -> Integers:
+        """The piece by which it is known what each leaves behind: there the contact has come to rest or turned, or the slip rate is
+        seen above that at the end of the event. NOT_YET where the history ends before.
+        """
+        by = np.empty(len(self.pulses), np.int64)
+        find_aftermath(history.store, self.piece[2], self.xi[2], by)
+        return by

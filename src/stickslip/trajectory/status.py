@@ -1,0 +1,69 @@
+"""What ended a run, and what to try if it failed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from stickslip.engine.state.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRICTION, OFF_THE_LAW, STORM
+
+
+@dataclass(frozen=True)
+class Status:
+    """Name, message and whether the run reached its end."""
+
+    name: str
+    message: str
+    ok: bool
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.message}"
+
+
+def rounding_note(steps: int, share: float) -> str:
+    """Return one line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
+    if steps == 0:
+        return ""
+    return (
+        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: it loses"
+        " digits far from where slip began, and double precision does not decide more"
+    )
+
+
+FULL_HISTORY = -2
+INTERRUPTED = -3
+ENOUGH_EVENTS = -4
+UNDER_WAY = -5
+BAD_PARAMETERS = -6
+
+STATUSES = {
+    FINISHED: Status("finished", "the run reached its duration", True),
+    ENOUGH_EVENTS: Status("enough events", "the run has had its number of slip events", True),
+    LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
+    STORM: Status(
+        "event storm",
+        "events follow each other without any time between them, or are too short to be resolved: set shortest_event, or try a"
+        " contact_mass or another law",
+        False,
+    ),
+    FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
+    NEGATIVE_FRICTION: Status(
+        "negative friction",
+        "the contact has reached a slip, a slip rate or a state at which the law's friction coefficient is below zero, where it"
+        " would drive slip: the law is not meant for what this load does",
+        False,
+    ),
+    OFF_THE_LAW: Status(
+        "off the law",
+        "no step from here obeys the contact equation, however short: the law may jump here, or be too steep for double precision",
+        False,
+    ),
+    FULL_HISTORY: Status(
+        "too many pieces",
+        "the history reached its limit of pieces (a million takes 0.44 GB): shorten the duration, loosen rtol or creep_rtol, keep"
+        " events only (a catalogue), or raise max_pieces",
+        False,
+    ),
+    INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),
+    BAD_PARAMETERS: Status("bad parameters", "a member of a batch whose numbers make no problem", False),
+    UNDER_WAY: Status("under way", "a checkpoint of a run that went on: what is there is valid up to this time", False),
+}

@@ -1,0 +1,169 @@
+"""Tables of a run: slip events and shocks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.bodies import ElasticSlab
+from stickslip.contact.uniqueness import uniqueness
+from stickslip.engine.state.layout import Floats
+from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+EVENT_COLUMNS = {
+    "start": ("s", "when |v| rises above the threshold"),
+    "end": ("s", "when it falls to it; NaN if the run ends first"),
+    "duration": ("s", "end - start, without the rounding of either"),
+    "recurrence": ("s", "start - start of the previous event, without the rounding of either"),
+    "slip": ("m", "slip within the event, positive in either direction"),
+    "peak_rate": ("m s-1", "largest |v|"),
+    "peak_time": ("s", "when"),
+    "peak_after": ("s", "peak_time - start, without the rounding of either"),
+    "traction_before": ("load", "friction just before"),
+    "traction_after": ("load", "friction at rest after"),
+    "traction_drop": ("load", "traction_before - traction_after"),
+    "static_drop": ("load", "stiffness (G/h, or K) times slip"),
+    "pulses": ("1", "maxima of |v| separated by minima below half the lower one"),
+    "phase": ("1", "part of the row (round trip of a slab, period of a block) that has passed at the start"),
+    "amplification": ("1", "what has become, at most, of an error of 1 in the load at the start of the run; NaN if not known"),
+    "start_row": ("1", "whole rows before the start"),
+    "start_offset": ("s", "the rest: start = start_row * length of a row + start_offset, without rounding"),
+}
+"""Columns of the catalogue: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+
+ENERGY_COLUMNS = {
+    "released": ("energy", "elastic and kinetic energy that the event takes from the body"),
+    "work": ("energy", "work of the driver in the meantime, net of what radiates through it"),
+    "damped": ("energy", "dissipated by the block's damping"),
+    "trapped": ("energy", "of the waves that bounce in the slab at the end, beyond the same mean stress at rest"),
+    "heat": ("energy", "friction heat, from the law"),
+    "balance": ("energy", "released + work - heat - damped: zero for an exact solution"),
+}
+
+CAUSES = ("", "start", "fold", "echo", "loading", "healing")
+
+
+def default_event_rate(problem: Problem) -> float:
+    """1e-6 S (range of mu) / Z, m/s; for the block sqrt(K m) stands for Z."""
+    body = problem.body
+    resistance = body.impedance if isinstance(body, ElasticSlab) else np.sqrt(body.stiffness * body.mass)
+    return 1e-6 * problem.normal * problem.friction.variation / resistance
+
+
+def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
+    """One row a maximal interval with |slip rate| above the threshold (m/s); columns as in EVENT_COLUMNS, and ENERGY_COLUMNS."""
+    return with_energies(history, SlipEvents.of(history, threshold), energies)
+
+
+def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
+    """One row an event, with its energies if they are wanted."""
+    from stickslip.observables.energy.balance import event_energies
+
+    table = event_rows(history, events)
+    return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
+
+
+def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
+    """One row an event."""
+    import pandas as pd
+
+    begin, peak, end = events.begin, events.peak, events.end
+    row, offset = history.placed(begin)
+    lasts, slip = history.lasting(begin, end), np.abs(history.slipped_within(begin, end))
+    before, after = friction_before(history, begin), friction_after(history, events)
+    since = np.full(len(row), np.nan)
+    since[1:] = np.diff(row) * history.row_time + np.diff(offset)
+    columns = {
+        "start": history.seconds(row, offset),
+        "end": np.where(events.is_over, history.seconds(*history.placed(end)), np.nan),
+        "duration": np.where(events.is_over, lasts, np.nan),
+        "recurrence": since,
+        "slip": slip,
+        "peak_rate": events.peak_rate,
+        "peak_time": history.seconds(*history.placed(peak)),
+        "peak_after": history.lasting(begin, peak),
+        "traction_before": history.problem.strength + before,
+        "traction_after": history.problem.strength + after,
+        "traction_drop": before - after,
+        "static_drop": history.problem.body.stiffness * slip,
+        "pulses": events.pulses,
+        "phase": offset / history.row_time,
+        "amplification": events.largest(history.store.amplified),
+        "start_row": row,
+        "start_offset": offset,
+    }
+    return pd.DataFrame(columns)
+
+
+def friction_before(history: History, begin: Moments) -> Floats:
+    """Left limit of the traction (minus the reference)."""
+    at_once = begin.xi == 0.0
+    friction = np.empty(len(at_once))
+    friction[at_once] = history.friction(history.just_before(begin.piece[at_once]))
+    friction[~at_once] = history.friction(Moments.inside(begin.piece[~at_once], begin.xi[~at_once]))
+    return friction
+
+
+def friction_after(history: History, events: SlipEvents) -> Floats:
+    """Traction (minus the reference) after events: at rest, where the slip rate falls on to zero from their ends.
+
+    The traction of a law that strengthens as the rate vanishes is another one an instant before rest: it says nothing of what
+    an event left behind.
+    """
+    by, end, mode = events.known_by(history), events.end, history.store.mode
+    rests = (by != NOT_YET) & (mode[by] != mode[end.piece])
+    steps = ~rests & (end.xi == 1.0) & (end.piece + 1 < len(history))
+    piece = np.where(rests, by, np.where(steps, end.piece + 1, end.piece))
+    return history.friction(Moments.inside(piece, np.where(rests | steps, 0.0, end.xi)))
+
+
+def shocks_table(history: History, first: float = -np.inf, last: float = np.inf) -> pd.DataFrame:
+    """One row a jump of the slip rate between two times (s)."""
+    import pandas as pd
+
+    piece = np.flatnonzero((history.store.cause > 0) & (history.start >= first) & (history.start <= last))
+    before, after = history.just_before(piece), Moments.inside(piece, 0.0)
+    reference = history.problem.strength
+    columns = {
+        "time": history.start[piece],
+        "cause": [CAUSES[cause] for cause in history.store.cause[piece]],
+        "rate_before": history.rate(before),
+        "rate_after": history.rate(after),
+        "traction_before": reference + history.friction(before),
+        "traction_after": reference + history.friction(after),
+    }
+    return pd.DataFrame(columns).assign(rule=rule_in_force(history.problem) if len(piece) else "")
+
+
+def creep_table(history: History) -> pd.DataFrame:
+    """One row a leap over creep."""
+    import pandas as pd
+
+    row, trips, error, delay = history.creep.T
+    start, end = history.seconds(row, np.zeros(len(row))), history.seconds(row + trips, np.zeros(len(row)))
+    columns = {"start": start, "end": end, "start_row": row, "round_trips": trips, "error": error, "time_error": delay}
+    return pd.DataFrame(columns).astype({"start_row": int, "round_trips": int})
+
+
+def creep_note(creep: Floats) -> str:
+    """One line on the leaps over creep of `History.creep`; empty where there are none."""
+    if not len(creep):
+        return ""
+    leaps, (_, trips, error, delay) = len(creep), creep.T
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips"
+    return f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
+
+
+def rule_in_force(problem: Problem) -> str:
+    """The selection rule, where the contact equation has several solutions at some load (and slip); else empty."""
+    if not is_algebraic(problem):
+        return ""
+    several = folds_move(problem) or uniqueness(problem).regime != "regular"
+    return problem.rule if several else ""

@@ -1,0 +1,199 @@
+"""What a run does where nothing is said: leaps over creep that lasts, lumps events that get ever shorter, writes no giant."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.optimize import brentq
+
+import stickslip as ss
+from stickslip.batch import run_members
+from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
+from stickslip.engine_input.lumping_limits import AUTOMATIC_SHARE, MOST_PIECES
+from stickslip.trajectory.status import STATUSES
+from tests.engine.creep_truth import GROWN, ROUND, printed
+from tests.long_runs.problems import differences
+
+DAYS = 3 * 86_400.0
+PULSE = 234901.286195246
+"""Time (s) at which slip of the printed slab has grown by 1 cm: `tests.engine.creep_truth grid 1 64000`."""
+WEAKENING = ss.load_scenario("fig6-slab").problem
+
+
+def weakening(alpha: float, thickness: float = 1e4) -> ss.Problem:
+    """The slab of Fig. 6 with another alpha (s/m), below 0.196 regular, and thickness (m)."""
+    return replace(WEAKENING, friction=replace(WEAKENING.friction, alpha=alpha), body=replace(WEAKENING.body, thickness=thickness))
+
+
+def same_pieces(one: ss.Solution, other: ss.Solution, count: int) -> bool:
+    """Whether the first pieces of two histories have the same bits."""
+    pairs = zip(one.history.store[:4], other.history.store[:4], strict=True)
+    return all(np.array_equal(a[:count], b[:count], equal_nan=True) for a, b in pairs)
+
+
+# ---- creep --------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("rtol", "error"), [(1e-10, 1e-4), (1e-8, 1e-3), (1e-6, 2e-2)])
+def test_a_plain_call_reaches_the_first_pulse(rtol: float, error: float) -> None:
+    """2.71878 days of creep in a second, and the error of the pulse's time (s) follows rtol."""
+    run = ss.simulate(printed(1), DAYS, rtol)
+    assert run.status.name == "finished"
+    found = brentq(lambda t: float(run.slip(t)) - run.problem.initial_slip - GROWN, PULSE - 20, PULSE + 20, xtol=1e-9)
+    assert found == pytest.approx(PULSE, rel=0.0, abs=error)
+    assert run.events.peak_time.iloc[-1] / 86_400 == pytest.approx(2.71878, rel=0.0, abs=1e-5)
+    assert run.events.peak_rate.iloc[-1] > 10.0
+    assert len(run.history) < 60_000
+
+
+def test_the_first_round_trips_are_all_run() -> None:
+    """Bit for bit those of a run without leaps; and a run that ends before is that run."""
+    exact, leaping = ss.simulate(printed(1), PATIENCE * ROUND, creep_rtol=0.0), ss.simulate(printed(1), 1e5)
+    assert leaping.creep.start_row.iloc[0] == PATIENCE
+    assert same_pieces(exact, leaping, len(exact.history) - 1)
+    short = ss.simulate(printed(1), PATIENCE * ROUND)
+    assert len(short.history) == len(exact.history)
+    assert same_pieces(exact, short, len(exact.history))
+
+
+def test_none_where_there_is_no_creep_to_leap_over() -> None:
+    """Other laws, no pull, and pulses without rest between them: no pause and no leap."""
+    assert creep_tolerance(WEAKENING, None, 1e-10) == 0.0
+    assert creep_tolerance(printed(0), None, 1e-10) == 0.0
+    assert len(ss.simulate(ss.load_scenario("fig5-slab-reconstructed").problem, 100 * ROUND).creep) == 0
+
+
+@pytest.mark.parametrize(("rtol", "tolerance"), [(1e-15, 1e-6), (1e-10, 1e-6), (1e-8, 1e-5), (1e-6, 1e-4), (1e-2, 1e-3)])
+def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
+    assert creep_tolerance(printed(1), None, rtol) == pytest.approx(tolerance, rel=1e-12, abs=0.0)
+    assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
+
+
+@pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
+def test_taken_up_it_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
+    """Stopped before the first leap, in it, and behind it."""
+    file, whole = tmp_path / "run.nc", ss.simulate(printed(1), DAYS)
+    ss.simulate(printed(1), share * whole.creep.end.iloc[0]).save(file)
+    assert ss.load(file).creep_rtol is None
+    resumed = ss.resume(file, DAYS)
+    assert differences(resumed, whole) == []
+    assert np.array_equal(resumed.history.creep, whole.history.creep)
+
+
+def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
+    """Members that creep for long are run alone, the others are not changed by that."""
+    scenario = replace(ss.load_scenario("fig5-slab-printed"), duration=DAYS)
+    pulls = np.array([0.0, 1.0, 3.0]) * scenario.problem.pull_rate
+    found = run_members(scenario, {"loading.pull_rate": pulls}, ("events", "slip", "peak_time"))
+    for n, pull in enumerate(pulls):
+        run = ss.simulate(replace(scenario.problem, pull_rate=float(pull)), DAYS)
+        assert STATUSES[int(found.status[n])] == run.status
+        assert found.results["events"][n] == len(run.events)
+        peak = run.events.peak_time[run.events.peak_rate.idxmax()]
+        assert found.results["peak_time"][n] == pytest.approx(peak, rel=1e-14, abs=0.0)
+        slip = float(run.slip(DAYS)) - run.problem.initial_slip
+        assert found.results["slip"][n] == pytest.approx(slip, rel=2e-14, abs=1e-14)
+
+
+# ---- ever shorter events ------------------------------------------------------------------------------------------------------
+
+
+def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
+    """Bit for bit the run that resolves every event, up to the round trip after the one with too many pieces."""
+    exact, lumping = ss.simulate(weakening(0.15), 17 * ROUND, shortest_event=0.0), ss.simulate(weakening(0.15), 17 * ROUND)
+    rows = np.bincount(lumping.history.store.row)
+    first = int(np.argmax(rows > MOST_PIECES)) + 1
+    assert 10 < first < 17
+    assert same_pieces(exact, lumping, rows[:first].sum())
+    assert len(lumping.history) < 0.25 * len(exact.history)
+    assert f"are lumped from {first * ROUND:.6g} s on" in lumping.lumping_note
+    assert exact.lumping_note == ""
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.15])
+def test_slip_and_energy_are_kept(alpha: float) -> None:
+    """Five round trips later: slip of the run that resolves every event within 4 %, energy to 1e-9 of the heat."""
+    end = np.array([17 * ROUND])
+    exact, lumped = (ss.simulate(weakening(alpha), float(end[0]), shortest_event=size) for size in (0.0, None))
+    assert lumped.lumping_note
+    assert float(lumped.slip(end)[0]) == pytest.approx(float(exact.slip(end)[0]), rel=4e-2, abs=0.0)
+    energy = lumped.energy(end)
+    assert abs(float(energy.balance[0])) < 1e-9 * float(energy.heat[0])
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.1, 0.15, 0.19, 0.1959])
+def test_below_the_critical_value_runs_end(alpha: float) -> None:
+    """105 round trips of doubling: within a million pieces; what is lumped is a share of the round trip."""
+    run = ss.simulate(weakening(alpha, thickness=1e3), 60.0)
+    assert run.status.name == "finished"
+    assert f"shorter than {AUTOMATIC_SHARE * 0.1 * ROUND:.3g} s" in run.lumping_note
+    assert np.bincount(run.history.store.row).max() < 3 * MOST_PIECES
+
+
+def test_lumped_runs_are_taken_up_streamed_and_batched(tmp_path: Path) -> None:
+    file, problem, end = tmp_path / "run.nc", weakening(0.15, thickness=1e3), 12.0
+    whole = ss.simulate(problem, end)
+    for stop in (7.0, 11.0):
+        ss.simulate(problem, stop).save(file)
+        resumed = ss.resume(file, end)
+        assert differences(resumed, whole) == []
+        assert resumed.lumping_note == whole.lumping_note == ss.load(file).lumping_note
+    table = ss.catalogue(problem, end)
+    pd.testing.assert_frame_equal(table, whole.catalogue(), check_exact=True)
+    assert table.attrs["lumping"] == whole.lumping_note
+    scenario = replace(ss.load_scenario("fig6-slab"), problem=problem, duration=end)
+    found = run_members(scenario, {"friction.alpha": np.array([1.0, 0.15])}, ("events", "slip"))
+    slip = float(whole.slip(end)) - problem.initial_slip
+    assert found.results["slip"][1] == pytest.approx(slip, rel=1e-12, abs=0.0)
+    assert found.results["events"][1] == len(whole.events)
+
+
+def test_laws_of_slip_lump_nothing() -> None:
+    """Creep has many pieces too, up to 2470 in a round trip of a slab pulled a hundred times faster, which stay as they are."""
+    run, exact = ss.simulate(printed(100), 190 * ROUND), ss.simulate(printed(100), 190 * ROUND, creep_rtol=0.0, shortest_event=0.0)
+    assert run.lumping_note == ""
+    assert len(run.history) == len(exact.history)
+    assert same_pieces(run, exact, len(exact.history))
+
+
+# ---- histories that are full --------------------------------------------------------------------------------------------------
+
+
+def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
+    monkeypatch.setattr("stickslip.run.monitor.MAX_PIECES", 1000)
+    full = ss.simulate(printed(1), short, checkpoint=file)
+    assert full.status.name == "too many pieces"
+    assert not file.exists()
+    ss.simulate(printed(1), short, checkpoint=file, max_pieces=2000)
+    assert ss.load(file).status.name == "too many pieces"
+    before = file.read_bytes()
+    assert ss.resume(file).status.name == "too many pieces"
+    assert file.read_bytes() == before
+    assert ss.resume(file, max_pieces=20_000).status.name == "finished"
+    assert ss.load(file).status.name == "finished"
+
+
+def test_a_file_is_as_large_as_is_said(tmp_path: Path) -> None:
+    """0.44 GB a million pieces, to a tenth."""
+    run = ss.simulate(printed(1), 150 * ROUND)
+    size = run.save(tmp_path / "run.nc").stat().st_size
+    assert size / len(run.history) == pytest.approx(440.0, rel=0.1, abs=0.0)
+
+
+def test_a_run_that_slides_for_ever_is_hardly_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    """3000 round trips under a fast pull, without a leap: the same run, with twelve looks at most."""
+    looks, look = [], CreepLeaps.at_row_end
+    monkeypatch.setattr(CreepLeaps, "at_row_end", lambda *a: looks.append(0) or look(*a))
+    slab = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+    sliding = ss.Problem(slab, ss.friction.SinusoidalSlip(0.6, 0.001, 5.0), pull_rate=0.1, initial_excess=0.0)
+    exact, run = ss.simulate(sliding, 3000 * ROUND, creep_rtol=0.0), ss.simulate(sliding, 3000 * ROUND)
+    assert len(run.creep) == 0
+    assert 0 < len(looks) <= 12
+    assert len(run.history) == len(exact.history)
+    assert same_pieces(run, exact, len(exact.history))

@@ -1,0 +1,147 @@
+"""Compiled code is kept on disk, in a folder of this user alone, and what is damaged there is compiled again."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from stickslip.engine.codegen.cache import CACHE
+from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
+
+SCRIPT = """
+import stickslip as ss
+slab = ss.ElasticSlab({density}, 3500, {thickness}, 1e8)
+law = ss.friction.HyperbolicRate(0.8, {dynamic}, {alpha})
+print(len(ss.simulate(ss.Problem(slab, law, pull_rate={pull}, initial_excess=0.0), {duration}).shocks))
+"""
+
+
+def run(**values: float) -> str:
+    return subprocess.run([sys.executable, "-c", SCRIPT.format(**values)], capture_output=True, text=True, check=True).stdout
+
+
+def test_second_scenario_compiles_nothing() -> None:
+    first = {"density": 2800, "thickness": 1e4, "dynamic": 0.3, "alpha": 1.0, "pull": 1e-9, "duration": 20}
+    assert run(**first) == "2\n"
+    before = {path: path.stat().st_mtime_ns for path in CACHE.rglob("*") if path.is_file()}
+    assert len(before) > 5
+    second = {"density": 2500, "thickness": 3e3, "dynamic": 0.35, "alpha": 2.0, "pull": 1e-3, "duration": 9}
+    assert run(**second) != ""
+    assert {path: path.stat().st_mtime_ns for path in CACHE.rglob("*") if path.is_file()} == before
+
+
+TWICE = """
+from stickslip.engine.codegen.cache import CACHE, load_module
+text = '''
+from numba import types
+from stickslip.engine.codegen.cache import sealed_cfunc
+@sealed_cfunc(types.float64(types.float64), nopython=True)
+def twice(x):
+    return 2.0 * x
+'''
+found = load_module("twice_1", text).twice
+print(found.ctypes(21.0), found.cache_hits, CACHE)
+"""
+
+
+def twice(root: Path, **variables: str) -> tuple[float, int, Path, str]:
+    """Compile or load a small function in another process: its value, its hits of the cache, the folder, what was said."""
+    environment = os.environ | {"STICKSLIP_CACHE_DIR": str(root)} | variables
+    done = subprocess.run([sys.executable, "-c", TWICE], capture_output=True, text=True, check=True, env=environment)
+    value, hits, folder = done.stdout.split()
+    return float(value), int(hits), Path(folder), done.stderr
+
+
+def files_in(folder: Path) -> list[Path]:
+    return [path for path in folder.rglob("*") if path.suffix in (".py", ".nbi", ".nbc")]
+
+
+def flip(content: bytes) -> bytes:
+    middle = len(content) // 2
+    return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+
+
+DAMAGE: dict[str, Callable[[bytes], bytes]] = {
+    "empty": lambda _: b"",
+    "truncated": lambda content: content[: len(content) // 2],
+    "flipped bit": flip,
+    "another program": lambda _: b"raise SystemExit('ran')",
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
+def test_damaged_files_are_compiled_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
+    value, hits, folder, said = twice(tmp_path)
+    assert (value, hits, said) == (42.0, 0, "")
+    assert {path.suffix for path in files_in(folder)} == {".py", ".nbi", ".nbc"}
+    for path in files_in(folder):
+        path.write_bytes(damage(path.read_bytes()))
+    value, hits, _, said = twice(tmp_path)
+    assert (value, hits) == (42.0, 0)
+    assert said.count("\n") == 1
+    assert "is damaged: what is damaged is compiled again" in said
+    assert twice(tmp_path) == (42.0, 1, folder, "")
+
+
+def test_damaged_machine_code_is_detected_behind_an_intact_index(tmp_path: Path) -> None:
+    folder = twice(tmp_path)[2]
+    (code,) = folder.rglob("*.nbc")
+    code.write_bytes(flip(code.read_bytes()))
+    value, hits, _, said = twice(tmp_path)
+    assert (value, hits, said.count("\n")) == (42.0, 0, 1)
+    assert twice(tmp_path)[1] == 1
+
+
+def test_without_a_cache_folder_code_is_compiled_in_a_temporary_one(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    value, _, folder, said = twice(tmp_path / "file", TMPDIR=str(tmp_path))
+    assert value == 42.0
+    assert said.startswith("stickslip: no cache for compiled code: ")
+    assert said.count("\n") == 1
+    assert folder.parent == tmp_path
+    assert not folder.exists()
+
+
+def test_a_private_folder_is_closed_to_others(tmp_path: Path) -> None:
+    folder = private_folder(tmp_path / "a" / "b")
+    assert folder.stat().st_mode & 0o777 == 0o700
+    folder.chmod(0o755)
+    (folder / "kept").touch()
+    assert private_folder(folder).stat().st_mode & 0o777 == 0o700
+    assert (folder / "kept").exists()
+
+
+def test_a_folder_into_which_others_could_write_is_emptied(tmp_path: Path) -> None:
+    folder = private_folder(tmp_path / "a")
+    (folder / "planted.py").touch()
+    folder.chmod(0o777)
+    private_folder(folder)
+    assert list(folder.iterdir()) == []
+    assert folder.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_link_is_no_private_folder(tmp_path: Path) -> None:
+    private_folder(tmp_path / "there")
+    (tmp_path / "here").symlink_to("there")
+    with pytest.raises(NotPrivateError, match="here is a link"):
+        private_folder(tmp_path / "here")
+
+
+def test_a_folder_below_one_that_others_can_change_is_not_private(tmp_path: Path) -> None:
+    tmp_path.chmod(0o777)
+    with pytest.raises(NotPrivateError, match="other users can write into"):
+        private_folder(tmp_path / "a")
+    tmp_path.chmod(0o1777)
+    private_folder(tmp_path / "a")
+
+
+def test_a_folder_of_another_user_is_not_private(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = private_folder(tmp_path / "a")
+    monkeypatch.setattr("os.geteuid", lambda: 12345)
+    with pytest.raises(NotPrivateError, match="belongs to another user"):
+        private_folder(folder)

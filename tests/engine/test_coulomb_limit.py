@@ -1,0 +1,39 @@
+"""Coulomb friction is the limit alpha -> infinity of the hyperbolic rate law (15): the first event tends to it with order 1."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.studies.verdict import local_orders
+from tests.engine.test_verified_numbers import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS
+
+ALPHAS = 10.0 ** np.arange(1, 7)
+DROP = 0.5
+BLOCK = ss.SpringBlock(DENSITY * 1e9, MODULUS * 1e3, 1e14)
+SLIP = {SLAB: 2 * DROP * NORMAL * THICKNESS / MODULUS, BLOCK: 2 * DROP * BLOCK.normal_force / BLOCK.stiffness}
+
+
+def missing(body: ss.ElasticSlab | ss.SpringBlock) -> np.ndarray:
+    """Share of Coulomb's slip 2 (muS - muD) S / stiffness that the first event lacks, for each alpha."""
+    slips = []
+    for alpha in ALPHAS.tolist():
+        law = ss.friction.HyperbolicRate(0.8, 0.8 - DROP, alpha)
+        problem = ss.Problem(body, law, pull_rate=1e-14, initial_excess=0.0)
+        slips.append(float(ss.simulate(problem, 2 * ROUND, rtol=1e-12).slip(2 * ROUND)))
+    return 1.0 - np.array(slips) / SLIP[body]
+
+
+def test_slab() -> None:
+    """It slides at (muS - muD) S / Z - 1 / alpha for one round trip: the share is alpha_c / alpha, exactly."""
+    found = missing(SLAB)
+    assert found == pytest.approx(IMPEDANCE / (DROP * NORMAL) / ALPHAS, rel=2e-6, abs=0.0)
+    assert local_orders(1.0 / ALPHAS, found)[1:] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_block() -> None:
+    """The work that friction does beyond Coulomb's falls as 1 / alpha, but for a share in 1 / alpha^2 ln(alpha)."""
+    orders = local_orders(1.0 / ALPHAS, missing(BLOCK))[1:]
+    assert (np.diff(orders) > 0.0).all()
+    assert orders[-1] == pytest.approx(1.0, abs=1e-4)

@@ -1,0 +1,146 @@
+"""Generated Taylor recurrences, for every operation that a formula may contain."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from stickslip.engine.codegen.compiler import compile_formula
+from stickslip.engine.state.layout import TERMS
+from stickslip.friction.formula import expression as e
+
+DOUBLE = ctypes.POINTER(ctypes.c_double)
+JET = ctypes.CFUNCTYPE(None, DOUBLE, DOUBLE, DOUBLE, DOUBLE)
+VALUE = ctypes.CFUNCTYPE(None, DOUBLE, ctypes.c_double, ctypes.c_double, DOUBLE)
+
+Formula = Callable[[Any, Any, Any], Any]
+
+FORMULAS: dict[str, Formula] = {
+    "sin": lambda f, u, v: 1.0 + 0.3 * f.sin(5.0 * u),
+    "cos": lambda f, u, v: 1.0 + 0.3 * f.cos(5.0 * u + v),
+    "exp": lambda f, u, v: 0.3 + 0.5 * f.exp(-4.0 * u),
+    "log": lambda f, u, v: 0.3 + 0.1 * f.log(1.0 + 3.0 * u + v),
+    "sqrt": lambda f, u, v: 0.3 + 0.2 * f.sqrt(1.0 + u * u),
+    "tanh": lambda f, u, v: 0.6 - 0.2 * f.tanh(3.0 * u - v),
+    "arcsinh": lambda f, u, v: 0.5 + 0.05 * f.arcsinh(2.0 * v + u),
+    "quotient": lambda f, u, v: 0.3 + 0.5 / (1.0 + 2.0 * v),
+    "product": lambda f, u, v: (0.9 - 0.2 * u) * (0.7 + 0.1 * v),
+    "power": lambda f, u, v: 0.3 + 0.2 * (1.0 + u) ** -1.7,
+}
+
+
+class MpmathFunctions:
+    """The same names in 50 digits."""
+
+    sin, cos, exp, log, sqrt, tanh, arcsinh = (
+        mpmath.sin,
+        mpmath.cos,
+        mpmath.exp,
+        mpmath.log,
+        mpmath.sqrt,
+        mpmath.tanh,
+        mpmath.asinh,
+    )
+
+
+def pointer(array: np.ndarray) -> Any:
+    return array.ctypes.data_as(DOUBLE)
+
+
+def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
+    functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), ())
+    constants, none = np.zeros(functions.size), np.zeros(1)
+    functions.prepare(pointer(none), reference, pointer(constants))
+    return functions, constants
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_difference_keeps_its_digits(name: str) -> None:
+    """mu(u0 + d, s) - mu(u0, 0) against 50 digits, for steps where plain subtraction has none left."""
+    formula, reference, out = FORMULAS[name], 0.21, np.zeros(3)
+    functions, constants = compiled(formula, reference)
+    for step, rate in ((1e-13, 2e-13), (1e-7, 1e-8), (0.3, 0.2)):
+        VALUE(functions.value)(pointer(constants), step, rate, pointer(out))
+        with mpmath.workdps(50):
+            exact = formula(MpmathFunctions, mpmath.mpf(reference) + mpmath.mpf(step), mpmath.mpf(rate))
+            exact -= formula(MpmathFunctions, mpmath.mpf(reference), mpmath.mpf(0))
+        assert out[0] == pytest.approx(float(exact), rel=5e-12, abs=0.0)
+
+
+def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
+    """exp(-1000) is 0 and exp(1000) is infinite: their product must not be taken."""
+    functions, constants = compiled(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
+    out = np.zeros(3)
+    for step in (-1.0, -0.99, -0.5, 0.5):
+        VALUE(functions.value)(pointer(constants), step, 0.0, pointer(out))
+        with mpmath.workdps(50):
+            exact = 0.5 * (mpmath.exp(-1000 * (1 + mpmath.mpf(step))) - mpmath.exp(-1000))
+            slope = -500 * mpmath.exp(-1000 * (1 + mpmath.mpf(step)))
+        assert [out[0], out[2]] == pytest.approx([float(exact), float(slope)], rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_slopes(name: str) -> None:
+    formula, out = FORMULAS[name], np.zeros(3)
+    functions, constants = compiled(formula, 0.21)
+    VALUE(functions.value)(pointer(constants), 0.1, 0.4, pointer(out))
+    by_rate = mpmath.diff(lambda v: formula(MpmathFunctions, mpmath.mpf("0.31"), v), 0.4)
+    by_slip = mpmath.diff(lambda u: formula(MpmathFunctions, u, mpmath.mpf("0.4")), 0.31)
+    assert out[1:] == pytest.approx([float(by_rate), float(by_slip)], rel=1e-9, abs=1e-12)
+
+
+def layout_of_k(rate: float, mass: float = 0.7, bend: float = 0.0, speed: float = 0.05) -> np.ndarray:
+    """Z = 1.3, S = 0.9, chi = 1, dtheta/deta = speed + bend eta, no slip yet, no offset, K = 0.8, free contact."""
+    return np.array([1.3, 0.9, 1.0, speed, bend, 0.0, 0.0, mass, 0.8, rate, 1.0, 0.0])
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.03])
+@pytest.mark.parametrize("name", FORMULAS)
+def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
+    """Z s + S mu(x, s) = L along the whole step, x the integral of the computed s."""
+    formula = FORMULAS[name]
+    functions, constants = compiled(formula, 0.21)
+    start = 0.4
+    load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
+    load[0] = 1.3 * start + 0.9 * (formula(np, 0.21, start) - formula(np, 0.21, 0.0))
+    load[1:4] = 0.05, -0.02, 0.01
+    JET(functions.rate_jet)(pointer(constants), pointer(layout_of_k(start, bend=bend)), pointer(load), pointer(jet))
+    jet = jet[:TERMS]  # the bound of the guards follows
+    eta = np.linspace(0.0, 0.4, 9)  # half of what the quotient's series reaches to this accuracy
+    rate = Polynomial(jet)
+    slip = 0.21 + (Polynomial([0.05, bend]) * rate).integ()(eta)
+    residual = 1.3 * rate(eta) + 0.9 * (formula(np, slip, rate(eta)) - formula(np, 0.21, 0.0)) - Polynomial(load)(eta)
+    assert jet[0] == pytest.approx(start, rel=1e-12, abs=0.0)
+    assert np.abs(residual).max() < 1e-13
+    assert np.abs(jet[1:]).max() > 1e-4
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.03])
+@pytest.mark.parametrize("name", FORMULAS)
+def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> None:
+    """M ds/dt = L - K q - Z s - S mu along the whole step."""
+    formula = FORMULAS[name]
+    functions, constants = compiled(formula, 0.21)
+    load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
+    load[:3] = 0.6, 0.05, -0.02
+    JET(functions.motion_jet)(pointer(constants), pointer(layout_of_k(0.4, bend=bend)), pointer(load), pointer(jet))
+    jet = jet[:TERMS]
+    eta = np.linspace(0.0, 0.8, 9)
+    rate, clock = Polynomial(jet), Polynomial([0.05, bend])
+    walked = (clock * rate).integ()(eta)
+    friction = formula(np, 0.21 + walked, rate(eta)) - formula(np, 0.21, 0.0)
+    force = Polynomial(load)(eta) - 0.8 * walked - 1.3 * rate(eta) - 0.9 * friction
+    assert 0.7 * rate.deriv()(eta) == pytest.approx(force * clock(eta), rel=0.0, abs=1e-13)
+    assert math.isclose(jet[0], 0.4)
+
+
+def test_a_law_compiles_once() -> None:
+    tree = e.as_expression(FORMULAS["sin"](e, e.SLIP, e.RATE))
+    assert compile_formula(tree, ()) is compile_formula(tree, ())

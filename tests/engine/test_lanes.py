@@ -1,0 +1,109 @@
+"""Lanes do what floats do, bit for bit: arithmetic, the functions of the engine that serve both, and series of every formula."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import njit
+
+from stickslip.batch.workspace import apart
+from stickslip.engine.codegen.compiler import ahead, floats
+from stickslip.engine.codegen.simd import WIDTH, lanes_at
+from stickslip.engine.series.polynomial import bound_below, magnitude, moment, multiply, powers_of, total
+from stickslip.engine.series.sine import sine, versine
+from stickslip.engine.series.step_size import length_at
+from stickslip.engine.state.layout import TERMS
+
+from .test_generate import FORMULAS, JET, compiled
+
+Block = Any
+
+FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+    "sums": lambda c: c[0] + 2.0 * c[1] - c[2] / 3.0 + 1 - (-c[3]),
+    "bounds": lambda c: min(max(c[0], c[1]), abs(c[2])),
+    "functions": lambda c: math.sin(c[0]) + math.cos(c[1]) + math.exp(c[2]) + math.sqrt(abs(c[3])),
+    "more functions": lambda c: math.tanh(c[0]) * math.asinh(c[1]) + math.log1p(abs(c[2])) - np.floor(3.0 * c[3]),
+    "sine": lambda c: sine(40.0 * c[0]) + 3.0 * versine(c[1]),
+    "magnitude": lambda c: magnitude(c),
+    "total": lambda c: total(c),
+    "moment": lambda c: moment(c, 2),
+    "bound": lambda c: bound_below(c),
+    "length": lambda c: length_at(c, 1e-9, 0.5),
+}
+
+WITH_MASS = ("cos", "exp", "arcsinh", "product")
+"""Formulas of which the series of a contact with mass is tried, of the others that of one without."""
+
+
+def aligned(rows: int) -> Block:
+    """Rows of lanes, where the processor wants them."""
+    return apart(rows, WIDTH)
+
+
+def series(seed: int) -> Block:
+    """As many polynomials as there are lanes, one a column."""
+    block = aligned(TERMS)
+    block[:] = np.random.default_rng(seed).normal(size=block.shape) * 0.6 ** np.arange(TERMS)[:, None]
+    return block
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_function_of_lanes_is_that_of_each_float(name: str) -> None:
+    function = njit(fastmath={"contract"}, error_model="numpy")(FUNCTIONS[name])
+
+    @njit
+    def side_by_side(block: int, out: int) -> None:
+        lanes_at(out)[0] = function(lanes_at(block))
+
+    @njit
+    def alone(address: int) -> float:
+        return function(floats(address))
+
+    block, out = series(3), aligned(1)
+    side_by_side(block.ctypes.data, out.ctypes.data)
+    columns = [np.ascontiguousarray(block[:, n]) for n in range(WIDTH)]
+    assert out[0].tolist() == [alone(column.ctypes.data) for column in columns]
+    assert len(set(out[0].tolist())) > 1
+
+
+def test_a_step_is_stretched_alike() -> None:
+    @njit
+    def side_by_side(block: int, powers: int, out: int) -> None:
+        powers_of(lanes_at(block)[0], lanes_at(powers))
+        multiply(lanes_at(block), lanes_at(powers), lanes_at(out))
+
+    @njit
+    def alone(address: int, powers: int, out: int) -> None:
+        powers_of(floats(address)[0], floats(powers))
+        multiply(floats(address), floats(powers), ahead(floats(out), 0))
+
+    block, powers, out = series(4), aligned(TERMS), aligned(TERMS)
+    side_by_side(block.ctypes.data, powers.ctypes.data, out.ctypes.data)
+    for n in range(WIDTH):
+        column, own_powers, own = np.ascontiguousarray(block[:, n]), np.zeros(TERMS), np.zeros(TERMS)
+        alone(column.ctypes.data, own_powers.ctypes.data, own.ctypes.data)
+        assert out[:, n].tolist() == own.tolist()
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_series_side_by_side_are_those_of_each_run(name: str) -> None:
+    part = "motion_jet" if name in WITH_MASS else "rate_jet"
+    functions, constants = compiled(FORMULAS[name], 0.21)
+    random = np.random.default_rng(8)
+    c, k, load, side_by_side = aligned(len(constants)), aligned(12), series(5), aligned(2 * TERMS)
+    c[:] = constants[:, None]
+    k[:] = np.array([9.8, 100.0, 1.0, 0.05, 0.01, 0.0, 0.0, 3.0, 0.5, 0.1, 1.0, 0.0])[:, None]
+    k[5], k[3] = random.uniform(0.0, 0.3, WIDTH), random.uniform(0.02, 0.1, WIDTH)
+    load[0] += 60.0
+    address = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(getattr(functions, part + "s"))
+    address(*(block.ctypes.data for block in (c, k, load, side_by_side)))
+    for n in range(WIDTH):
+        own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(side_by_side))]
+        JET(getattr(functions, part))(*(array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in own))
+        assert side_by_side[:, n].tolist() == own[3].tolist()
+        assert np.isfinite(own[3]).all()

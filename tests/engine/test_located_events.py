@@ -1,0 +1,131 @@
+"""Onset, arrest, folds, knots and echoes lie where closed forms put them, to 1e-12 relative."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, NORMAL, RATE_LAW, ROUND, SLAB, THICKNESS
+
+F = ss.friction
+
+
+def slips_from(run: ss.Solution) -> float:
+    store = run.history.store
+    return float(run.history.start[np.flatnonzero(store.mode)[0]])
+
+
+def test_onset_of_a_slowly_loaded_slab() -> None:
+    """beta = tau0 + G V t / h reaches the strength at -excess h / (G V), here inside the first round trip."""
+    pull, excess = 0.01, -1.2e5
+    run = ss.simulate(ss.Problem(SLAB, RATE_LAW, pull_rate=pull, initial_excess=excess), 5.0)
+    assert slips_from(run) == pytest.approx(-excess * THICKNESS / (MODULUS * pull), rel=1e-12, abs=0.0)
+
+
+def test_onset_of_a_slowly_loaded_block() -> None:
+    block = ss.SpringBlock(2.0, 50.0, 10.0)
+    run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.3), pull_rate=1e-3, initial_excess=-4.0), 100.0)
+    assert slips_from(run) == pytest.approx(4.0 / (50.0 * 1e-3), rel=1e-12, abs=0.0)
+
+
+def test_arrest_of_a_coulomb_block() -> None:
+    """V = 0: half a period of free oscillation, whatever the load."""
+    block = ss.SpringBlock(2.0, 50.0, 10.0)
+    run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.4), initial_excess=0.3), 10.0)
+    assert run.catalogue(0.0).end.iloc[0] == pytest.approx(math.pi * math.sqrt(2.0 / 50.0), rel=1e-12, abs=0.0)
+
+
+def test_folds_of_the_dead_load_loop() -> None:
+    """The load rises and falls linearly in time: it passes S muS on its way up and the lower fold on its way down."""
+    pull, slope = 2.6, IMPEDANCE * 2.6 / (ROUND / 2)
+    slab = replace(SLAB, driver_impedance=0.0)
+    run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=pull, initial_load=60e6), 6.0)
+    up = 20e6 / slope
+    q = math.sqrt(1.0 / (IMPEDANCE / (NORMAL * 0.5)))
+    lower = 30e6 + IMPEDANCE * (2 * q - 1)
+    down = ROUND / 2 + (60e6 + slope * ROUND / 2 - lower) / slope
+    assert run.shocks.time.to_numpy()[:2] == pytest.approx([up, down], rel=1e-12, abs=0.0)
+    assert run.shocks.rate_before.iloc[1] == pytest.approx(q - 1.0, rel=1e-9, abs=0.0)
+
+
+def test_slip_rate_ends_as_a_square_root_at_a_fold() -> None:
+    """v - v1 goes as sqrt(tf - t): from the engine's curve down to a nanosecond before the fold."""
+    slab = replace(SLAB, driver_impedance=0.0)
+    run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6), 6.0)
+    fold, last = run.shocks.time.iloc[1], run.shocks.rate_before.iloc[1]
+    left = 10.0 ** np.arange(-9, -3)
+    rates = run.slip_rate(fold - left) - last
+    assert np.diff(np.log10(rates)) == pytest.approx(np.full(5, 0.5), rel=0, abs=2e-3)
+    by_law = IMPEDANCE * run.slip_rate(fold - left) + NORMAL * RATE_LAW.coefficient(0.0, run.slip_rate(fold - left))
+    assert by_law == pytest.approx(run.load(fold - left), rel=1e-13, abs=0.0)
+
+
+def test_knot_of_a_law() -> None:
+    """Linear weakening over D on a slab without pull: the knot is passed exactly at slip D, and v then stays constant."""
+    law = F.LinearSlipWeakening(0.8, 0.3, 2.0)
+    run = ss.simulate(ss.Problem(SLAB, law, initial_excess=1e4), 5.0)
+    store = run.history.store
+    behind = np.flatnonzero(store.whole[:, 2] == 1)[0]
+    assert store.law_slip[behind] == pytest.approx(2.0, rel=1e-12, abs=0.0)
+    # exponential growth: u = (excess / k)(exp(k t / Z) - 1), k = S (mus - mud) / D
+    k = NORMAL * 0.5 / 2.0
+    passed = math.log1p(2.0 * k / 1e4) * IMPEDANCE / k
+    assert run.history.start[behind] == pytest.approx(passed, rel=1e-11, abs=0.0)
+
+
+def test_echoes_come_back_at_the_same_phase() -> None:
+    """A breaking point and all its echoes share the offset in the round trip, to the last bit."""
+    law = F.LinearSlipWeakening(0.8, 0.6, 1.0)
+    run = ss.simulate(ss.Problem(SLAB, law, pull_rate=0.5, initial_excess=1e6), 8 * ROUND)
+    store = run.history.store
+    for row in range(1, int(store.row[-1])):
+        here, before = (set(store.theta_from[store.row == n]) for n in (row, row - 1))
+        assert before <= here
+
+
+@pytest.mark.parametrize("rtol", [1e-10, 1e-12, 1e-14])
+def test_micro_events_just_above_critical_end_at_their_fold_at_any_tolerance(rtol: float) -> None:
+    """The second generation at alpha_c + 1e-6 lasts 10 to 15 microseconds: steps towards its folds must not shrink for ever."""
+    law = replace(RATE_LAW, alpha=IMPEDANCE / (NORMAL * 0.5) + 1e-6)
+    run = ss.simulate(ss.Problem(SLAB, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0), 93_900.0, rtol=rtol)
+    assert run.status.name == "finished"
+    second = run.shocks.iloc[2:4]
+    assert list(second.cause) == ["echo", "fold"]
+    assert second.rate_before.iloc[1] == pytest.approx(1.30153e-5, rel=1e-5, abs=0.0)
+
+
+def test_maximal_rule_takes_up_slip_at_the_fold_under_a_smooth_load() -> None:
+    """There g turns: v - v1 starts as the root of time. Contact equation and energy balance hold all the way."""
+    slab = replace(SLAB, driver_impedance=0.0)
+    problem = ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6, selection="maximal")
+    run = ss.simulate(problem, 12.0)
+    assert list(run.shocks.cause) == ["fold", "fold", "echo", "echo", "echo"]
+    q = math.sqrt(1.0 / (IMPEDANCE / (NORMAL * 0.5)))
+    onset = (30e6 + IMPEDANCE * (2 * q - 1) - 60e6) / (IMPEDANCE * 2.6 / (ROUND / 2))
+    assert run.shocks.time.iloc[0] == pytest.approx(onset, rel=1e-12, abs=0.0)
+    times = np.concatenate([np.linspace(0.0, 12.0, 2001), onset + 10.0 ** np.arange(-12, 0)])
+    rate = run.slip_rate(times)
+    assert np.all(rate[:-12] >= 0.0)
+    by_law = IMPEDANCE * rate + NORMAL * RATE_LAW.coefficient(0.0, rate)
+    assert by_law[rate > 0] == pytest.approx(run.load(times)[rate > 0], rel=1e-11, abs=0.0)
+    assert float(np.abs(run.energy([6.0, 12.0]).balance).max() / run.energy(12.0).heat[0]) < 1e-12
+
+
+def test_maximal_rule_arrests_at_the_fold_that_it_has_come_back_to() -> None:
+    """At the fold the load may lie a rounding above the end of rest: no step is taken there, and slip stays a number.
+
+    The slip is the integral of the fastest root of Z v + S mu(v) = beta between the two passages of the fold.
+    """
+    scenario = ss.load_scenario("fig4-loop")
+    run = ss.simulate(replace(scenario.problem, selection="maximal"), scenario.duration)
+    start, end = run.shocks.time
+    load = run.load(start + (end - start) * 0.5 * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 4001)))) - 30e6
+    half = 0.5 * (load - IMPEDANCE)  # (Z v - load) (1 + v) + drop = 0, with alpha = 1 s/m
+    rate = (half + np.sqrt(np.maximum(half**2 + IMPEDANCE * (load - 50e6), 0.0))) / IMPEDANCE
+    weight = (end - start) * 0.5 * np.pi * np.sin(np.pi * np.linspace(0.0, 1.0, 4001))
+    slip = float(np.trapezoid(rate * weight, np.linspace(0.0, 1.0, 4001)))
+    assert float(run.slip(scenario.duration)) == pytest.approx(slip, rel=1e-5, abs=0.0)

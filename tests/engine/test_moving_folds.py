@@ -1,0 +1,262 @@
+"""Laws of slip and slip rate on a massless slab: moving folds, against closed forms and against every root there is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import stickslip as ss
+from stickslip.contact.branches import search_grid
+from stickslip.contact.equation import resistance as contact_resistance
+from stickslip.engine.moving_folds.branch_scan import branches_at, new_branches
+from stickslip.engine_input import branch_table
+from stickslip.run.session import RunInProgress
+
+F = ss.friction
+Z, S = 9.8e6, 1e8
+SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e3, normal_stress=S)
+MATCHED = replace(SLAB, driver_impedance=Z)
+"""Nothing comes back: the load is what the far side makes it."""
+ROUND = SLAB.two_way_time
+
+WEAKENING = F.SlipPlusRate(slip=F.LinearSlipWeakening(0.4, 0.3, 0.5), rate=F.HyperbolicRate(0.4, 0.2, 1.5))
+WAVY = F.SlipPlusRate(slip=F.SinusoidalSlip(0.3, 0.05, 3.0), rate=F.HyperbolicRate(0.45, 0.1, 1.0))
+PRODUCT = F.SlipTimesRate(slip=F.SinusoidalSlip(0.6, 0.1, 2.0), rate=F.HyperbolicRate(1.0, 0.4, 1.0))
+FREE = F.FromExpression("0.35 + 0.1*cos(3*u) + 0.3*(1 + 0.2*sin(u))*exp(-(v/0.7)**2)")
+KINKED = F.SlipPlusRate(
+    slip=F.SinusoidalSlip(0.3, 0.05, 3.0), rate=F.PiecewiseLinearRate((0.0, 0.5, 1.5, 2.0), (0.4, 0.25, 0.32, 0.2))
+)
+
+KINKED_WEAKENING = replace(KINKED, slip=F.ExponentialSlipWeakening(0.35, 0.3, 0.5))
+
+
+def hardening(slope: float = 0.05) -> ss.friction.FrictionLaw:
+    """mu = 0.3 + 0.5 / (1 + v) + slope u: the lower fold of the fast branch rises with slip until it takes the slip away."""
+    return F.FromExpression("0.3 + 0.5/(1 + v) + k*u", {"k": slope}, counts="path")
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10, 1e-13])
+def test_fold_is_reached_at_the_slip_of_the_closed_form(sense: int, rtol: float) -> None:
+    """Z + S mu_v(v_f) = 0 whatever the slip; then S k u_f = load - Z v_f - S mu(0, v_f)."""
+    load = 0.8 * S + 1e5
+    run = ss.simulate(ss.Problem(MATCHED, hardening(), initial_load=sense * load), 5.0, rtol=rtol)
+    fold = math.sqrt(0.5 * S / Z) - 1.0
+    slip = (load - Z * fold - S * (0.3 + 0.5 / (1.0 + fold))) / (0.05 * S)
+    assert list(run.shocks.cause) == ["start", "fold"]
+    assert run.shocks.rate_before.iloc[1] == pytest.approx(sense * fold, rel=1e-9, abs=0.0)
+    assert run.shocks.rate_after.iloc[1] == 0.0
+    assert float(run.slip(5.0)) == pytest.approx(sense * slip, rel=1e-12, abs=0.0)
+    assert len(run.history) < 150
+    energy = run.energy(5.0)
+    assert abs(float(energy.balance[0] / energy.heat[0])) < 10 * rtol * 1e-2
+
+
+def test_rate_ends_as_the_square_root_of_time_at_a_moving_fold() -> None:
+    run = ss.simulate(ss.Problem(MATCHED, hardening(), initial_excess=1e5), 5.0, rtol=1e-13)
+    shock = run.shocks.iloc[1]
+    left = 10.0 ** np.arange(-8, -3)
+    rates = run.slip_rate(shock.time - left) - shock.rate_before
+    assert np.diff(np.log10(rates)) == pytest.approx(np.full(4, 0.5), rel=0.0, abs=5e-3)
+
+
+@pytest.mark.parametrize(("distance", "jumps"), [(0.5, True), (0.02, False)])
+def test_slip_weakening_lifts_slow_slip_over_its_upper_fold(distance: float, jumps: bool) -> None:
+    """mu = 0.3 (1 - u / 3D), to its knot at D, + 0.3 + v exp(-v/0.3): slow slip ends at v_f, if that comes before the knot."""
+    law = F.SlipPlusRate(slip=F.LinearSlipWeakening(0.3, 0.2, distance), rate=F.FromExpression("0.3 + v*exp(-v/0.3)"))
+    excess = 6e6 if jumps else 1e5
+    run = ss.simulate(ss.Problem(MATCHED, law, initial_excess=excess), 20.0)
+    low, high = 0.3, 0.6  # Z + S (1 - v / 0.3) exp(-v / 0.3) falls through zero once between them
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if Z + S * (1.0 - middle / 0.3) * math.exp(-middle / 0.3) > 0.0 else (low, middle)
+    slip = (Z * low + S * low * math.exp(-low / 0.3) - excess) * distance / (0.1 * S)
+    assert (slip < distance) == jumps
+    assert (list(run.shocks.cause) == ["start", "fold"]) == jumps
+    if jumps:
+        shock = run.shocks.iloc[1]
+        assert shock.rate_before == pytest.approx(low, rel=1e-9, abs=0.0)
+        assert float(run.slip(shock.time)) == pytest.approx(slip, rel=1e-9, abs=0.0)
+        assert shock.rate_after > 2.0 * low
+    else:
+        rate = float(run.slip_rate(run.history.end[-1]))
+        assert Z * rate + S * rate * math.exp(-rate / 0.3) == pytest.approx(excess + 0.1 * S, rel=1e-12, abs=0.0)
+
+
+def test_slow_slip_comes_to_rest_under_a_falling_load() -> None:
+    """(Z + S c) v + S k u = load is linear: v relaxes towards load' / (S k) < 0, and passes zero after a logarithm of time."""
+    law = F.SlipPlusRate(slip=F.PiecewiseLinearSlip((0.0, 100.0), (0.3, 10.3)), rate=F.FromExpression("0.3 + 0.05*v"))
+    excess, fall, half = 5e6, -2e6, ROUND / 2
+    run = ss.simulate(ss.Problem(MATCHED, law, initial_excess=excess, far_stress_rate=fall), 20.0)
+    pace = 0.1 * S / (Z + 0.05 * S)
+    rate = excess / (Z + 0.05 * S) * math.exp(-pace * half)
+    stop = half + math.log1p(-rate * 0.1 * S / fall) / pace
+    assert run.catalogue(0.0).end.iloc[0] == pytest.approx(stop, rel=1e-11, abs=0.0)
+    assert float(run.slip(20.0)) == pytest.approx((excess + fall * (stop - half)) / (0.1 * S), rel=1e-11, abs=0.0)
+
+
+# ---- against every root ---------------------------------------------------------------------------------------------------------
+
+Resistance = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+
+def resistance(law: ss.friction.FrictionLaw, law_slip: float) -> Resistance:
+    """g(v) at a law slip, Pa."""
+    return lambda v: Z * v + S * law.coefficient(law_slip, v)
+
+
+def stable_roots(law: ss.friction.FrictionLaw, law_slip: float, load: float) -> list[float]:
+    """Rates v >= 0 at which g rises through the load, from a dense scan, each by bisection; stick (0) included."""
+    g = resistance(law, law_slip)
+    rates = np.concatenate(([1e-14], np.geomspace(1e-9, 20.0, 4000), np.linspace(1e-3, 20.0, 4000)))
+    rates.sort()
+    below = g(rates) < load
+    found = [0.0] if load <= S * float(law.static_coefficient(law_slip)) else []
+    for n in np.flatnonzero(below[:-1] & ~below[1:]):
+        low, high = rates[n], rates[n + 1]
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if g(middle) < load else (low, middle)
+        found.append(float(high))
+    return found
+
+
+def sampled(run: ss.Solution, points: int) -> list[tuple[float, float, float]]:
+    """(law slip, |v|, load in the direction of slip) at so many times inside the run."""
+    times = np.linspace(0.0, run.history.end[-1], points + 2)[1:-1]
+    at = run.history.find(times, "right")
+    mode, law = run.history.store.mode[at.piece], run.problem.friction
+    walked = run.history.grown(at) * (mode if law.counts == "path" else 1)
+    slips = run.problem.law_slip + run.history.store.law_slip[at.piece] + walked
+    loads = np.where(mode == 0, np.abs(run.load(times)), mode * run.load(times))
+    return list(zip(slips.tolist(), np.abs(run.slip_rate(times)).tolist(), loads.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("driver", [math.inf, 0.5 * Z])
+@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.FrictionLaw, driver: float) -> None:
+    """At each time a stable root; jumps under a smooth load only where g turns (or stick ends), and to the next root that way."""
+    slab = replace(SLAB, driver_impedance=driver)
+    run = ss.simulate(ss.Problem(slab, law, pull_rate=0.1, initial_excess=1e6), 12.0)
+    assert run.status.ok
+    for law_slip, rate, load in sampled(run, 120):
+        assert min(abs(rate - root) for root in stable_roots(law, law_slip, load)) < 1e-9
+    folds = run.shocks[run.shocks.cause == "fold"]
+    for shock in folds.itertuples():
+        sense = math.copysign(1.0, shock.rate_before or shock.rate_after)
+        before, after = abs(shock.rate_before), abs(shock.rate_after)
+        law_slip, load = float(run.slip(shock.time)), sense * float(run.load(shock.time))
+        g = resistance(law, law_slip)
+        assert g(np.array(before)) == pytest.approx(load, rel=1e-12, abs=0.0)
+        if before > 0.0:
+            beyond = before + 1e-3 * math.copysign(1.0, after - before)  # there g has come back from its fold
+            assert (float(g(np.array(beyond))) - load) * (after - before) < 0.0
+        nearest = [root for root in stable_roots(law, law_slip, load) if (root - before) * (after - before) > 1e-6]
+        assert after == pytest.approx(min(nearest, key=lambda root: abs(root - before)), rel=0.0, abs=1e-9)
+    energy = run.energy(12.0)
+    assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-10
+
+
+def test_some_of_these_runs_jump_at_folds_often() -> None:
+    run = ss.simulate(ss.Problem(SLAB, WAVY, pull_rate=0.1, initial_excess=1e6), 12.0)
+    assert (run.shocks.cause == "fold").sum() >= 2
+
+
+@pytest.mark.parametrize(("selection", "pick"), [("minimal", min), ("maximal", max)])
+@pytest.mark.parametrize("law", [WEAKENING, KINKED_WEAKENING], ids=["weakening", "kinked"])
+def test_smallest_and_largest_root(law: ss.friction.FrictionLaw, selection: str, pick: Callable[[list[float]], float]) -> None:
+    """The load falls after h/c: the levels at which the rule changes branch have moved with slip by then."""
+    far_side = {"far_stress_rate": -8e7}
+    run = ss.simulate(ss.Problem(MATCHED, law, initial_excess=1e6, selection=selection, **far_side), 1.2)
+    assert run.status.ok
+    for law_slip, rate, load in sampled(run, 80):
+        assert rate == pytest.approx(pick(stable_roots(law, law_slip, load)), rel=0.0, abs=1e-9)
+    assert "fold" in list(run.shocks.cause)
+
+
+def test_maxwell_jumps_at_equal_areas() -> None:
+    run = ss.simulate(ss.Problem(MATCHED, WEAKENING, initial_excess=1e6, selection="maxwell", far_stress_rate=-8e7), 1.2)
+    shock = run.shocks[run.shocks.cause == "fold"].iloc[0]
+    g, load = resistance(WEAKENING, float(run.slip(shock.time))), float(run.load(shock.time))
+    rates = np.linspace(shock.rate_after, shock.rate_before, 200_001)
+    over = g(rates) - load
+    assert shock.rate_before > 0.5
+    assert abs(np.trapezoid(over, rates)) < 1e-8 * np.trapezoid(np.abs(over), rates)
+
+
+def test_contact_mass_tends_to_perfect_delay() -> None:
+    """Over a fold inertia lags behind by a time that goes as mass^(2/3)."""
+    problem = ss.Problem(MATCHED, hardening(), initial_excess=1e5)
+    exact = float(ss.simulate(problem, 5.0).slip(5.0))
+    errors = []
+    for mass in (8e3, 1e3, 1.25e2):
+        heavy = replace(problem, body=replace(MATCHED, contact_mass=mass))
+        errors.append(abs(float(ss.simulate(heavy, 5.0).slip(5.0)) - exact))
+    orders = np.log(np.divide(errors[:-1], errors[1:])) / math.log(8.0)
+    assert orders == pytest.approx([2 / 3, 2 / 3], rel=0.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("selection", "excess"), [("minimal", -1e3), ("maximal", -1.6e7), ("maxwell", -1.29e7)])
+def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang(selection: str, excess: float) -> None:
+    """Hardening sends slip back to stick as soon as it starts, at the same load."""
+    run = ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=excess, selection=selection), 20.0)
+    assert run.status.name == "event storm"
+    assert float(run.slip(run.history.end[-1])) < 1e-6
+
+
+def test_a_storm_from_the_very_start_is_said_in_one_line() -> None:
+    with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another law$"):
+        ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=0.0, selection="minimal"), 20.0)
+
+
+def test_a_step_at_rest_added_to_a_slip_law_changes_where_slip_begins_and_nothing_in_slip() -> None:
+    """Slip law + Coulomb slips as the slip law plus the dynamic coefficient does under the same load, to its arrest."""
+    weakening = F.LinearSlipWeakening(0.4, 0.2, 0.3)
+    stepped = ss.Problem(SLAB, F.SlipPlusRate(slip=weakening, rate=F.Coulomb(0.3, 0.2)), initial_excess=1e5)
+    smooth = ss.Problem(SLAB, F.LinearSlipWeakening(0.6, 0.4, 0.3), initial_excess=1e5 + 0.1 * S)
+    ours, theirs = (ss.simulate(problem, 5.0) for problem in (stepped, smooth))
+    times = np.linspace(0.0, 5.0, 101)
+    assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=0.0, abs=1e-11)
+    assert ours.catalogue(0.0).end.iloc[0] == pytest.approx(theirs.catalogue(0.0).end.iloc[0], rel=1e-11, abs=0.0)
+    assert float(theirs.slip(5.0)) > 1.0
+
+
+LOSSY = replace(SLAB, driver_impedance=5 * Z)
+"""Echoes come back with a third less: loads that rise and fall, and jumps both ways."""
+
+
+@pytest.mark.parametrize("selection", ["minimal", "maximal", "maxwell"])
+@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+def test_compiled_levels_are_those_of_the_table(
+    law: ss.friction.FrictionLaw, selection: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same run with the levels of `contact.rules.selection`, worked out in Python in every step: shocks and slip to 1e-12."""
+    case = ss.Problem(LOSSY, law, pull_rate=0.3, far_stress_rate=3e6, initial_excess=1e6, selection=selection)
+    ours = ss.simulate(case, 1.5 * ROUND)
+    monkeypatch.setattr(branch_table, "COMPILED_RULES", {})
+    theirs = ss.simulate(case, 1.5 * ROUND)
+    assert ours.status.name == theirs.status.name
+    assert list(ours.shocks.cause) == list(theirs.shocks.cause)
+    assert ours.shocks.time.to_numpy() == pytest.approx(theirs.shocks.time.to_numpy(), rel=1e-12, abs=1e-15)
+    times = np.linspace(0.0, min(run.history.end[-1] for run in (ours, theirs)), 101)[:-1]
+    assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=1e-12, abs=1e-15)
+
+
+@pytest.mark.parametrize("law_slip", [0.0, 0.21, 0.9])
+@pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
+def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.FrictionLaw, law_slip: float) -> None:
+    """Ends and levels of the branches at a law slip, in compiled code and by `contact.branches`, to rounding of g."""
+    case = ss.Problem(SLAB, law, initial_excess=1e6)
+    run = RunInProgress.begin(case, 1e-10)
+    scan = search_grid(contact_resistance(case))
+    table = new_branches(scan)
+    found = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan, table)
+    expected, _ = branch_table.branch_rows(case, law_slip)
+    assert found == expected.shape[1]
+    assert table[:2, :found] == pytest.approx(expected[:2], rel=1e-9, abs=1e-300)
+    assert table[2:4, :found] == pytest.approx(expected[4:6], rel=0.0, abs=1e-14 * S)

@@ -1,0 +1,124 @@
+"""What must hold of every run: laws of the registry, bodies, drivers, loads and selection rules drawn at random."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.friction import LAWS
+from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.reference.slab.stuck import StuckSlab
+from tests.friction.drawn import laws
+
+NORMAL = 1e8
+TIMES = 301
+few = settings(
+    max_examples=5,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=list(HealthCheck),
+    phases=[Phase.explicit, Phase.generate],
+)
+COMPILED_ANEW = ("table", "expression", "product", "sum")
+"""Laws of which every example is a new formula, compiled for seconds: other tests run them."""
+
+
+@st.composite
+def bodies(draw: st.DrawFn) -> Any:
+    if draw(st.booleans()):
+        damping = draw(st.sampled_from([0.0, 1e6]))
+        return ss.SpringBlock(10 ** draw(st.floats(4.0, 7.0)), 10 ** draw(st.floats(6.5, 8.5)), NORMAL, damping)
+    slab = ss.ElasticSlab(2800, 3500, 10 ** draw(st.floats(1.0, 4.0)), NORMAL)
+    driver = draw(st.sampled_from([math.inf, 0.0, slab.impedance, 3e6]))
+    return ss.ElasticSlab(2800, 3500, slab.thickness, NORMAL, driver, draw(st.sampled_from([0.0, 0.0, 1e2, 1e5])))
+
+
+@st.composite
+def problems(draw: st.DrawFn, kind: str) -> ss.Problem:
+    law, body = draw(laws(kind)), draw(bodies())
+    share, pull = draw(st.floats(-1.3, 1.3)), draw(st.sampled_from([0.0, 1e-9, 1e-3, -1e-3, 0.3]))
+    strength = NORMAL * (float(law.static_coefficient(0.0)) if law.sticks else 0.7)
+    start: dict[str, Any] = {} if law.sticks else {"initial_state": draw(st.floats(1e-3, 1e6))}
+    rule = draw(st.sampled_from(SELECTION_RULES))
+    return ss.Problem(body, law, pull_rate=pull, initial_load=share * strength, selection=rule, **start)
+
+
+def ran(problem: ss.Problem) -> ss.Solution:
+    """The run over a few round trips or periods, as far as it gets."""
+    body: Any = problem.body
+    duration = 3.3 * (body.two_way_time if isinstance(body, ss.ElasticSlab) else min(body.period, 5.0))
+    run = ss.simulate(problem, duration, rtol=1e-9, max_pieces=20_000)
+    assume(run.history.duration > 0.0)
+    return run
+
+
+@pytest.mark.parametrize("kind", [kind for kind in LAWS if kind not in COMPILED_ANEW])
+@given(data=st.data())
+@few
+def test_every_run_obeys_the_law_and_the_contact(kind: str, data: st.DataObject) -> None:
+    """Friction while slipping is the law's (1e-8 S), at rest below the static strength (1e-12), never does work, energy balances
+    (1e-8 of the energies, and rounding of what is stored), and on a slab without contact mass Z v + tau is the load (1e-14)."""
+    problem = data.draw(problems(kind))
+    run = ran(problem)
+    law, body, history = problem.friction, problem.body, run.history
+    times = np.linspace(0.0, history.duration, TIMES)[1:]
+    at = history.find(times, "right")
+    rate, traction, mode = run.slip_rate(times), run.traction(times), history.store.mode[at.piece]
+    walked = np.where(law.counts == "path", mode, 1) * history.grown(at)
+    slip = problem.law_slip + history.store.law_slip[at.piece] + walked
+    by_law = mode * NORMAL * law.coefficient(slip, np.abs(rate), history.state(at))
+    slips = mode != 0
+    assert traction[slips] == pytest.approx(by_law[slips], rel=0.0, abs=1e-8 * NORMAL)
+    held = NORMAL * (law.coefficient(slip, 0.0, history.state(at)) + law.static_excess)
+    assert (np.abs(traction[~slips]) <= held[~slips] + 1e-12 * NORMAL).all()
+    assert (traction * rate >= -1e-14 * NORMAL * np.abs(rate)).all()
+    if isinstance(body, ss.ElasticSlab) and body.contact_mass == 0.0:
+        assert body.impedance * rate + traction == pytest.approx(run.load(times), rel=0.0, abs=1e-14 * NORMAL)
+    energy = run.energy(times[::30])
+    assert (np.diff(energy.heat) >= 0.0).all()
+    size = float(max(np.abs(energy.heat).max(), np.abs(energy.work).max(), np.abs(energy.stored).max()))
+    rounding = 1e-15 * NORMAL**2 / (2.0 * body.stiffness)  # of what is stored, of which all these are differences
+    assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
+
+
+@pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "power-stribeck", "piecewise-linear-rate"])
+@given(data=st.data())
+@few
+def test_the_chosen_rate_is_admissible_and_stable(kind: str, data: st.DataObject) -> None:
+    """Relative 1e-6, or 1e-9 m/s, between the folds; at a fold itself two rates are one."""
+    problem = data.draw(problems(kind))
+    assume(isinstance(problem.body, ss.ElasticSlab) and problem.body.contact_mass == 0.0)
+    found = ss.uniqueness(problem)
+    assume(found.regime != "continuum")
+    run = ran(problem)
+    for time in np.linspace(0.0, run.history.duration, 40)[1:]:
+        load, rate = float(run.load(time)), float(run.slip_rate(time))
+        edges = [fold.load for fold in found.folds] + [found.resistance.strength]
+        if min(abs(abs(load) - edge) for edge in edges) < 1e-7 * NORMAL:
+            continue
+        rates, stable = found.admissible(load), found.stability(load)
+        nearest = int(np.argmin(np.abs(rates - rate)))
+        assert rates[nearest] == pytest.approx(rate, rel=1e-6, abs=1e-9)
+        assert stable[nearest]
+
+
+@pytest.mark.parametrize("rate", [0.0, 2e4])
+@pytest.mark.parametrize("driver", [math.inf, 0.0, 9.8e6, 9.7e6, 3e6, 1e9])
+def test_rest_is_that_of_the_closed_form(driver: float, rate: float) -> None:
+    """The load on a contact that stays stuck for 300 round trips, leaps over rest included: 1e-11 of it."""
+    far = {} if math.isinf(driver) else {"far_stress": 5e7, "far_stress_rate": rate}
+    slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8, driver)
+    problem = ss.Problem(slab, ss.friction.Coulomb(100.0, 0.5), pull_rate=0.1, initial_load=4e7, **far)
+    run = ss.simulate(problem, 300.3 * slab.two_way_time)
+    exact = StuckSlab(2800, 3500, 1e4, driver, 4e7, 0.1, far.get("far_stress", 0.0), far.get("far_stress_rate", 0.0))
+    times = (
+        np.concatenate((np.linspace(0.0, 6.0, 200), np.linspace(6.0, 300.0, 997))) * slab.two_way_time + 1e-3
+    )  # off the breaking points
+    assert float(np.ptp(run.slip(times))) == 0.0
+    assert run.load(times) == pytest.approx(exact.load(times), rel=1e-11)

@@ -1,0 +1,248 @@
+"""The tables of all events at once against a plain walk along the history, event by event, piece by piece.
+
+The plain walk finds places with numpy's roots of polynomials (eigenvalues, polished), and reads tractions at times. Places so found
+are right to 1e-9 of a piece, values at them to 1e-12 of the largest in the table, where they stand still to first order or jump.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+import stickslip as ss
+from stickslip.engine.series.polynomial import crossings
+from stickslip.engine.state.layout import TERMS
+from stickslip.trajectory.history import Epoch, History, Moments
+from stickslip.trajectory.phase_index import Phases, standing_behind
+from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
+from stickslip.trajectory.tables import default_event_rate
+from tests.engine.test_verified_numbers import SLAB
+from tests.long_runs.problems import RUNS
+
+F = ss.friction
+SWING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
+BACKWARDS = ss.Problem(SLAB, F.HyperbolicRate(0.8, 0.3, 1.0), pull_rate=-1e-3, initial_load=-8.1e7)
+
+CASES: dict[str, tuple[ss.Problem, float]] = {
+    "slip that turns": (SWING, 10.0),
+    "backwards, left open": (BACKWARDS, 4.0),
+    "many pulses": RUNS["slip law, slab"],
+    "events that heal": RUNS["slab that heals"],
+    "leaps, rate law": RUNS["rate law, maximal"],
+    "leaps, block": RUNS["block that heals"],
+    "micro-events": (ss.load_scenario("fig7-slab-critical").problem, 1.0002e5),
+    "contact mass": RUNS["contact mass"],
+    "creep": RUNS["rate and state, slab"],
+    "left open": (RUNS["slip law, slab"][0], 3.0),
+}
+RATES: dict[str, Callable[[ss.Solution], float]] = {
+    "every slip": lambda run: 0.0,
+    "default": lambda run: default_event_rate(run.problem),
+    "half the largest": lambda run: 0.5 * float(run.events.peak_rate.max()),
+}
+
+
+@dataclass
+class PlainEvent:
+    """Stretches [low, high] of pieces in which it goes on, and heights of |slip rate| along it with their places."""
+
+    stretches: list[tuple[int, float, float]]
+    points: list[tuple[float, int, float]]
+    is_over: bool = False
+
+
+def roots(p: Polynomial) -> list[float]:
+    """Inside (0, 1) but for rounding, ascending, polished by Newton's method."""
+    slope, found = p.deriv(), []
+    for root in p.trim().roots():
+        x = float(root.real)
+        if abs(root.imag) < 1e-6 and -1e-6 < x < 1.0 + 1e-6:
+            for _ in range(4):
+                x -= p(x) / slope(x) if slope(x) != 0.0 else 0.0
+            if 1e-14 < x < 1.0 - 1e-14:
+                found.append(x)
+    return sorted(found)
+
+
+def plain_events(history: History, threshold: float) -> list[PlainEvent]:
+    """Maximal intervals above the threshold."""
+    events: list[PlainEvent] = []
+    store, reached = history.store, (-1, 0)
+    for n, mode in enumerate(store.mode):
+        p = Polynomial(mode * store.rate[n])
+        for low, high in pairwise([0.0, *(roots(p - threshold) if mode else []), 1.0]):
+            if mode == 0 or p(0.5 * (low + high)) <= threshold:
+                continue
+            if reached != (n - 1, mode) or low > 0.0:
+                events.append(PlainEvent([], []))
+            event = events[-1]
+            event.stretches.append((n, low, high))
+            event.points += [(float(p(x)), n, x) for x in (low, *(x for x in roots(p.deriv()) if low < x < high), high)]
+            reached = (n, int(mode)) if high == 1.0 else (-1, 0)
+            event.is_over = high < 1.0 or n + 1 < len(history)
+    return events
+
+
+def slip_of(history: History, event: PlainEvent) -> float:
+    total = 0.0
+    for n, low, high in event.stretches:
+        pace = Polynomial([history.store.speed[n], 2.0 * history.store.bend[n]])
+        total += float((Polynomial(history.store.rate[n]) * pace).integ(lbnd=low)(high))
+    return abs(total)
+
+
+def plain_pulses(event: PlainEvent) -> int:
+    heights = [height for height, _, _ in event.points if height > 0.0]
+    pulses, peak, low = 1, heights[0], heights[0]
+    for height in heights[1:]:
+        if low < 0.5 * min(peak, height):
+            pulses, peak, low = pulses + 1, height, height
+        elif height > peak:
+            peak = low = height
+        low = min(low, height)
+    return pulses
+
+
+def place(history: History, n: int, xi: float) -> Epoch:
+    store = history.store
+    offset = store.theta_to[n] if xi == 1.0 else store.theta_from[n] + xi * (store.speed[n] + xi * store.bend[n])
+    return Epoch(int(store.row[n]), float(offset))
+
+
+def traction(history: History, when: Epoch, side: str) -> float:
+    local = history.seen_from(when)
+    found = local.find(np.zeros(1), side)  # type: ignore[arg-type]
+    return history.problem.strength + float(local.friction(found)[0])
+
+
+def traction_after(history: History, n: int, xi: float) -> float:
+    """At rest, where the slip rate falls on to zero; else where the event ends."""
+    mode, rate = history.store.mode, abs(Polynomial(history.store.rate[n])(xi))
+    for later in range(n + 1, len(history)):
+        if mode[later] != mode[n]:
+            return traction(history, place(history, later, 0.0), "right")
+        if max(abs(Polynomial(history.store.rate[later])(x)) for x in (0.25, 0.5, 0.75, 1.0)) > rate:
+            break
+    if xi == 1.0 and n + 1 < len(history):
+        return traction(history, place(history, n + 1, 0.0), "right")
+    return history.problem.strength + float(history.friction(Moments.inside(n, xi))[0])
+
+
+def plain_row(history: History, event: PlainEvent) -> dict[str, float]:
+    (first, low, _), (last, _, high) = event.stretches[0], event.stretches[-1]
+    top, peak_piece, peak_xi = max(event.points, key=lambda point: point[0])
+    start, end, peak = place(history, first, low), place(history, last, high), place(history, peak_piece, peak_xi)
+    before, after = traction(history, start, "left"), traction_after(history, last, high)
+    row, slip = history.row_time, slip_of(history, event)
+    lasts = (end.row - start.row) * row + (end.offset - start.offset)
+    return {
+        "start": start.row * row + start.offset,
+        "end": end.row * row + end.offset if event.is_over else np.nan,
+        "duration": lasts if event.is_over else np.nan,
+        "slip": slip,
+        "peak_rate": top,
+        "peak_time": peak.row * row + peak.offset,
+        "peak_after": (peak.row - start.row) * row + (peak.offset - start.offset),
+        "traction_before": before,
+        "traction_after": after,
+        "traction_drop": before - after,
+        "static_drop": history.problem.body.stiffness * slip,
+        "pulses": plain_pulses(event),
+        "phase": start.offset / row,
+        "start_row": start.row,
+        "start_offset": start.offset,
+    }
+
+
+@pytest.fixture(scope="module", params=list(CASES))
+def run(request: pytest.FixtureRequest) -> ss.Solution:
+    return ss.simulate(*CASES[request.param])
+
+
+@pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
+def test_every_column_of_every_event(run: ss.Solution, rate: Callable[[ss.Solution], float]) -> None:
+    history, threshold = run.history, rate(run)
+    table, events = run.catalogue(threshold), plain_events(run.history, threshold)
+    assert len(table) == len(events) > 0
+    rows = [plain_row(history, event) for event in events]
+    width = history.store.speed.max() + history.store.bend.max()
+    strength = abs(run.problem.strength)
+    slack = {"start": 1e-9 * width, "peak_time": 1e-7 * width, "peak_after": 1e-7 * width}
+    slack |= dict.fromkeys(("end", "duration", "start_offset"), 1e-9 * width) | {"phase": 1e-9 * width / history.row_time}
+    slack |= dict.fromkeys(("traction_before", "traction_after", "traction_drop"), 1e-11 * strength)
+    for name in rows[0]:
+        wanted = np.array([row[name] for row in rows], float)
+        largest = np.nanmax(np.abs(wanted), initial=0.0)
+        tolerance = slack.get(name, 1e-12 * largest) + 1e-15 * largest
+        assert table[name].to_numpy() == pytest.approx(wanted, rel=0.0, abs=tolerance, nan_ok=True), name
+    since = [
+        (b["start_row"] - a["start_row"]) * history.row_time + (b["start_offset"] - a["start_offset"]) for a, b in pairwise(rows)
+    ]
+    assert table.recurrence.to_numpy() == pytest.approx([np.nan, *since], rel=1e-15, abs=2e-9 * width, nan_ok=True)
+
+
+def test_every_shock(run: ss.Solution) -> None:
+    history, shocks = run.history, run.shocks
+    pieces = [n for n in range(len(history)) if history.store.cause[n] > 0]
+    assert len(shocks) == len(pieces)
+    for side in ("left", "right"):
+        name = {"left": "before", "right": "after"}[side]
+        local = [history.seen_from(place(history, n, 0.0)) for n in pieces]
+        rates = [float(h.rate(h.find(np.zeros(1), side))[0]) for h in local]  # type: ignore[arg-type]
+        assert shocks[f"rate_{name}"].to_numpy() == pytest.approx(rates, rel=1e-11, abs=1e-13)
+        tractions = [traction(history, h.epoch, side) for h in local]
+        assert shocks[f"traction_{name}"].to_numpy() == pytest.approx(tractions, rel=0.0, abs=1e-11 * abs(run.problem.strength))
+
+
+def test_slip_is_summed_from_the_start_of_each_event(run: ss.Solution) -> None:
+    """All at once is one by one, to the last digit."""
+    events = SlipEvents.of(run.history, 0.0)
+    together = run.history.slipped_within(events.begin, events.end)
+    for n in range(len(events.pulses)):
+        one = events.some(slice(n, n + 1))
+        assert together[n] == run.history.slipped_since(one.begin, one.end)[0]
+
+
+def test_what_is_largest_within_each_event() -> None:
+    values, found = np.array([3.0, 1.0, 2.0, 2.0, 5.0, 4.0]), np.empty(3, np.int64)
+    highest(values, np.array([0, 1, 4]), np.array([1, 4, 6]), found)
+    assert found.tolist() == [0, 2, 4]
+
+
+def test_bounds_never_hide_a_change_of_sign() -> None:
+    rng = np.random.default_rng(3)
+    places, kept = np.empty(32), 0
+    for _ in range(3000):
+        c = rng.normal(size=TERMS) * 0.5 ** np.arange(TERMS) * rng.uniform(0.1, 3.0)
+        c[: rng.integers(0, 3)] = 0.0
+        if keeps_its_sign(c):
+            kept += 1
+            assert crossings(c, places) == 0
+    assert 500 < kept < 2500
+
+
+@pytest.mark.parametrize("name", ["block that heals", "slab that heals", "folds, lossy", "rate law, maximal"])
+def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stickslip.trajectory.phase_index.FEW", 4)
+    history = ss.simulate(*RUNS[name]).history
+    for one, other in zip(
+        standing_behind(history.store, history.row_time),
+        Phases.of(history.store, history.row_time).standing(len(history) - 1),
+        strict=True,
+    ):
+        assert np.array_equal(one, other)
+
+
+def test_a_wrong_sum_would_be_seen() -> None:
+    """The comparison above sees one micrometre in a metre."""
+    run = ss.simulate(*CASES["events that heal"])
+    store = run.history.store._replace(rate=run.history.store.rate * (1.0 + 1e-6))
+    bent = replace(run, history=replace(run.history, store=store))
+    wanted = [slip_of(run.history, event) for event in plain_events(run.history, 0.0)]
+    assert run.catalogue(0.0).slip.to_numpy() == pytest.approx(wanted, rel=1e-12, abs=0.0)
+    assert bent.catalogue(0.0).slip.to_numpy() != pytest.approx(wanted, rel=1e-7, abs=0.0)
