@@ -57,7 +57,7 @@ def pointer(array: np.ndarray) -> Any:
 def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
     functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), ())
     constants, none = np.zeros(functions.size), np.zeros(1)
-    functions.prepare(pointer(none), reference, pointer(constants))
+    functions.fill(none, reference, constants)
     return functions, constants
 
 
@@ -67,7 +67,7 @@ def test_difference_keeps_its_digits(name: str) -> None:
     formula, reference, out = FORMULAS[name], 0.21, np.zeros(3)
     functions, constants = compiled(formula, reference)
     for step, rate in ((1e-13, 2e-13), (1e-7, 1e-8), (0.3, 0.2)):
-        VALUE(functions.value)(pointer(constants), step, rate, pointer(out))
+        VALUE(functions.address("value"))(pointer(constants), step, rate, pointer(out))
         with mpmath.workdps(50):
             exact = formula(MpmathFunctions, mpmath.mpf(reference) + mpmath.mpf(step), mpmath.mpf(rate))
             exact -= formula(MpmathFunctions, mpmath.mpf(reference), mpmath.mpf(0))
@@ -79,7 +79,7 @@ def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
     functions, constants = compiled(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
     out = np.zeros(3)
     for step in (-1.0, -0.99, -0.5, 0.5):
-        VALUE(functions.value)(pointer(constants), step, 0.0, pointer(out))
+        VALUE(functions.address("value"))(pointer(constants), step, 0.0, pointer(out))
         with mpmath.workdps(50):
             exact = 0.5 * (mpmath.exp(-1000 * (1 + mpmath.mpf(step))) - mpmath.exp(-1000))
             slope = -500 * mpmath.exp(-1000 * (1 + mpmath.mpf(step)))
@@ -90,7 +90,7 @@ def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
 def test_slopes(name: str) -> None:
     formula, out = FORMULAS[name], np.zeros(3)
     functions, constants = compiled(formula, 0.21)
-    VALUE(functions.value)(pointer(constants), 0.1, 0.4, pointer(out))
+    VALUE(functions.address("value"))(pointer(constants), 0.1, 0.4, pointer(out))
     by_rate = mpmath.diff(lambda v: formula(MpmathFunctions, mpmath.mpf("0.31"), v), 0.4)
     by_slip = mpmath.diff(lambda u: formula(MpmathFunctions, u, mpmath.mpf("0.4")), 0.31)
     assert out[1:] == pytest.approx([float(by_rate), float(by_slip)], rel=1e-9, abs=1e-12)
@@ -111,7 +111,7 @@ def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
     load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
     load[0] = 1.3 * start + 0.9 * (formula(np, 0.21, start) - formula(np, 0.21, 0.0))
     load[1:4] = 0.05, -0.02, 0.01
-    JET(functions.rate_jet)(pointer(constants), pointer(layout_of_k(start, bend=bend)), pointer(load), pointer(jet))
+    JET(functions.address("rate_jet"))(pointer(constants), pointer(layout_of_k(start, bend=bend)), pointer(load), pointer(jet))
     jet = jet[:TERMS]  # the bound of the guards follows
     eta = np.linspace(0.0, 0.4, 9)  # half of what the quotient's series reaches to this accuracy
     rate = Polynomial(jet)
@@ -130,7 +130,7 @@ def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> Non
     functions, constants = compiled(formula, 0.21)
     load, jet = np.zeros(TERMS), np.zeros(2 * TERMS)
     load[:3] = 0.6, 0.05, -0.02
-    JET(functions.motion_jet)(pointer(constants), pointer(layout_of_k(0.4, bend=bend)), pointer(load), pointer(jet))
+    JET(functions.address("motion_jet"))(pointer(constants), pointer(layout_of_k(0.4, bend=bend)), pointer(load), pointer(jet))
     jet = jet[:TERMS]
     eta = np.linspace(0.0, 0.8, 9)
     rate, clock = Polynomial(jet), Polynomial([0.05, bend])

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from stickslip.batch.kernels.branch_search import RULES
 from stickslip.batch.kernels.reduction import COLUMNS
 from stickslip.batch.vectorised_problem import declared_at
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.foundation.errors import nearest
 from stickslip.scenarios.scenario import Scenario
@@ -17,6 +18,8 @@ QUANTITIES = COLUMNS
 
 def why_not(scenario: Scenario, keys: Sequence[str], quantities: Sequence[str]) -> str:
     """Why a batch cannot run a scenario with these keys varied and these quantities kept, in one line; "" where it can."""
+    if UNCOMPILED:
+        return "the engine runs uncompiled, and lanes are registers of a processor"
     return of_quantities(quantities) or of_scenario(scenario) or of_law(scenario, keys) or of_keys(scenario, keys)
 
 

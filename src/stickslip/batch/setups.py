@@ -70,7 +70,7 @@ def alike(scenario: Scenario, values: Values) -> Alike:
         compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
         address = np.array([addresses_of(formula, problem) for formula in compiled], np.int64).T.copy()
         jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64)
-        prepare = np.array([formula.prepare_at for formula in compiled], np.int64)
+        prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
     wait_for_creep(counts, problem, scenario.creep_rtol)
@@ -158,7 +158,7 @@ def steps_alone(problem: Problem) -> bool:
 
 def jets_of(formula: CompiledFormula, problem: Problem) -> int:
     """Address of a formula's series for lanes."""
-    return formula.motion_jets if has_inertia(problem) else formula.rate_jets
+    return formula.address("motion_jets" if has_inertia(problem) else "rate_jets")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from dataclasses import dataclass
 from typing import Self
 
@@ -11,9 +10,6 @@ import numpy as np
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state.layout import Floats
 from stickslip.friction.formula.expression import Expression
-
-_DOUBLE = ctypes.POINTER(ctypes.c_double)
-_GUARDS = ctypes.CFUNCTYPE(None, _DOUBLE, ctypes.c_double, ctypes.c_double, ctypes.c_double, _DOUBLE)
 
 
 @dataclass(frozen=True)
@@ -28,7 +24,7 @@ class Sight:
         """Return the guards of a formula with these values of its parameters; slips count from the reference (m)."""
         formula = compile_formula(tree, parameters)
         numbers, constants = np.array(values), np.zeros(formula.size)
-        formula.prepare(numbers.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
+        formula.fill(numbers, reference, constants)
         return cls(formula, constants)
 
     def used_up(self, start: float, end: float) -> float:
@@ -44,6 +40,5 @@ class Sight:
     def _at(self, slip: float) -> Floats:
         """Arguments and pulls of the guards."""
         out = np.zeros(2 * self.formula.guard_count)
-        call = _GUARDS(self.formula.guards)
-        call(self.constants.ctypes.data_as(_DOUBLE), slip, 0.0, 0.0, out.ctypes.data_as(_DOUBLE))
+        self.formula.fill_guards(self.constants, slip, out)
         return out.reshape(-1, 2)

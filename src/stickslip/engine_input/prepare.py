@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 from collections.abc import Sequence
 from functools import lru_cache
@@ -177,7 +176,7 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
     references = near if law.knot_variable == "slip" else [start] * len(formulas)
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
     for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):
-        _fill(formula, np.array(law.piece_values(i)), references[i], row)
+        formula.fill(np.array(law.piece_values(i)), references[i], row)
     static = float(law.static_coefficient(start))
     at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
@@ -189,16 +188,11 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
 def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int, int, int]:
     """Return what `Setup.address` holds of a formula: a law with a state is only ever stepped implicitly."""
     stepped_implicitly = problem.friction.state is not None or has_inertia(problem)
-    guards = formula.guards if formula.guard_count and stepped_implicitly else 0
+    guards = formula.address("guards") if formula.guard_count and stepped_implicitly else 0
     if problem.friction.state:
-        return 0, 0, formula.state_value, guards, formula.guard_count
-    jet = formula.motion_jet if has_inertia(problem) else formula.rate_jet
-    return formula.value, jet, 0, guards, formula.guard_count
-
-
-def _fill(formula: CompiledFormula, values: at.Floats, reference: float, row: at.Floats) -> None:
-    double = ctypes.POINTER(ctypes.c_double)
-    formula.prepare(values.ctypes.data_as(double), reference, row.ctypes.data_as(double))
+        return 0, 0, formula.address("state_value"), guards, formula.guard_count
+    jet = formula.address("motion_jet" if has_inertia(problem) else "rate_jet")
+    return formula.address("value"), jet, 0, guards, formula.guard_count
 
 
 def start_of(problem: Problem) -> tuple[State, Counts]:

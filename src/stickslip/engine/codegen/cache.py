@@ -31,6 +31,7 @@ from numba.core.ccallback import CFunc
 from numba.core.sigutils import normalize_signature
 
 from stickslip.engine.codegen.private_folder import private_folder
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.atomic_write import write_atomically
 
 NOT_COMPILED = ("cache.py", "private_folder.py")
@@ -67,6 +68,8 @@ def _sources_hash() -> str:
     return digest.hexdigest()[:16]
 
 
+if UNCOMPILED:
+    numba.config.DISABLE_JIT = True
 SOURCES = _sources_hash()
 """Stands for the code that is compiled, and for what compiles it."""
 
@@ -188,10 +191,12 @@ class SealedCache(FunctionCache):
             tell(f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again")
 
 
-def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], CFunc]:
+def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """As numba's `cfunc`, with this cache."""
 
-    def compiled(function: Callable[..., Any]) -> CFunc:
+    def compiled(function: Callable[..., Any]) -> Any:
+        if UNCOMPILED:
+            return function
         found: Any = CFunc(function, normalize_signature(signature), locals={}, options=options)
         found._cache = SealedCache(function)
         found.compile()

@@ -5,19 +5,22 @@ Formulas are called through their addresses, so that a new law compiles its own 
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 from collections.abc import Callable
-from functools import cache, cached_property
+from functools import cache
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
+import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
 from stickslip.engine.codegen.cache import load_module
 from stickslip.engine.codegen.one_module import Kernel
-from stickslip.engine.codegen.records import FLOATS, INTEGERS
+from stickslip.engine.codegen.records import FLOATS, INTEGERS, Floats
 from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
+from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED, Pointer, as_python, call, handle_of, pointer_at
 from stickslip.friction.formula.expression import Expression
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -34,76 +37,60 @@ def inlined(function: F) -> F:
 
 
 def _compiled(function: F, **options: bool) -> F:
-    compiled: Any = Kernel(function, **options)
+    compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
     return compiled
 
 
 class CompiledFormula:
-    """A formula's C functions (see `codegen.taylor_series`): `prepare` to be called, the addresses of the others, and how many
-    constants.
+    """The functions of a friction formula (see `codegen.taylor_series`), and how many constants they need.
 
     Each is written, compiled and loaded when it is first asked for; what was compiled before comes from the disk.
     """
 
     def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
         self._writer = FormulaWriter(formula, parameters, ORDER, state_rate)
+        self._functions: dict[str, Any] = {}
         self.size = self._writer.size
-
-    def _function(self, part: str) -> Any:
-        text = self._writer.module(part)
-        name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
-        return getattr(load_module(name, text), part)
 
     @property
     def guard_count(self) -> int:
-        """How many guards the formula has."""
+        """The number of guards of the formula."""
         return len(self._writer.guards)
 
-    @cached_property
-    def guards(self) -> int:
-        """Address of guards(c, dx, s, w, out)."""
-        return int(self._function("guards").address)
+    def address(self, part: str) -> int:
+        """Return the address of one of the functions, by its name: see `taylor_series.SIGNATURES`."""
+        function = self._function(part)
+        return int(function.handle if UNCOMPILED else function.address)
 
-    @cached_property
-    def prepare(self) -> Callable[..., None]:
-        """prepare(parameters, reference slip, constants) through ctypes."""
-        function: Callable[..., None] = self._function("prepare").ctypes
-        return function
+    def fill(self, values: Floats, reference: float, constants: Floats) -> None:
+        """Fill the formula's constants from the values of its parameters and the reference slip (m)."""
+        prepare = self._function("prepare")
+        if UNCOMPILED:
+            prepare(values, reference, constants)
+        else:
+            prepare.ctypes(values.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
 
-    @cached_property
-    def prepare_at(self) -> int:
-        """Address of prepare(parameters, reference slip, constants)."""
-        return int(self._function("prepare").address)
+    def fill_guards(self, constants: Floats, slip: float, out: Floats) -> None:
+        """Put arguments and pulls of the guards at a slip (m, minus the reference), at rest, into out."""
+        guards = self._function("guards")
+        if UNCOMPILED:
+            guards(constants, slip, 0.0, 0.0, out)
+        else:
+            guards.ctypes(constants.ctypes.data_as(_DOUBLE), slip, 0.0, 0.0, out.ctypes.data_as(_DOUBLE))
 
-    @cached_property
-    def value(self) -> int:
-        """Address of value(c, dx, s, out)."""
-        return int(self._function("value").address)
+    def _function(self, part: str) -> Any:
+        if part not in self._functions:
+            text = self._writer.module(part)
+            name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
+            function = getattr(load_module(name, text), part)
+            if UNCOMPILED:
+                function.__globals__.update(vars(MATHS))
+                function.handle = handle_of(function)
+            self._functions[part] = function
+        return self._functions[part]
 
-    @cached_property
-    def state_value(self) -> int:
-        """Address of state_value(c, dx, s, w, out)."""
-        return int(self._function("state_value").address)
 
-    @cached_property
-    def rate_jet(self) -> int:
-        """Address of rate_jet(c, k, L, s)."""
-        return int(self._function("rate_jet").address)
-
-    @cached_property
-    def motion_jet(self) -> int:
-        """Address of motion_jet(c, k, L, s)."""
-        return int(self._function("motion_jet").address)
-
-    @cached_property
-    def rate_jets(self) -> int:
-        """Address of rate_jet for lanes."""
-        return int(self._function("rate_jets").address)
-
-    @cached_property
-    def motion_jets(self) -> int:
-        """Address of motion_jet for lanes."""
-        return int(self._function("motion_jets").address)
+_DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 
 @cache
@@ -160,6 +147,16 @@ def integers(typingctx: Any, address: Any) -> Any:
     return INTEGERS(types.int64), _cast
 
 
+@intrinsic
+def floats_in(typingctx: Any, array: Any) -> Any:
+    """An array of floats as a pointer to the first of them; the caller keeps the array alive."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return context.make_array(signature.args[0])(context, builder, args[0]).data
+
+    return FLOATS(array), codegen
+
+
 def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
 
@@ -192,3 +189,31 @@ def float_of(typingctx: Any, bits: Any) -> Any:
         return builder.bitcast(args[0], ir.DoubleType())
 
     return types.float64(types.int64), codegen
+
+
+if UNCOMPILED:
+    call_prepare = call_value = call_state_value = call_guards = call_jet = call
+
+    def floats(address: int) -> Pointer:
+        """Return the pointer to floats at an address."""
+        return pointer_at(address, np.float64)
+
+    def integers(address: int) -> Pointer:
+        """Return the pointer to whole numbers at an address."""
+        return pointer_at(address, np.int64)
+
+    def bits_of(number: float) -> np.int64:
+        """Return the 64 bits of a float as an integer."""
+        return np.float64(number).view(np.int64)
+
+    def float_of(bits: int) -> np.float64:
+        """Return the float with these 64 bits."""
+        return np.int64(bits).view(np.float64)
+
+    def floats_in(array: Floats) -> Pointer:
+        """Return the pointer to the first number of an array."""
+        return Pointer(array)
+
+    def ahead(pointer: Pointer, n: int) -> Pointer:
+        """Return the pointer to the number n places further on."""
+        return pointer.ahead(n)

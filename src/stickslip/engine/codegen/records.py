@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self, get_type_hints
 
 import llvmlite.ir as ir
+import numpy as np
 from numba import types
 from numba.core import datamodel
 from numba.core.typing.templates import AttributeTemplate
@@ -28,6 +29,9 @@ from numba.extending import (
 )
 from numpy.typing import NDArray
 
+from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, pointer_at
+
+Floats = NDArray[np.float64]
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 """What compiled code sees of an address: a pointer that is indexed like an array."""
 
@@ -84,8 +88,7 @@ class Record:
             wanted = cls.__dict__.get(name, _Wanted(kind, 1, False))
             cls.places[name] = Place(first, wanted.size, wanted.kind, wanted.inside)
             first += wanted.size
-            if wanted.kind in (float, int):
-                setattr(cls, name, _Number(cls.places[name].first))
+            setattr(cls, name, _descriptor(cls.places[name], name))
         cls.total = first
 
     def __init__(self, numbers: NDArray[Any]) -> None:
@@ -107,6 +110,44 @@ class _Number:
 
     def __set__(self, record: Record, value: Any) -> None:
         record.numbers[self.place] = value
+
+
+class _Inside:
+    """A row of floats, or a record, that lies in another one, for Python: found once and kept."""
+
+    def __init__(self, place: Place, name: str) -> None:
+        self.place, self.name = place, name
+
+    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+        if record is None:
+            return self
+        begin, end = self.place.first, self.place.first + self.place.size
+        if self.place.kind is FLOATS:  # up to the end of the record: some functions write on into the row that follows
+            found: Any = Pointer(record.numbers.view(np.float64), begin)
+        else:
+            kind = np.int64 if int in get_type_hints(self.place.kind).values() else np.float64
+            found = self.place.kind(record.numbers[begin:end].view(kind))
+        record.__dict__[self.name] = found
+        return found
+
+
+class _Address:
+    """An address in a record, for Python: a pointer into the array that has been lent."""
+
+    def __init__(self, place: Place) -> None:
+        self.place, self.kind = place.first, np.float64 if place.kind is FLOATS else np.int64
+
+    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+        return self if record is None else pointer_at(record.numbers[self.place], self.kind)
+
+    def __set__(self, record: Record, pointer: Pointer) -> None:
+        record.numbers[self.place] = pointer.address
+
+
+def _descriptor(place: Place, name: str) -> Any:
+    if place.kind in (float, int):
+        return _Number(place.first)
+    return _Inside(place, name) if place.inside else _Address(place)
 
 
 class RecordPointer(types.Type):  # type: ignore[misc] # numba is untyped
@@ -184,7 +225,9 @@ def whole_numbers_of(typingctx: Any, record: Any) -> Any:
 
 
 def record_at(record: type[Record]) -> Any:
-    """Return a compiled function from memory, an array of whole numbers or a pointer to it, to a record in it."""
+    """Return a function for kernels from memory, an array of whole numbers or a pointer to it, to the record in it."""
+    if UNCOMPILED:
+        return record
     kind, pointer = RecordPointer(record), ir.IntType(64).as_pointer()
 
     @intrinsic
@@ -198,3 +241,12 @@ def record_at(record: type[Record]) -> Any:
         return kind(memory), codegen
 
     return at
+
+
+if UNCOMPILED:
+
+    def numbers_of(record: Record) -> Pointer:
+        """Return the numbers of a record."""
+        return Pointer(record.numbers)
+
+    whole_numbers_of = numbers_of

@@ -18,6 +18,8 @@ from numba.core.cgutils import get_or_insert_function
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
+
 WIDTH = 8
 """Lanes: what fills the widest registers of today's processors; where they are narrower, several serve."""
 
@@ -203,3 +205,14 @@ def lanes_at(typingctx: Any, address: Any) -> Any:
         return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
 
     return POINTER(types.int64), codegen
+
+
+if UNCOMPILED:
+
+    def bits_as_number(x: Any) -> Any:
+        """Return the 64 bits of a float as a whole number, as a float."""
+        return np.float64(np.float64(x).view(np.int64))
+
+    def power_of_two(n: Any) -> Any:
+        """Return 2^n of a whole number as a float."""
+        return np.ldexp(1.0, int(n))

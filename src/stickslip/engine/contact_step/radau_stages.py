@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import ahead, call_guards, call_state_value, call_value, floats, kernel
+from stickslip.engine.codegen.compiler import ahead, call_guards, call_state_value, call_value, floats_in, kernel
 from stickslip.engine.contact_step.contact_equation import constants_of
 from stickslip.engine.series.polynomial import evaluate
 from stickslip.engine.series.radau_nodes import (
@@ -310,7 +310,7 @@ def stays_in_sight(run: Run, h: float) -> float:
     if n == 0:
         return 0.0
     room, used = np.empty(3 * (2 * POINTS - 1) + 2 * n * PLACES_ON_CHORD), np.zeros(n)
-    way = floats(room.ctypes.data)
+    way = floats_in(room)
     seen = ahead(way, 3 * (2 * POINTS - 1))
     follow_step(run, h, way)
     for i in range(2 * STAGES):

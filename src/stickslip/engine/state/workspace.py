@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.engine.codegen.records import Record, floats_at, inside, integers_at, record_at, row
+from stickslip.engine.codegen.uncompiled import lend_memory
 from stickslip.engine.state.layout import TERMS, Counts, Floats, Integers, Params, Series, Setup, State, Store
 
 WHOLE, REAL = 6, 8
@@ -131,6 +132,7 @@ def scratch_in(memory: Integers) -> Floats:
 def lend(memory: Integers, setup: Setup, store: Store, trees: tuple[Integers, Floats]) -> None:
     """Write into a run's memory where its tables are. The caller keeps them alive; a store that has grown is lent again."""
     run = Run(memory)
+    lend_memory(*setup[1:], *store, *trees)
     assert memory.shape == (PLACES,)
     assert memory.flags.c_contiguous
     assert all(table.flags.c_contiguous for table in (*setup[1:], *store, *trees))
