@@ -67,7 +67,7 @@ def _origins(readings: Readings, start: float, end: float) -> Floats:
 def _bounces(time: float, end: float, round_trip: float, reflection: float) -> Floats:
     """Return the times (s) at which a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
 
-    The last one is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
+    The last is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
     """
     count = 1 + int(np.ceil(2.0 * (end - time) / round_trip))
     share = abs(reflection)
