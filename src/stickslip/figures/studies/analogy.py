@@ -31,7 +31,7 @@ def data(found: Analogy) -> xr.Dataset:
     """Return the results of a study over its two axes, shape (y, x), in SI.
 
     They are the three ratios slab / block, the numbers of pulses of slab and block, the two weakening numbers, and `stands` (1 if
-    the block gives the same answers as the slab).
+    block and slab agree within the study's tolerance and have as many pulses).
     """
     coordinates = {}
     for name, axis in (("x", found.x), ("y", found.y)):
