@@ -55,7 +55,7 @@ def concentrated_mass(runs: Runs) -> Verdict:
 def _lightened(factor: float) -> tuple[Problem, float]:
     """Return the block of Fig. 6 with its mass times `factor` and the slab's radiation as damping, and a duration (s).
 
-    The duration is 120 times that in which a small slip rate grows by a factor e (spring left aside): it ends shortly after the peak.
+    The duration is 120 times that in which a small slip rate grows by a factor e without the spring; it ends after the peak.
     """
     case, slab = problem("fig6-block-reconstructed"), problem("fig6-slab").body
     body, law = case.body, case.friction
