@@ -1,1 +1,1 @@
-"""Figures; each module makes its data, draws it, or both."""
+"""The figures of the package: most modules have `data(...)`, which makes a dataset, and `draw(dataset)`, which draws it."""

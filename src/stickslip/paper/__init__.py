@@ -1,4 +1,4 @@
-"""The paper, reproduced: figures, tables, and a verdict on each claim. `make(folder)` writes everything."""
+"""Reproduction of the paper: its figures, tables, and a verdict on each claim. `make(folder)` writes everything."""
 
 from stickslip.paper.make import make
 

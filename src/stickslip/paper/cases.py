@@ -1,4 +1,4 @@
-"""The paper's cases under their bundled names, what each reading is, and runs that are made once."""
+"""The paper's cases under the names of their bundled scenarios, their readings of the constants, and runs that are made once."""
 
 from __future__ import annotations
 
@@ -25,30 +25,34 @@ READINGS = {
     "second-event-maxwell": "as printed; rule maxwell",
     "second-event-maximal": "as printed; rule maximal",
 }
-"""Bundled scenario: under which reading of the printed constants it stands."""
+"""The reading of the printed constants that each bundled scenario follows."""
 
 REFERENCE = "Campillo, Ionescu, Paumier & Renard (1996), Phys. Earth Planet. Inter. 96"
+"""The paper."""
 
 
 def problem(name: str) -> Problem:
-    """The problem of a bundled case."""
+    """Return the problem of a bundled case."""
     return load_scenario(name).problem
 
 
 class Runs:
-    """Runs at one tolerance, each made once: figures, tables and claims share them."""
+    """Runs at one relative tolerance, each of which is made once and shared by figures, tables and claims."""
 
     def __init__(self, rtol: float = 1e-10) -> None:
         self.rtol = rtol
         self._made: dict[tuple[Problem, float], Solution] = {}
 
     def case(self, name: str) -> Solution:
-        """A bundled case, for as long as its scenario says."""
+        """Return the run of a bundled case over the duration of its scenario."""
         scenario = load_scenario(name)
         return self(scenario.problem, scenario.duration)
 
     def __call__(self, problem: Problem, duration: float) -> Solution:
-        """A problem for `duration` s. Raises RuntimeError where the engine gives up: no verdict is drawn from half a run."""
+        """Return the run of a problem over `duration` (s).
+
+        Raises RuntimeError if the engine gives up: no verdict is drawn from an incomplete run.
+        """
         key = (problem, duration)
         if key not in self._made:
             solution = ss.simulate(problem, duration, rtol=self.rtol)

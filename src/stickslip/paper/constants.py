@@ -1,4 +1,4 @@
-"""The constants of the paper: as printed, as reconstructed, and what follows from them. All read from the bundled cases."""
+"""The constants of the paper, as printed and as reconstructed, and those derived from them, all read from the bundled cases."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from stickslip.paper.cases import problem
 
 @dataclass(frozen=True)
 class Constant:
-    """One row: `reconstructed` is None where the printed number is kept, `printed` None where the paper's has no value."""
+    """One row of the table of constants.
+
+    `reconstructed` is None if the printed number is kept; `printed` is None if the printed equation has no solution.
+    """
 
     symbol: str
     meaning: str
@@ -25,7 +28,7 @@ class Constant:
 
 
 def constants() -> list[Constant]:
-    """Every constant, printed ones first."""
+    """Return every constant, the printed ones before those derived from them."""
     return [*_slab(), *_block(), *_laws(), *_derived()]
 
 

@@ -1,4 +1,4 @@
-"""The report's files by kind, each written atomically."""
+"""Writers of the report's files, one for each kind of file; a file appears whole or not at all."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ if TYPE_CHECKING:
 
 
 def save_text(path: Path, text: str) -> Path:
-    """Text in UTF-8 with plain line ends."""
+    """Write text in UTF-8 with line feeds as line ends, and return the path."""
     return write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8", newline="\n"))
 
 
 def save_bytes(path: Path, content: bytes) -> Path:
-    """Bytes as they are."""
+    """Write bytes unchanged, and return the path."""
     return write_atomically(path, lambda partial: partial.write_bytes(content))
 
 
 def save_table(path: Path, table: pd.DataFrame) -> Path:
-    """CSV with every digit."""
+    """Write a table as CSV with all digits, and return the path."""
     return save_text(path, table.to_csv(index=False, lineterminator="\n"))
 
 
 def save_data(path: Path, dataset: xr.Dataset) -> Path:
-    """netCDF-4, with a checksum at its end."""
+    """Write a dataset as netCDF-4 with a checksum at the end of the file, and return the path."""
     from stickslip.foundation.netcdf_file import write
 
     return write(dataset, path)
 
 
 def image(figure: Figure, kind: str) -> bytes:
-    """A figure as the bytes of a "png" or "svg" file, the same for the same input: no date, no random names."""
+    """Return a figure as the bytes of a "png" or "svg" file, the same for the same input: without date and random names."""
     import matplotlib as mpl
 
     from stickslip.figures.style import STYLE

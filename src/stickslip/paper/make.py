@@ -1,4 +1,4 @@
-"""The main job: figures, tables and the report on the paper, in one folder."""
+"""Writing the reproduction of the paper: figures, tables and the report in one folder."""
 
 from __future__ import annotations
 
@@ -17,10 +17,32 @@ if TYPE_CHECKING:
 
 
 def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rtol: float = 1e-10) -> Path:
-    """Write everything to the folder `out` and return the path of the report.
+    """Write figures, tables and the report on the paper to one folder.
 
-    `progress` is called with a line for each step. The same version writes the same files, byte for byte. A file is either
-    whole or not there. Raises OSError where the folder cannot be written.
+    Parameters
+    ----------
+    out : Path or str
+        The folder; it is made if it does not exist.
+    progress : callable, optional
+        Called with one line of text before each step.
+    rtol : float
+        Relative tolerance of all runs.
+
+    Returns
+    -------
+    Path
+        The path of the report, `report.html`.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be written.
+    RuntimeError
+        If the engine gives up on a run.
+
+    Notes
+    -----
+    The same version writes the same files, byte for byte. A file is either whole or not there.
     """
     say = progress or (lambda _: None)
     folder = Path(out)
@@ -38,7 +60,7 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
 
 
 def make_figures(folder: Path, runs: Runs, say: Callable[[str], object]) -> dict[int, bytes]:
-    """Each figure as netCDF, PNG and SVG; returns the SVGs by number."""
+    """Write each figure as netCDF, PNG and SVG, and return the SVG files' bytes by the number of the figure."""
     from stickslip.paper.plates import PLATES
 
     images: dict[int, bytes] = {}
@@ -60,7 +82,7 @@ def _make_figure(folder: Path, runs: Runs, plate: Plate) -> bytes:
 
 
 def measure_claims(runs: Runs, say: Callable[[str], object] = lambda _: None) -> list[Verdict]:
-    """A verdict on every claim, in order."""
+    """Return a verdict on every claim, in the order of their numbers."""
     verdicts = []
     for number, measure in CLAIMS.items():
         say(f"claim {number} of {len(CLAIMS)}: {STATEMENTS[number]}")

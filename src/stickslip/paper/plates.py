@@ -1,4 +1,4 @@
-"""Figures 1 to 7 of the paper: which runs, which data, which caption."""
+"""Figures 1 to 7 of the paper: the runs, data, drawing function and caption of each."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHOWN = 7.0
-"""Seconds that Figs 5 to 7 show: somewhat more than one round trip of the waves."""
+"""Duration (s) shown by Figs 5 to 7: somewhat more than one round trip of the waves, 5.714 s."""
 
 
 @dataclass(frozen=True)
 class Plate:
-    """A figure: how to get its data, how to draw them, what stands below."""
+    """One figure of the paper: functions that make and draw its data, and the caption below it."""
 
     number: int
     title: str
@@ -131,4 +131,4 @@ PLATES = (
         comparison.draw,
     ),
 )
-"""Every figure, in the paper's order."""
+"""All figures, in the order of the paper."""

@@ -1,4 +1,4 @@
-"""The report: one HTML page that needs nothing else."""
+"""The report on the paper: one HTML page that needs no other file."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from stickslip.paper.plates import PLATES
 from stickslip.paper.tables import cases_table
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Translation of digits and the minus sign for powers of ten."""
 MARKS = {Outcome.PRINTED: "✓", Outcome.READING: "◐", Outcome.QUALIFIED: "≈", Outcome.NOT: "✗"}
-"""A sign for each outcome, so that it does not rest on colour."""
+"""A sign for each outcome, so that colour alone need not tell them apart."""
 
 
 def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict]) -> str:
-    """The page, from the figures (SVG by number) and the verdicts."""
+    """Return the page as HTML, from the figures (SVG by number) and the verdicts; runs that are missing are made."""
     environment = Environment(
         loader=PackageLoader("stickslip.paper"), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
@@ -45,7 +46,7 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict])
 
 
 def number(value: float | int | str | None, digits: int = 9) -> str:
-    """A number for people: plain where that is short, otherwise a power of ten."""
+    """Return a number as text for readers: plain from 1e-3 to 1e7, otherwise with a power of ten."""
     if value is None:
         return "–"
     if isinstance(value, str):
@@ -60,7 +61,7 @@ def number(value: float | int | str | None, digits: int = 9) -> str:
 
 
 def with_unit(value: float, unit: str) -> str:
-    """A number and its unit; stresses of a size in MPa."""
+    """Return a number with its unit; stresses from 1e5 Pa on are given in MPa."""
     if unit == "Pa" and abs(value) >= 1e5:
         value, unit = value / 1e6, "MPa"
     return f"{number(value)} {unit}".strip()

@@ -1,4 +1,4 @@
-"""Tables of the paper's cases: runs, events, shocks, claims, constants. Units stand in the headings."""
+"""Tables of the paper's cases: runs, events, shocks, claims and constants, with units in the headings or in a column."""
 
 from __future__ import annotations
 
@@ -26,10 +26,11 @@ UNITS = {
     "traction_before": "Pa",
     "traction_after": "Pa",
 }
+"""Units of the columns of events and shocks, added to their headings."""
 
 
 def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFrame]:
-    """Every table by the name of its file."""
+    """Return every table by the name of its file, without the suffix."""
     return {
         "cases": cases_table(runs),
         "events": _stacked(runs, "events"),
@@ -40,7 +41,7 @@ def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFram
 
 
 def cases_table(runs: Runs) -> pd.DataFrame:
-    """One row a case: what was run, and what came of it."""
+    """Return a table with a row for each case: what was run, and its results."""
     import pandas as pd
 
     rows = []
@@ -63,7 +64,7 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 
 def _stacked(runs: Runs, table: str) -> pd.DataFrame:
-    """Events or shocks of every case, one below the other, behind the name of the case."""
+    """Return the events or shocks of all cases in one table, with the name of the case in the first column."""
     import pandas as pd
 
     parts = []
@@ -71,13 +72,13 @@ def _stacked(runs: Runs, table: str) -> pd.DataFrame:
         part: pd.DataFrame = getattr(runs.case(name), table).copy()
         part.insert(0, "case", name)
         parts.append(part)
-    # cases without a row would make the columns' types ambiguous
+    # Leave out cases without a row: they would make the types of the columns ambiguous.
     whole = pd.concat([part for part in parts if len(part)], ignore_index=True)
     return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items()})
 
 
 def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
-    """One row a measured number, behind its claim and verdict."""
+    """Return a table with a row for each measured number, after its claim and verdict."""
     import pandas as pd
 
     rows = [
@@ -89,7 +90,7 @@ def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
 
 
 def constants_table() -> pd.DataFrame:
-    """The constants in both readings."""
+    """Return the table of constants in both readings."""
     import pandas as pd
 
     rows = [(c.symbol, c.meaning, c.printed, c.reconstructed, c.unit, c.note) for c in constants()]

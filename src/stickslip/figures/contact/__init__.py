@@ -1,1 +1,1 @@
-"""Figures of the contact: laws, resistance, regimes."""
+"""Figures of the contact: friction laws, the resistance g(v), the admissible set K, and the regimes."""

@@ -1,4 +1,4 @@
-"""The admissible set K of any problem: its branches by stability, the jumps of its selection rule, and a run's path over them."""
+"""Figure of the admissible set K of any problem: its branches by stability, the jumps of its selection rule, and a run's path."""
 
 from __future__ import annotations
 
@@ -20,20 +20,42 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 Height = Callable[..., Any]
-"""From an excess (Pa), and the direction of slip, to where its load is drawn."""
+"""A function that maps an excess (Pa) and the direction of slip (1 or -1) to the ordinate at which that load is drawn."""
 
 _POINTS = 1201
+"""Number of slip rates at which the curve is evaluated."""
 _ROOM = 1.25
-"""How far the curve goes beyond the fastest rate of interest."""
+"""The curve ends at this multiple of the largest slip rate of interest, so that all folds, jumps and the run lie inside."""
 _TINY = 1e-3
-"""Range of loads, as a share of the strength, below which loads are drawn as differences from it."""
+"""If the loads span less than this share of the static strength, they are drawn as differences from it."""
 
 
 def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
-    """The set K for slip forwards at the start of a problem, and the path of a run in it: loads as excess over the strength (Pa).
+    """Return the set K for forward slip at the start of a problem, and the path of a run in it.
 
-    A law of slip moves the set as it slips: the path of a run under one leaves the set of the start.
-    Raises InputError for a block or a contact mass: inertia makes the slip rate a state, and there is no such set.
+    Parameters
+    ----------
+    problem : Problem
+        A slab whose slip rate follows from the load alone.
+    solution : Solution, optional
+        A run of the problem; its path is drawn over the set.
+
+    Returns
+    -------
+    xarray.Dataset
+        The curve as excess over the static strength (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable, 0 continuum); the
+        static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s), excess (Pa);
+        and the path of the run, slip rate (m/s) and excess (Pa), empty if no run is given.
+
+    Raises
+    ------
+    InputError
+        For a block, a contact mass, or a law with a state variable: the slip rate is then a state, or follows from one, and there
+        is no such set.
+
+    Notes
+    -----
+    If friction depends on slip, the set moves as the contact slips, and the path of the run leaves the set of the start.
     """
     contact = uniqueness(problem)
     g = contact.resistance
@@ -71,7 +93,10 @@ def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
 
 
 def _fastest(contact: Uniqueness, path: NDArray[np.float64]) -> float:
-    """The end of the axis of slip rates: beyond every fold and jump, and the run."""
+    """Return the end of the axis of slip rates (m/s), beyond every fold, every jump and the run.
+
+    If none of them has a slip rate above 0, it is a quarter of strength / impedance, the natural scale of the slip rate.
+    """
     rates = [fold.rate for fold in contact.folds]
     rates += [rate for jump in contact.jumps for rate in (jump.rate_before, jump.rate_after)]
     found = max([*rates, *np.abs(path).tolist()], default=0.0)
@@ -81,7 +106,18 @@ def _fastest(contact: Uniqueness, path: NDArray[np.float64]) -> float:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """The set in the plane of slip rate and load; mirrored as well where the run slips backwards."""
+    """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What `data` returned.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure; pyplot does not know it, save it with its `savefig`.
+    """
     figure, grid = panels(1, 1, (5.4, 4.2))
     axes = grid[0, 0]
     strength = float(dataset["strength"])
@@ -90,7 +126,7 @@ def draw(dataset: xr.Dataset) -> Figure:
     scale, origin = (1.0, strength) if near else (1e-6, 0.0)
 
     def height(excess: Any, sign: int = 1) -> Any:
-        """Where the load strength + excess is drawn; near the strength no digit is lost."""
+        """Return the ordinate of the load strength + excess, near the strength as a difference, which loses no digit."""
         return scale * (sign * np.asarray(excess) + (sign * strength - origin))
 
     backwards = bool((dataset["path_slip_rate"].values < 0.0).any())
@@ -111,14 +147,14 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def _range(dataset: xr.Dataset) -> tuple[float, float]:
-    """Loads of interest, as excess: the curve, the end of stick, and the run, with some room."""
+    """Return the range of loads to be drawn, as excess (Pa): that of the curve, the end of stick and the run, with a margin."""
     inside = np.concatenate((dataset["excess"].values, [0.0], dataset["path_excess"].values))
     room = 0.08 * float(np.ptp(inside)) or 1.0
     return float(inside.min()) - room, float(inside.max()) + room
 
 
 def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> None:
-    """Stick (vertical), stable, unstable and flat parts of the curve; for sign -1 mirrored."""
+    """Draw stick (vertical) and the stable, unstable and flat parts of the curve, or their mirror image for sign -1."""
     rate, excess, kind = (dataset[name].values for name in ("slip_rate", "excess", "kind"))
     stick = height(np.array([-float(dataset["strength"]), 0.0]), sign)
     axes.plot([0.0, 0.0], stick, color=GREY, linewidth=3.0, label="stick" if sign > 0 else None)
@@ -127,7 +163,7 @@ def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> Non
         chosen = kind == which
         if not chosen.any():
             continue
-        if which != 1:  # over to the first point of the neighbour, so that the curve has no gap
+        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
             chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
         values = np.where(chosen, height(excess, sign), np.nan)
         axes.plot(sign * rate, values, color=colour, linewidth=3.0, linestyle=style, label=name if sign > 0 else None)

@@ -1,4 +1,4 @@
-"""Figure 4: the rule of perfect delay, walked by an actual run whose load rises and then falls."""
+"""Figure 4 of the paper: the rule of perfect delay, as followed by an actual run whose load rises and then falls."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 CASE = "loop"
+"""Prefix of the variables that `resistance.data` adds for the set K."""
 
 
 def data(solution: Solution) -> xr.Dataset:
-    """The run in the plane of slip rate and load, and in time; with the set K that it walks. Its load must rise, then fall."""
+    """Return slip rate (m/s) and load (Pa) of a run, whose load must rise and then fall, and the set K that it follows."""
     time, rate = solution.curve("slip_rate")
     _, load = solution.curve("load")
     turn = int(np.argmax(load))
@@ -36,7 +37,7 @@ def data(solution: Solution) -> xr.Dataset:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """The loop on the left, the same run against time on the right."""
+    """Draw the loop in the plane of slip rate and load on the left, and the same run against time on the right."""
     figure = Figure(figsize=(7.2, 3.6), layout="constrained")
     axes: Any = figure.subplot_mosaic([["loop", "load"], ["loop", "rate"]], width_ratios=(1.25, 1))
     _draw_loop(axes["loop"], dataset)
@@ -55,7 +56,7 @@ def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
 def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     resistance.draw_set(axes, dataset, CASE, quiet=True)
     rate, load = shown(dataset["run_slip_rate"]), shown(dataset["run_load"])
-    shift = 0.012 * rate.max()  # the two paths share the branches: drawn side by side, not on top of each other
+    shift = 0.012 * rate.max()  # both paths follow the same branches: draw them side by side, not on top of each other
     for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
         x, y = rate[part] + side * shift, load[part] - side * 0.35
         axes.plot(x, y, color=colour, linewidth=1.8, label=text)
@@ -68,7 +69,7 @@ def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _arrows(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
-    """Arrow heads in the middle of the jump and halfway along the slipping and the sticking stretch."""
+    """Draw arrow heads in the middle of the jump, and halfway along the slipping and the sticking part of the path."""
     jump = int(np.argmax(np.abs(np.diff(x))))
     for first, last in ((jump, jump + 1), *_middles(jump, x.size)):
         axes.annotate(

@@ -1,4 +1,4 @@
-"""Figure 2: friction laws as functions of slip or of slip rate."""
+"""Figure 2 of the paper: friction coefficients as functions of slip or of slip rate."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
 def data(
     slip_laws: dict[str, FrictionLaw], rate_laws: dict[str, FrictionLaw], largest_slip: float, largest_rate: float
 ) -> xr.Dataset:
-    """mu along slip for the first group of laws, along slip rate for the second; the labels name the curves."""
+    """Return mu of slip laws along slip, up to `largest_slip` (m), and of rate laws along slip rate, up to `largest_rate` (m/s).
+
+    The keys of both groups are the labels of the curves.
+    """
     slip = np.linspace(0.0, largest_slip, 801)
     rate = np.linspace(0.0, largest_rate, 801)
     along_slip = [law.coefficient(slip) for law in slip_laws.values()]
@@ -38,7 +41,7 @@ def data(
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Two panels: laws of slip on the left, laws of slip rate on the right."""
+    """Draw two panels: the laws that depend on slip on the left, those that depend on slip rate on the right."""
     figure, axes = panels(1, 2, (7.2, 2.8))
     pairs = (("slip", "slip_law", "coefficient_along_slip"), ("slip_rate", "rate_law", "coefficient_along_rate"))
     titles = ("a   Slip law, eq. (14)", "b   Slip-rate law, eq. (15)")

@@ -1,4 +1,4 @@
-"""The regime over two numbers of a problem: where the contact equation has one solution, and where several."""
+"""Figure of the regime over two parameters of a problem: where the contact equation has one solution, and where several."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 
 REGULAR, IRREGULAR = "#D6E6F4", "#F8D9C4"
+"""Colours of the two regimes."""
 
 
 def data(problem: Problem, found: RegimeMap) -> xr.Dataset:
-    """A map of regimes with the units of its axes, in SI."""
+    """Return a map of regimes as a dataset in SI, with the units of its axes."""
     coordinates = {}
     for name, axis in (("x", found.x), ("y", found.y)):
         one = parameter(problem, axis.parameter)
@@ -34,7 +35,7 @@ def data(problem: Problem, found: RegimeMap) -> xr.Dataset:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """The two regimes as areas, the critical curve between them, and the problem's own point."""
+    """Draw the two regimes as areas, the critical curve between them, and the point of the problem itself."""
     figure, grid = panels(1, 1, (5.4, 4.2))
     axes = grid[0, 0]
     scales = [SHOWN.get(dataset[name].attrs["units"], ("", 1.0))[1] for name in ("x", "y")]

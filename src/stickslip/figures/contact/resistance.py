@@ -1,4 +1,4 @@
-"""Figure 3: the admissible set K, every pair of slip rate and load that solves the contact equation."""
+"""Figure 3 of the paper: the admissible set K, all pairs of slip rate and load that solve the contact equation."""
 
 from __future__ import annotations
 
@@ -15,11 +15,15 @@ from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, 
 from stickslip.problem.problem import Problem
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
-"""Where the name of a point stands, in points from it: clear of the curve."""
+"""Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
 
 
 def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
-    """The set K of each problem's contact for v >= 0: slip g(s), stick up to the strength, and the points of Fig. 4."""
+    """Return the set K of each problem for slip rates from 0 to `largest_rate` (m/s), with loads in Pa.
+
+    It consists of slip, g(s), and of stick up to the static strength; the points O to E of Fig. 4 are added. The keys of `problems`
+    are prefixes of the variables, `titles` names the panels.
+    """
     rates = np.linspace(0.0, largest_rate, 1201)
     contents: dict[str, xr.Variable] = {}
     for name, problem in problems.items():
@@ -41,10 +45,10 @@ def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[s
 
 
 def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, float]]:
-    """The points of the paper's Fig. 4 as (slip rate, load); a regular contact has none.
+    """Return the points of the paper's Fig. 4 as (slip rate in m/s, load in Pa), or nothing for a regular contact.
 
-    O is the origin, A the end of stick, B where the jump up lands, C the lower fold, D where the jump down lands, and E a
-    point further up the slipping branch, here at `largest_rate`.
+    O is the origin, A the end of stick, B the point that the jump up reaches, C the lower fold, D the point that the jump down
+    reaches, and E a point further up the slipping branch, here at `largest_rate` (m/s).
     """
     g = resistance(problem)
     slipping = branches_of(g)[-1]
@@ -63,7 +67,7 @@ def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, flo
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """A panel for each case, stable branches solid, unstable ones dashed."""
+    """Draw a panel for each case, with stable branches solid and unstable ones dashed."""
     cases, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("cases", "case_titles"))
     figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.3), sharey=True)
     for i, case in enumerate(cases):
@@ -76,7 +80,7 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False) -> None:
-    """The branches of K: stick (vertical), stable slip, unstable slip; `quiet` draws them as a background."""
+    """Draw the branches of K: stick (vertical), stable slip and unstable slip; `quiet` draws them in grey, as a background."""
     rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"])
     strength = float(shown(dataset[f"{case}_strength"]))
     rising = dataset[f"{case}_slope"].values > 0
@@ -85,7 +89,7 @@ def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False)
     axes.plot([0, 0], [0, strength], color=colours[0], linewidth=width, label=None if quiet else "stick")
     axes.plot(rate, np.where(rising, load, np.nan), color=colours[1], linewidth=width, label=None if quiet else "slip, stable")
     if not rising.all():
-        # the unstable part reaches over to the first rising point, so that the curve has no gap
+        # Extend the unstable part to the first rising point: the curve then has no gap.
         falling = ~rising | np.roll(~rising, 1)
         text = None if quiet else "slip, unstable"
         axes.plot(rate, np.where(falling, load, np.nan), color=colours[2], linewidth=width, linestyle="--", label=text)
@@ -93,7 +97,7 @@ def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False)
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:
-    """The points O to E of an irregular case, and the levels of its folds; `moved`: offsets of names in points."""
+    """Draw the points O to E of an irregular case and the levels of its folds; `moved` replaces offsets of names (in points)."""
     offsets = OFFSETS | moved
     found = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
     low, high = axes.get_ylim()

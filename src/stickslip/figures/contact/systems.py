@@ -1,4 +1,4 @@
-"""Figure 1: the two systems, drawn with the paper's symbols."""
+"""Figure 1 of the paper: a sketch of the two systems with the paper's symbols."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.problem import Problem
 
 ARROW: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "linewidth": 1.3, "mutation_scale": 11}
+"""Look of all arrows: matplotlib's `arrowprops`, sizes in points."""
 
 
 def data(block: Problem, slab: Problem) -> xr.Dataset:
-    """The constants of both systems, and the slab's displacement at t = 0 through its thickness."""
+    """Return the constants of both systems, and the displacement (m) of the slab at t = 0 across its thickness, all in SI."""
     assert isinstance(block.body, SpringBlock)
     assert isinstance(slab.body, ElasticSlab)
     x = np.linspace(0.0, slab.body.thickness, 21)
@@ -41,7 +42,7 @@ def data(block: Problem, slab: Problem) -> xr.Dataset:
 
 @styled
 def draw(_: xr.Dataset) -> Figure:
-    """A sketch, not to scale: it shows what the symbols mean, the numbers are in the dataset."""
+    """Draw a sketch, not to scale, that shows what the symbols mean; it is the same whatever numbers the dataset holds."""
     figure, axes = panels(1, 2, (7.2, 2.7))
     _draw_block(axes[0, 0])
     _draw_slab(axes[0, 1])

@@ -1,4 +1,4 @@
-"""The slab in motion: displacement and stress across it, beside the contact's slip, slip rate and traction against time."""
+"""Film of the slab: displacement and stress across it, beside slip, slip rate and traction of the contact against time."""
 
 from __future__ import annotations
 
@@ -24,14 +24,16 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 FRAMES, PER_SECOND, PLACES, DPI, SIZE = 150, 20, 401, 100, (8.0, 4.5)
+"""Defaults of a film: number of frames, frames per second, points across the slab, dots per inch, and size in inches."""
 CODECS = {".gif": "", ".mp4": "h264", ".webm": "libvpx-vp9"}
+"""Video codec by file suffix; a GIF needs none."""
 SUFFIXES = tuple(CODECS)
 Told = Callable[[int, int], object]
-"""Is told how many frames of how many are drawn."""
+"""A callback that receives the number of frames drawn so far and the number of all frames."""
 
 
 def check_animation(path: Path, where: str) -> None:
-    """Refuse an animation that could not be written. Raises InputError."""
+    """Raise InputError if a film could not be written under this name; `where` begins the message."""
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(f"{where} {path}: the name must end in {' or '.join(SUFFIXES)}")
     if path.suffix.lower() != ".gif" and _ffmpeg() is None:
@@ -39,7 +41,7 @@ def check_animation(path: Path, where: str) -> None:
 
 
 def _ffmpeg() -> str | None:
-    """The program that makes videos: the system's, or that of imageio-ffmpeg."""
+    """Return the path of ffmpeg, the system's or that of the package imageio-ffmpeg, or None if there is neither."""
     if FFMpegWriter.isAvailable():
         return str(mpl.rcParams["animation.ffmpeg_path"])
     if importlib.util.find_spec("imageio_ffmpeg") is None:
@@ -50,10 +52,10 @@ def _ffmpeg() -> str | None:
 
 
 def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
-    """The field at as many times as there are frames (default 150), and the contact, from `start` to `end` (s); SI.
+    """Return the field at the time of each frame (default 150 frames), and the contact, from `start` to `end` (s), in SI.
 
-    By default all that `figures.runs.slab_panels.seen` finds. Raises InputError for a block, for times outside the run, and for
-    less than two frames.
+    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Raises InputError for a block, for times outside
+    the run, and for fewer than two frames.
     """
     readings, start, end = seen(readings, start, end)
     frames = FRAMES if frames is None else frames
@@ -66,9 +68,10 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
 
 @styled
 def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND, progress: Told | None = None) -> Path:
-    """Draw every frame and write the file (.gif, .mp4, .webm), whole or not at all. Returns the path.
+    """Draw every frame, write the file (.gif, .mp4 or .webm), either whole or not at all, and return its path.
 
-    Raises InputError where the library that writes such files is missing.
+    `per_second` is the number of frames per second. Raises InputError for any other suffix, and if the program that writes such
+    files is missing.
     """
     path = Path(path)
     check_animation(path, "animation:")
@@ -97,10 +100,10 @@ def _writer(suffix: str, per_second: int) -> AbstractMovieWriter:
 
 
 class _Film(Figure):
-    """A figure of which a movie writer saves frame after frame: only what moves is drawn anew."""
+    """A figure that a movie writer saves frame after frame, and that redraws only the artists that move."""
 
     def keep_still(self, moving: list[Artist]) -> None:
-        """Draw all the rest, once."""
+        """Draw everything but the moving artists, once, and keep the pixels."""
         self._moving = moving
         for artist in moving:
             artist.set_animated(True)
@@ -109,7 +112,7 @@ class _Film(Figure):
         self._agg, self._still = agg, agg.copy_from_bbox(self.bbox)
 
     def savefig(self, fname: Any, **_: Any) -> None:
-        """Write the frame's pixels, as movie writers want them (RGBA, at the figure's own resolution)."""
+        """Write the pixels of the frame in the form that movie writers expect: RGBA, at the resolution of the figure."""
         self._agg.restore_region(self._still)
         for artist in self._moving:
             artist.draw(self._agg.get_renderer())
@@ -118,7 +121,7 @@ class _Film(Figure):
 
 @styled
 def frame(dataset: xr.Dataset, n: int) -> Figure:
-    """The n-th frame as a figure."""
+    """Return the n-th frame as a figure, counted from 0."""
     figure = Figure(figsize=SIZE, layout="constrained")
     move, _ = _stage(figure, dataset)
     move(n)
@@ -126,7 +129,7 @@ def frame(dataset: xr.Dataset, n: int) -> Figure:
 
 
 def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
-    """Draw what an animation shows. Returns what moves it to a frame, and all that moves then."""
+    """Draw the film's panels; return a function that moves them to the n-th frame, and the list of artists that it changes."""
     scales = Scales(dataset)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
     unit, size = length_unit(float(np.abs(dataset.displacement).max()))
@@ -153,7 +156,7 @@ def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], 
 
 
 def _profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, text: str, colour: str, scales: Scales) -> Any:
-    """Axes that hold every frame, and the line that is moved."""
+    """Set up axes whose limits hold every frame, and return the line that moves; the first frame stays, dotted."""
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
@@ -166,7 +169,7 @@ def _profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, text: str, col
 
 
 def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
-    """Curves of the contact, each with the line that marks the moment."""
+    """Draw the curves of the contact, and return the vertical lines that mark the present moment in each panel."""
     time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values
     slip = slip - slip[0]
     unit, size = length_unit(float(np.abs(slip).max()))

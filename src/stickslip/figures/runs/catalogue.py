@@ -1,4 +1,4 @@
-"""A catalogue of slip events: when they come, one of them from years down to milliseconds, and how they are distributed."""
+"""Figure of a catalogue of slip events: their times, one of them from years down to milliseconds, and their distributions."""
 
 from __future__ import annotations
 
@@ -20,15 +20,33 @@ from stickslip.solution.solution import Solution
 Floats = NDArray[np.float64]
 
 CLOSE = 1e-3
-"""The last zoom shows so much of the event's duration, behind its start."""
+"""The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
 WIDE = 100.0
-"""Values that span more than this factor are drawn on a logarithmic axis."""
+"""Positive values that span more than this factor, and counts above this number, are drawn on a logarithmic axis."""
 
 
 def data(solution: Solution, event: int | None = None) -> xr.Dataset:
-    """Catalogue and slip of a run, and one event (a row number of `events`; default: the last of the largest) in local time; SI.
+    """Return the catalogue of a run, its slip, and one event in local time.
 
-    Raises InputError for a run without events.
+    Parameters
+    ----------
+    solution : Solution
+        The run.
+    event : int, optional
+        Row number in `solution.events`; negative ones count from the last. By default the last event whose slip is at least 99 %
+        of the largest.
+
+    Returns
+    -------
+    xarray.Dataset
+        In SI: start (s), slip (m) and recurrence time (s) of all events; slip (m) against time (s) over the whole run, over the
+        event, and at the start of the event, the last two in s since the event began; the predictability `horizon` (s; inf if
+        there is none or it is not known); and `chosen`, the row number of the event.
+
+    Raises
+    ------
+    InputError
+        If the run has no slip event, or not the one asked for.
     """
     table = solution.events
     if table.empty:
@@ -59,13 +77,24 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
 
 
 def _horizon(solution: Solution) -> float:
-    """Time (s) from which on only statistics mean anything; inf if there is none, or it is not known."""
+    """Return the predictability horizon (s), after which only statistics mean anything; inf if there is none or it is not known."""
     return predictability(solution).horizon if is_followed(solution.problem) else math.inf
 
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Time line; slip against time in three zooms; distribution of slip and recurrence times, and their return map."""
+    """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What `data` returned.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure; pyplot does not know it, save it with its `savefig`.
+    """
     figure = Figure(figsize=(7.6, 7.2), layout="constrained")
     axes = figure.subplot_mosaic("AAA;BCD;EFG")
     _draw_time_line(axes["A"], dataset)
@@ -118,7 +147,7 @@ def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
 
 
 def _draw_distribution(axes: Axes, slip: Floats) -> None:
-    """How many events slip at least so much."""
+    """Draw the number of events whose slip is at least x, against x."""
     ordered = np.sort(slip)
     many = len(slip) > WIDE
     smallest = ordered[0] if _wide(slip) else 0.0
@@ -179,7 +208,7 @@ def _draw_return_map(axes: Axes, recurrence: Floats) -> None:
 
 
 def _too_few(axes: Axes, recurrence: Floats, needed: int) -> bool:
-    """Say so where there are too few events."""
+    """Return True, and say so in the panel, if there are fewer recurrence times than needed."""
     if len(recurrence) >= needed:
         return False
     axes.set_axis_off()
@@ -192,7 +221,7 @@ def _wide(values: Floats) -> bool:
 
 
 def _power(length: float) -> float:
-    """Size (m) of the unit in which a length is readable."""
+    """Return the size (m) of the unit in which a length is readable: m, mm, µm or nm."""
     return next((size for size in (1.0, 1e-3, 1e-6) if length > 0.5 * size), 1e-9)
 
 

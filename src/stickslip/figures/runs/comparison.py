@@ -1,4 +1,4 @@
-"""Figures 5 to 7: runs side by side, slip, slip rate and traction against time."""
+"""Figures 5 to 7 of the paper: runs side by side, with slip, slip rate and traction against time."""
 
 from __future__ import annotations
 
@@ -19,12 +19,17 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 DASHED: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
+"""Look of the load's line."""
 COLOURS = (BLUE, VERMILLION)
 ROWS: tuple[Name, ...] = ("slip", "slip_rate", "traction", "load")
+"""Curves of each run, in SI; the panel of traction shows the load too."""
 
 
 def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: Mapping[str, str] | None = None) -> xr.Dataset:
-    """The runs from t = 0 to their `ends`, under their names; each has its own times, with both limits at every shock."""
+    """Return the curves of each run from t = 0 to its entry in `ends` (s), in SI, with the run's name as prefix of the variables.
+
+    Each run has its own times, with both limits at every shock. `titles` names the columns.
+    """
     contents: dict[str, xr.Variable] = {}
     for name, solution in solutions.items():
         unit = solution.problem.load_unit
@@ -49,7 +54,7 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """A column for each system; friction solid, the load behind it dashed."""
+    """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
     figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), sharex="col")
     for column, (name, title) in enumerate(zip(names, titles, strict=True)):
@@ -74,7 +79,7 @@ def _draw_column(column: NDArray[Any], dataset: xr.Dataset, name: str, colour: s
 
 
 def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str) -> None:
-    """Friction and load; as changes from the initial load where they hardly change."""
+    """Draw friction and load, as changes from the initial load if they hardly change."""
     time, friction, load = (dataset[f"{name}_{row}"] for row in ("time", "traction", "load"))
     text, symbol = friction.attrs["long_name"], friction.attrs["symbol"]
     if nearly_flat(friction.values, load.values):

@@ -1,4 +1,4 @@
-"""Where the energy of a run is, stacked against time: what is in the body, and what has become of the rest since the start."""
+"""Figure of the energy of a run, stacked against time: energy stored in the body, and energy lost from it since the start."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 TIMES = 800
+"""Number of evenly spaced times; breakpoints of the run are added, up to as many."""
 
 PARTS = {
     "elastic": ("elastic, above its least here", BLUE),
@@ -26,15 +27,31 @@ PARTS = {
     "damped": ("damped", PURPLE),
     "heat": ("friction heat", VERMILLION),
 }
-"""What is stacked, from below: text and colour."""
+"""The parts that are stacked, from below: name of the variable, text and colour."""
 
 
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Parts of the energy from `start` to `end` (s), by default as `figures.runs.slab_panels.seen`; J/m^2, block: J.
+    """Return the parts of the energy against time, and their total.
 
-    Heat, radiated and damped count from the start; elastic energy is shown above its least, kinetic as it is. `total` is what was
-    there at the start and the work of the driver since, what is radiated included: for an exact run the sum of the parts.
-    Raises InputError for times outside the run, and where the waves inside the slab are not known (a leap over creep).
+    Parameters
+    ----------
+    readings : Readings
+        A run, or a window on one.
+    start, end : float, optional
+        The interval (s); by default the one that `figures.runs.slab_panels.seen` chooses.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `PARTS` and `total`, all in J/m^2 for a slab and in J for a block, along `time` (s). Heat, radiated and
+        damped energy count from `start`; elastic energy is the excess over its minimum in the interval; kinetic energy is
+        absolute. `total` is the elastic and kinetic energy at `start` plus the work of the driver since then, radiated energy
+        included: for an exact run it is the sum of the parts.
+
+    Raises
+    ------
+    InputError
+        For times outside the run, and if the waves inside the slab are not known (a leap over creep).
     """
     readings, start, end = seen(readings, start, end)
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
@@ -55,13 +72,13 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
 
 @styled
 def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
-    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
     return draw(data(readings, start, end), pyplot.figure())
 
 
 @styled
 def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
-    """The parts one above the other, those that are nothing left out; the total dashed."""
+    """Draw the parts stacked, without those that are zero throughout, and the total as a dashed line."""
     figure = sheet(figure, (6.4, 3.8))
     axes: Any = figure.subplots()
     unit, size = readable(float(dataset.total.max()), dataset.total.attrs["units"])
@@ -77,6 +94,7 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     )
     axes.set(xlabel=f"{dataset.attrs['clock']} ({clock})", ylabel=f"energy ({unit})", xlim=(time[0], time[-1]), ylim=(0.0, None))
     handles, names = axes.get_legend_handles_labels()
-    figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)  # as they lie above each other
+    # Reversed, the legend has the order of the stack.
+    figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)
     letter(axes, dataset.attrs["title"])
     return figure

@@ -1,4 +1,4 @@
-"""A pull rate or far stress that varies, as the driver has it: a panel below the curves of a run."""
+"""Panel below the curves of a run that shows the pull rate or far stress of the driver, if it varies."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from stickslip.problem.problem import MAY_VARY, Problem
 from stickslip.solution.evaluation import Readings
 
 PERIODS = 60.0
-"""More periods of a tone than this are drawn as a band as wide as it swings."""
+"""A tone with more periods than this is drawn as a band of its amplitude: single periods could not be seen."""
 POINTS = 32
-"""Points in a period."""
+"""Points in a period of a tone, enough for a smooth line."""
 
 
 def varying(problem: Problem) -> str:
-    """What varies, as a field of the problem; empty where nothing does."""
+    """Return the name of the problem's field that varies in time, or an empty string if none does."""
     return next((name for name in MAY_VARY if isinstance(getattr(problem, name), LoadingHistory)), "")
 
 
 def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size: float) -> None:
-    """What varies from `start` to `end` (s since the readings' epoch), against times in units of `size` (s)."""
+    """Draw the varying field from `start` to `end` (s since the epoch of the readings), against time in units of `size` (s)."""
     name = varying(readings.problem)
     history: LoadingHistory = getattr(readings.problem, name)
     row, offset = readings.history.epoch
@@ -48,7 +48,10 @@ def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size
 
 
 def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The straight parts between two times (s) with both limits at jumps, and so many points that a tone can be drawn on them."""
+    """Return times (s since t = 0) and values of the straight segments between two times, with both limits at jumps.
+
+    The points are dense enough to add a tone that makes the given number of `turns` between the two times.
+    """
     segments = history.segments
     edges = [start, *(one.start for one in segments[1:] if start < one.start < end), end]
     first = sum(one.start <= start for one in segments[1:])

@@ -1,4 +1,4 @@
-"""The default plot of a run: slip, slip rate, traction and load, one above the other, and a loading that varies below."""
+"""The default plot of a run: panels with slip, slip rate, traction and load, and the loading below if it varies."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, 
 from stickslip.solution.evaluation import Curve, Readings
 
 MANY = 60
-"""Shocks beyond this number are drawn by the curves alone: marks would hide them."""
+"""If there are more shocks than this, they are not marked: the marks would hide the curves."""
 
 
 @styled
 def plot_run(solution: Readings, start: float | None = None, end: float | None = None, *, title: str = "") -> Figure:
-    """Draw a run or a window on it, from `start` to `end` (s), in a new pyplot figure: a notebook or `pyplot.show()` shows it.
+    """Draw a run, or a window on it, from `start` to `end` (s) in a new pyplot figure.
 
-    Shocks (jumps of the slip rate) are dotted lines; time is in years where seconds would be unreadable.
+    A notebook or `pyplot.show()` displays it. Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs
+    to years, suits the interval. If the friction law never sticks, the slip rate has a logarithmic axis.
     """
     start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
     unit, size = time_unit(end - start)
@@ -53,21 +54,21 @@ def plot_run(solution: Readings, start: float | None = None, end: float | None =
 
 
 def _sheet(solution: Readings) -> Any:
-    """Panels of a new figure, one more and lower where the loading varies."""
+    """Return the panels of a new figure: three, and a fourth of less height if the loading varies."""
     heights = [3, 3, 3, 2] if solution.problem.varies else [1, 1, 1]
     figure = pyplot.figure(figsize=(6.4, 6.8 if solution.problem.varies else 5.6), layout="constrained")
     return figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
 
 
 def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.float64], size: float) -> None:
-    """The slip rate on a logarithmic axis: a contact that never sticks creeps and rushes."""
+    """Draw the magnitude of the slip rate on a logarithmic axis: a contact that never sticks slips at widely different rates."""
     panel.clear()
     speed = np.abs(rate)
     panel.semilogy(time / size, np.where(speed > 0.0, speed, np.nan), color=GREEN)
 
 
 def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size: float) -> None:
-    """Traction and load; as changes from the initial load where they hardly change."""
+    """Draw traction and load, as changes from the problem's initial load if they hardly change."""
     units = solution.problem.load_unit
     (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
     unit, scale = readable(float(np.abs(load).max()), units)

@@ -1,6 +1,6 @@
-"""What figures of the slab's inside share: the time that they show, and how places, times and stresses are drawn.
+"""Shared by the figures of the inside of the slab: choice of the interval, datasets of the field, and scales of the axes.
 
-The slab stands as in the paper: the contact below, the driver above.
+The slab is drawn as in the paper: the contact below, the driver above.
 """
 
 from __future__ import annotations
@@ -27,15 +27,17 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 LONG = 50
-"""A run over more round trips than this is shown around a slip event."""
+"""Of a run over more round trips than this, only the time around one slip event is shown: waves could not be seen otherwise."""
 ROUNDING = 64.0
-"""Of a difference of displacements, in units of their last place."""
+"""Bound on the rounding error of a difference of two displacements, in units in their last place."""
 
 
 def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
-    """What is drawn, from when to when (s): what is asked for; else all, or of a long run the last of its largest events.
+    """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
 
-    Long counts round trips of a slab, periods of a block. Raises InputError where nothing lies between them.
+    The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a
+    slab; periods of a block) the last event whose slip is at least 99 % of the largest, in local time. Raises InputError if the
+    interval is empty.
     """
     round_trip = readings.history.row_time
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
@@ -51,14 +53,14 @@ def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Re
 
 
 def run_of(readings: Readings) -> Solution:
-    """The run itself."""
+    """Return the run itself, also if a window on it is given."""
     run = readings.solution if isinstance(readings, Window) else readings
     assert isinstance(run, Solution)
     return run
 
 
 def about(readings: Readings) -> dict[str, Any]:
-    """Attributes: a title, what times count from, and the slab's thickness (m)."""
+    """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
     problem = readings.problem
     clock = "time since the event began" if "event_slip" in readings.curves else "time $t$"
     title = f"Elastic slab, {type(problem.friction).kind} friction"
@@ -66,12 +68,15 @@ def about(readings: Readings) -> dict[str, Any]:
 
 
 def places(readings: Readings, count: int) -> Floats:
-    """Evenly from the contact to the driver, m."""
+    """Return `count` evenly spaced distances from the contact (m), up to the driver."""
     return np.linspace(0.0, slab_of(readings).thickness, count)
 
 
 def snapshots(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
-    """Displacement since the start of the run or of the window's event, velocity and stress over time and x, in SI."""
+    """Return displacement, velocity and stress over time (s) and x (m), in SI.
+
+    The displacement counts from the start of the run, or of the window's event.
+    """
     found, start = readings.field(x, time[:, None]), readings.field(x, 0.0)
     since = "the event began" if "event_slip" in readings.curves else "$t=0$"
     dims = ("time", "x")
@@ -83,13 +88,15 @@ def snapshots(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Varia
 
 
 def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
-    """Velocity and stress in the cells between times and places, in SI: exact means over the time and over the width of a cell.
+    """Return velocity and stress in the cells between the given times (s) and distances (m), in SI.
 
-    They come from differences of the displacement, so that no pulse is lost between two times.
+    Velocity is the exact mean over the cell's time at its middle in x, stress the exact mean over its width at its middle in time.
+    Both come from differences of the displacement, so that no pulse is lost between two times.
     """
     when, where = 0.5 * (time[1:] + time[:-1]), 0.5 * (x[1:] + x[:-1])
     body, middle = slab_of(readings), readings.field(where, when[:, None])
-    sheared = readings.problem.strength / body.stiffness  # displacements are differences from that
+    # Displacements are computed as differences from the slab sheared under its strength, and inherit the rounding of that shear.
+    sheared = readings.problem.strength / body.stiffness
     velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
     strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.shear_modulus, sheared)
     dims = ("time", "x")
@@ -100,19 +107,19 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
 
 
 def _slope(displacement: Floats, step: Floats, axis: int, middle: Floats, size: float) -> Floats:
-    """Mean slopes between values; where rounding could explain how they differ from the one in the middle, that one."""
+    """Return mean slopes along an axis, replaced by the slope in the `middle` wherever rounding could explain their difference."""
     mean = np.diff(displacement, axis=axis) / step
     rounding = ROUNDING * np.spacing(max(float(np.abs(displacement).max()), size)) / step
     return np.where(np.abs(mean - middle) <= rounding, middle, mean)
 
 
 def axes_variables(time: Floats, x: Floats) -> dict[str, xr.Variable]:
-    """Times and places."""
+    """Return the coordinates `time` (s) and `x` (m) of a dataset."""
     return {"time": quantity("time", time, "time", "t", "s"), "x": quantity("x", x, "distance from the contact", "x", "m")}
 
 
 def contact_variables(readings: Readings, start: float, end: float, names: Sequence[Curve]) -> dict[str, xr.Variable]:
-    """Curves of the contact against `contact_time`, with both limits at every shock, in SI."""
+    """Return the named curves of the contact against `contact_time` (s), in SI, with both limits at every shock."""
     about: dict[str, tuple[str, str, str]] = {
         "slip": ("slip", "u", "m"),
         "event_slip": ("slip in the event", "u", "m"),
@@ -128,7 +135,7 @@ def contact_variables(readings: Readings, start: float, end: float, names: Seque
 
 
 def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
-    """A figure of this size (inches) to draw on: the one that is given, or a new one that pyplot does not know."""
+    """Return a figure of this size (inches) to draw on: the given one, or a new one that pyplot does not know."""
     figure = Figure() if figure is None else figure
     figure.set_size_inches(*size)
     figure.set_layout_engine("constrained")
@@ -136,12 +143,15 @@ def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
 
 
 def narrow(text: str) -> str:
-    """A label in two lines."""
+    """Return a label in two lines, with the unit in the second, for narrow panels."""
     return text if "\n" in text else text.replace(" (", "\n(")
 
 
 class Scales:
-    """Units in which a dataset's times, places and stresses are drawn; stresses that hardly change as changes from the first."""
+    """The units in which times, distances and stresses of a dataset are drawn.
+
+    Stresses that hardly change are drawn as changes from the first one.
+    """
 
     def __init__(self, dataset: xr.Dataset) -> None:
         time, stress = dataset.time.values, dataset.stress.values
@@ -152,16 +162,16 @@ class Scales:
         self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
 
     def name_stress(self, name: str) -> str:
-        """Label of a stress."""
+        """Return the axis label of a stress."""
         what = "change of\n" if self.offset else ""
         return f"{what}{name} ({self.stress_unit})"
 
     def stresses(self, values: Any) -> Floats:
-        """Stresses as they are drawn."""
+        """Return stresses (Pa) in the unit, and from the origin, in which they are drawn."""
         return np.asarray((np.asarray(values, float) - self.offset) / self.stress)
 
     def set_places(self, axes: Axes, dataset: xr.Dataset, *, named: bool = True) -> None:
-        """The axis across the slab: contact below, driver above."""
+        """Set limits, and a label if `named`, of the axis across the slab: the contact below, the driver above."""
         axes.set_ylim(0.0, dataset.attrs["thickness"] / self.place)
         if named:
             axes.set_ylabel(f"distance from\nthe contact $x$ ({self.place_unit})")

@@ -1,4 +1,4 @@
-"""Displacement, velocity and stress across the slab at some moments."""
+"""Figure of displacement, velocity and stress across the slab at given times."""
 
 from __future__ import annotations
 
@@ -19,17 +19,20 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 COUNT, PLACES = 6, 1500
+"""Default number of times, and number of points across the slab, enough for fronts to look sharp."""
 
 
 def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
-    """The field at times (s; default: six over the first round trip of what `figures.runs.slab_panels.seen` shows); SI.
+    """Return the field at the given times (s), in SI.
 
-    Raises InputError for a block, and for times outside the run.
+    The default is six times over the first round trip of the interval that `figures.runs.slab_panels.seen` chooses, or from the
+    start of the event if it chooses a window. Raises InputError for a block, and for times outside the run.
     """
     if times is None:
         readings, start, end = seen(readings, None, None)
         start = max(start, 0.0) if "event_slip" in readings.curves else start
-        shares = (np.arange(COUNT) + 0.35) / COUNT  # fronts on their way back are not where others were on their way out
+        # 0.35, and not 0.5: fronts on their way back would else lie where others were on their way out.
+        shares = (np.arange(COUNT) + 0.35) / COUNT
         times = start + shares * min(slab_of(readings).two_way_time, end - start)
     moments = np.atleast_1d(np.asarray(times, float))
     return xr.Dataset(snapshots(readings, moments, places(readings, PLACES)), attrs=about(readings))
@@ -37,13 +40,13 @@ def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
 
 @styled
 def plot(readings: Readings, times: ArrayLike | None = None) -> Figure:
-    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
     return draw(data(readings, times), pyplot.figure())
 
 
 @styled
 def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
-    """Three panels, contact below; a line a moment, later ones darker."""
+    """Draw three panels with the contact below and a line for each time, later ones darker."""
     scales = Scales(dataset)
     figure = sheet(figure, (7.6, 3.8))
     axes: Any = figure.subplots(1, 3, sharey=True)

@@ -1,4 +1,4 @@
-"""Velocity and stress in the slab over time, with the characteristics of what happens at the contact, which is drawn below."""
+"""Figure of velocity and stress in the slab over time, with characteristics of events at the contact, and the contact below."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 TIMES, PLACES = 900, 300
+"""Numbers of cells of the images, in time and across the slab."""
 FAINT = 0.1
-"""A characteristic ends when the driver has let out all but this share of the wave."""
+"""A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
 
 
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Field and contact from `start` to `end` (s), by default as `figures.runs.slab_panels.seen`; characteristics as lines in time
-    and x; SI.
+    """Return field, contact and characteristics from `start` to `end` (s), in SI.
 
-    Raises InputError for a block, and for times outside the run.
+    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Each characteristic is a line of corners in time
+    and x, padded with NaN. Raises InputError for a block, and for times outside the run.
     """
     readings, start, end = seen(readings, start, end)
     body = slab_of(readings)
@@ -44,9 +45,10 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
 
 
 def _origins(readings: Readings, start: float, end: float) -> Floats:
-    """Times (s) at which shocks, starts and ends of slip leave the contact, from a round trip before; those of echoes left before.
+    """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
 
-    None if they are too many to be told apart.
+    One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
+    characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
     """
     history, round_trip = readings.history, slab_of(readings).two_way_time
     events = run_of(readings).events
@@ -63,7 +65,10 @@ def _origins(readings: Readings, start: float, end: float) -> Floats:
 
 
 def _bounces(time: float, end: float, round_trip: float, reflection: float) -> Floats:
-    """Times at which a wave that leaves the contact then is at the driver, at the contact, and so on; until the end, or faint."""
+    """Return the times (s) at which a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
+
+    The last is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
+    """
     count = 1 + int(np.ceil(2.0 * (end - time) / round_trip))
     share = abs(reflection)
     if share < 1.0:
@@ -74,13 +79,13 @@ def _bounces(time: float, end: float, round_trip: float, reflection: float) -> F
 
 @styled
 def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
-    """Draw that in a new pyplot figure: a notebook or `pyplot.show()` shows it."""
+    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
     return draw(data(readings, start, end), pyplot.figure())
 
 
 @styled
 def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
-    """Velocity and stress as images, contact below; below them slip rate and traction of the contact."""
+    """Draw velocity and stress as images with the contact at the bottom, and below them slip rate and traction of the contact."""
     scales = Scales(dataset)
     figure = sheet(figure, (7.2, 7.4))
     axes: Any = figure.subplots(4, 1, sharex=True, height_ratios=(2.2, 2.2, 1.0, 1.0))
@@ -108,7 +113,7 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
 
 
 def _edges(dataset: xr.Dataset, scales: Scales) -> tuple[float, float, float, float]:
-    """First and last time, contact and driver, as drawn."""
+    """Return the edges of the images, in the units drawn: first and last time, contact and driver."""
     time = dataset.time.values
     half = 0.5 * (time[1] - time[0])
     return (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, dataset.attrs["thickness"] / scales.place
@@ -116,9 +121,10 @@ def _edges(dataset: xr.Dataset, scales: Scales) -> tuple[float, float, float, fl
 
 def _draw_fronts(panel: Axes, dataset: xr.Dataset, scales: Scales) -> None:
     places = dataset.front_x.values / scales.place
+    # White dashes on a dark line can be seen on light and on dark parts of the image.
     for times in dataset.front_time.values:
         panel.plot(times / scales.time, places, color=INK, linewidth=0.6)
-        panel.plot(times / scales.time, places, color="white", linewidth=0.6, linestyle=(0, (4, 4)))  # seen on dark and on light
+        panel.plot(times / scales.time, places, color="white", linewidth=0.6, linestyle=(0, (4, 4)))
 
 
 def _draw_contact(panels: Any, dataset: xr.Dataset, scales: Scales) -> None:

@@ -1,1 +1,1 @@
-"""Figures of studies."""
+"""Figures of studies: several runs side by side, analogies, ensembles and regularisations."""

@@ -1,4 +1,4 @@
-"""Where a block stands for a slab: slab over block for slip, peak rate and duration of the first event, and where all agree."""
+"""Figure of the first slip event of a slab and its equivalent block: ratios of slip, peak rate, duration, and where they agree."""
 
 from __future__ import annotations
 
@@ -17,17 +17,22 @@ from stickslip.problem.parameters import parameter
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
 LARGEST = 10.0
-"""Ratio at which the colours end, both ways."""
+"""The scale of colours ends at this ratio and at its inverse."""
 TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
+"""Ratios that are marked on the scale of colours."""
 NUMBERS: dict[str, tuple[Any, str]] = {
     "weakening_slip": ("-", r"$-S\,\partial\mu/\partial u = G/h$"),
     "weakening_rate": ("--", r"$-S\,\partial\mu/\partial v = Z$ (critical)"),
 }
-"""Column, line style and legend of the two numbers; a line is drawn where they are 1."""
+"""Line style and legend of the two weakening numbers, by column of the study; a line is drawn where a number is 1."""
 
 
 def data(found: Analogy) -> xr.Dataset:
-    """The three ratios, pulses of both, the two numbers of weakening and `stands`, over the axes with their units (SI)."""
+    """Return the results of a study over its two axes, shape (y, x), in SI.
+
+    They are the three ratios slab / block, the numbers of pulses of slab and block, the two weakening numbers, and `stands` (1 if
+    block and slab agree within the study's tolerance and have as many pulses).
+    """
     coordinates = {}
     for name, axis in (("x", found.x), ("y", found.y)):
         one = parameter(found.problem, axis.parameter)
@@ -47,7 +52,7 @@ def data(found: Analogy) -> xr.Dataset:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Three maps of ratios in one scale of colours, and the points at which the block stands for the slab."""
+    """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
     figure, axes = panels(2, 2, (7.6, 6.4), sharex=True, sharey=True)
     drawn = None
     for k, (panel, one) in enumerate(zip(axes.flat, QUANTITIES, strict=False)):
@@ -87,7 +92,7 @@ def _draw_ratio(axes: Axes, dataset: xr.Dataset, one: str) -> Any:
 
 
 def _draw_stands(axes: Axes, dataset: xr.Dataset) -> None:
-    """Points at which all answers agree; numbers where the bodies differ in pulses: slab's, block's."""
+    """Draw the points at which all answers agree; those with different numbers of pulses are labelled "slab:block"."""
     axes.set_facecolor(PALE)
     known = np.isfinite(sum(dataset[f"{one}_ratio"].values for one in QUANTITIES))
     stands = np.ma.masked_where(~known, dataset["stands"].values)
@@ -102,7 +107,7 @@ def _draw_stands(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _draw_numbers(axes: Axes, dataset: xr.Dataset) -> None:
-    """Where each of the two numbers of weakening is 1."""
+    """Draw the lines on which each of the two weakening numbers is 1."""
     for column, (style, _) in NUMBERS.items():
         values = dataset[column].values
         if np.nanmin(values) < 1.0 < np.nanmax(values):

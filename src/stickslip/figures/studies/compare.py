@@ -1,4 +1,4 @@
-"""Runs side by side in one column of panels: slip, slip rate and traction against time, one line a run."""
+"""Figure of several runs in one column of panels: slip, slip rate and traction against time, one line for each run."""
 
 from __future__ import annotations
 
@@ -36,19 +36,23 @@ if TYPE_CHECKING:
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
+"""Line styles; the next one is taken when all colours are used up."""
 APART = 20.0
-"""Runs whose times differ by more than this factor are drawn over the share of their own time."""
+"""If the durations differ by more than this factor, each run is drawn against time divided by its own duration."""
 WIDE = 300.0
-"""Slips or slip rates that differ by more than this factor are drawn on a logarithmic axis."""
+"""If the largest slips or slip rates of the runs differ by more than this factor, the axis is logarithmic."""
 MARGIN = 1.25
-"""Time drawn, in times of the last event's end."""
+"""A run is drawn up to this multiple of the end of its last event, so that the rest after it is seen."""
 ROWS = ("slip", "slip_rate", "traction")
+"""Panels, from above."""
 
 
 def data(runs: Mapping[str, Solution], event: int | None = None) -> xr.Dataset:
-    """The runs from their start to shortly after their last slip event, or one event of each in local time.
+    """Return the runs from their start to shortly after their last slip event, or one event of each in local time, in SI.
 
-    Slips count from the start. Tractions of slabs beside those of blocks are given over the normal load.
+    `event` is a row number of `events`. Slip counts from the start of the run or of the event. If slabs (Pa) and blocks (N) are
+    drawn together, tractions are divided by the normal stress or force. If the durations differ by more than the factor `APART`,
+    times are divided by the duration drawn.
     """
     views: dict[str, Readings] = {name: run if event is None else run.window(event) for name, run in runs.items()}
     spans = {name: _span(run) if event is None else views[name].shown for name, run in runs.items()}
@@ -88,7 +92,10 @@ def _run(key: str, view: Readings, span: tuple[float, float], shares: bool, mixe
 
 
 def _span(run: Solution) -> tuple[float, float]:
-    """From the start to shortly after the last event that is over, or to the end of the run."""
+    """Return start and end (s) of what is drawn: up to shortly after the last event.
+
+    A run without events, or with one that is not over, is drawn up to its end.
+    """
     end = float(run.history.span[1])
     events = run.events
     if events.empty or events.end.isna().any():
@@ -103,7 +110,7 @@ def _span_text(start: float, end: float) -> str:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Three panels, one line a run; the legend says how long each is where that differs much."""
+    """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
     figure, grid = panels(len(ROWS), 1, (6.4, 6.4), sharex=True)
     names = [str(name) for name in np.atleast_1d(dataset.attrs["runs"])]
     for axes, row in zip(grid[:, 0], ROWS, strict=True):
@@ -125,9 +132,8 @@ def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, count: int) -> None:
     for k, values in enumerate(drawn):
         line = {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k // len(COLOURS) % len(DASHES)]}
         heights = values.values - values.values[0] if flat else shown(values)
-        axes.plot(
-            dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **line
-        )  # equal ones stay visible
+        # Later lines are thinner, so that runs with the same curve all stay visible.
+        axes.plot(dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **line)
     text, symbol = label(drawn[0]), drawn[0].attrs["symbol"]
     if row != "traction" and _far_apart([float(np.abs(values).max()) for values in drawn]):
         _make_logarithmic(axes)
@@ -144,7 +150,10 @@ def _far_apart(sizes: list[float]) -> bool:
 
 
 def _make_logarithmic(axes: Axes) -> None:
-    """Magnitudes on a logarithmic axis over the decades of the runs' largest values; rest is not drawn."""
+    """Replace the lines by magnitudes on a logarithmic axis.
+
+    It begins two decades below the smallest of the runs' largest values; zeros (rest) are not drawn.
+    """
     tops = []
     for line in axes.get_lines():
         values: NDArray[Any] = np.abs(np.asarray(line.get_ydata(), float))

@@ -1,4 +1,4 @@
-"""An ensemble: the events of every member, how the disturbance grows, and how slips are distributed."""
+"""Figure of an ensemble: the events of every member, the growth of the disturbance, and the distribution of slips."""
 
 from __future__ import annotations
 
@@ -20,11 +20,18 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 WIDE, CLOSE = 100.0, 3.0
-"""Slips, and spreads, that span more than these factors are drawn on a logarithmic axis."""
+"""Slips that span more than `WIDE`, and spreads of starts that span more than `CLOSE`, are drawn on a logarithmic axis.
+
+So are numbers of events above `WIDE`.
+"""
 
 
 def data(study: Ensemble) -> xr.Dataset:
-    """Events of every run (member 0: undisturbed), growth of the disturbance, what members share, and statistics; SI."""
+    """Return the results of a study in SI.
+
+    They are the events of every run (member 0 is the undisturbed one), the growth of the disturbance, the events that members share
+    with the undisturbed run, and the statistics.
+    """
     load = study.problem.load_unit
     contents = _events(study) | _growth(study) | _shared(study) | _statistics(study)
     contents["push"] = quantity("member", study.pushes, "added to the initial load", "", load)
@@ -83,7 +90,7 @@ def _statistics(study: Ensemble) -> dict[str, xr.Variable]:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Time lines of the members above the growth of the disturbance; distribution of slips above the spread of starts."""
+    """Draw the members' time lines and below them the growth of the disturbance; beside them slips, and the spread of starts."""
     figure = Figure(figsize=(7.6, 5.4), layout="constrained")
     axes: Any = figure.subplot_mosaic("AAC;BBD")
     unit, size = time_unit(float(dataset.attrs["until"]))
@@ -133,7 +140,7 @@ def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
 
 
 def _draw_horizons(axes: Axes, dataset: xr.Dataset, size: float) -> None:
-    """Grey from the first event that not all share; a broken line where that is predicted."""
+    """Shade the time from the first event that not all members share; mark its predicted time by a dashed line."""
     until, horizon, predicted = (float(dataset.attrs[name]) for name in ("until", "horizon", "predicted_horizon"))
     if horizon < until:
         axes.axvspan(horizon / size, 1.02 * until / size, color=GREY, alpha=0.15, linewidth=0.0, zorder=0)
@@ -142,7 +149,7 @@ def _draw_horizons(axes: Axes, dataset: xr.Dataset, size: float) -> None:
 
 
 def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
-    """How many events slip at least so much, run by run."""
+    """Draw, for each run, the number of events whose slip is at least x, against x."""
     slip, member = dataset["slip"].values, dataset["of_member"].values
     letter(axes, "C  slips")
     if not slip.size:
@@ -162,7 +169,7 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
-    """How far the starts of each event are apart, as long as a member has it."""
+    """Draw the root mean square differences (s) between the starts of each event, blue while all members have it."""
     spread = dataset["shared_start_spread"].values
     number, there = np.arange(1, len(spread) + 1), spread > 0.0
     letter(axes, "D  spread of starts")

@@ -1,4 +1,4 @@
-"""A study of regularisations: errors against size, and the runs approaching a jump of the rule's exact answer."""
+"""Figure of a study of regularisations: errors against size, and runs that approach a jump of the rule's exact answer."""
 
 from __future__ import annotations
 
@@ -32,18 +32,25 @@ if TYPE_CHECKING:
     from stickslip.studies.regularise import Regularisation
 
 RULE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
+"""Colours of the rules whose errors are drawn."""
 SHADES = ("#C6DBEF", "#85BCDC", "#3F8FC5", "#0B559F")
-"""Runs from large to small sizes."""
+"""Colours of the runs, darkest for the smallest size; no more runs than colours are drawn."""
 CASE = "contact"
+"""Prefix of the variables that `resistance.data` adds for the set K."""
 MEAN = r"\langle|\Delta u|\rangle"
+"""Symbol of the mean slip difference."""
 POINTS = 1200
+"""Number of times at which each curve is evaluated."""
 BEFORE, AFTER = 0.8, 1.6
-"""What is shown around a jump, in delays of the largest size drawn."""
+"""Time shown before and after a jump, as multiples of the largest delay of the runs drawn."""
 
 
 def data(study: Regularisation) -> xr.Dataset:
-    """Errors for each group of rules, and a few runs with the exact answer: around the jump that they do latest, or from start to
-    end where they tend to no rule."""
+    """Return the errors (m) for each group of rules against size (s), and a few runs together with the exact answer, in SI.
+
+    The runs are given around the jump at which they are latest. If they tend to no rule, or no jump is made by two of them, the
+    largest sizes are given from start to end.
+    """
     contents: dict[str, xr.Variable] = {
         "size": quantity("size", study.sizes, "size", "L", "s"),
         "error": quantity(("rules", "size"), [study.errors(group[0]) for group in study.groups], "mean slip difference", MEAN, "m"),
@@ -67,7 +74,10 @@ def data(study: Regularisation) -> xr.Dataset:
 
 
 def _jump(study: Regularisation) -> int | None:
-    """The jump that the runs do latest, as far as at least two of them do it."""
+    """Return the index of the jump with the largest delay, taken at the smallest size that makes it.
+
+    Jumps that fewer than two runs make are left out; None if there are no others.
+    """
     late = np.abs(study.delays)
     done = np.isfinite(late).sum(axis=0) >= 2
     if not done.any():
@@ -106,7 +116,10 @@ def _curves(name: str, run: Solution, window: tuple[float, float], at: float) ->
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Errors on the left, the runs on the right: around a jump in time and over the set K, or slip and slip rate all the way."""
+    """Draw the errors on the left and the runs on the right.
+
+    Around a jump, those on the right show slip rate against time and the path over the set K; else slip and slip rate throughout.
+    """
     figure = Figure(figsize=(7.6, 4.6), layout="constrained")
     axes: Any = figure.subplot_mosaic([["errors", "upper"], ["errors", "lower"]], width_ratios=(1.2, 1))
     _draw_errors(axes["errors"], dataset)
@@ -140,7 +153,7 @@ def _draw_errors(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def _draw_slope(axes: Axes, size: NDArray[np.float64], error: NDArray[np.float64], order: float) -> None:
-    """A triangle below the smallest sizes whose slope is the fitted order."""
+    """Draw a triangle below the errors of the smallest sizes whose slope is the fitted order."""
     right, left = size[-3], size[-1]
     low = 0.45 * error[-1]
     high = low * (right / left) ** order
@@ -150,7 +163,7 @@ def _draw_slope(axes: Axes, size: NDArray[np.float64], error: NDArray[np.float64
 
 
 def _runs(dataset: xr.Dataset) -> list[tuple[str, str, float, str]]:
-    """Name, colour, line width and legend of each curve, the exact answer last and on top."""
+    """Return name, colour, line width and legend of each curve; the exact answer comes last and is drawn on top."""
     drawn = [int(i) for i in np.atleast_1d(dataset.attrs["drawn"])]
     sizes = dataset["size"].values
     runs = [(f"run{i}", SHADES[k - len(drawn)], 1.5, f"{sizes[i]:.2g} s") for k, i in enumerate(drawn)]

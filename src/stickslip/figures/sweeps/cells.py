@@ -1,4 +1,4 @@
-"""A refined map: its cells, each with the answer around it, and where the answer changes."""
+"""Figure of a refined map: its cells, each coloured by the answer around it, and the cells in which the answer changes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ from stickslip.sweeps.results.refinement_spec import Recipe, RefinedMap, cells_o
 
 
 def draw_cells(dataset: xr.Dataset) -> Figure:
-    """Cells over two varied keys, cuts at some coarse values of a third; members for any other keys, or another quantity."""
+    """Draw the cells over two varied keys, or cuts through them at some coarse values of a third.
+
+    For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
+    """
     recipe, title = Recipe.read(dataset), str(dataset.attrs.get("title", ""))
     names = list(recipe.columns)
     if dataset.attrs["quantity"] != recipe.quantity or len(names) not in (2, 3):
@@ -42,7 +45,7 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
 
 
 def _draw(axes: Axes, quantity: Shown, colours: Colours, cells: RefinedMap, places: dict[str, Scaled]) -> None:
-    """Rectangles; those in which the answer changes last, with a line around them, so that the smallest are seen."""
+    """Draw cells as rectangles; those in which the answer changes come last and have a line, so that the smallest can be seen."""
     prepare(axes, quantity)
     if not quantity.has(2):
         axes.set_facecolor(PALE)

@@ -1,4 +1,4 @@
-"""How the numbers of a map become colours: a key of few values, or a scale; and what is drawn where there is no number."""
+"""Colours of the numbers of a map: a key of few values or a continuous scale, and marks for members without a number."""
 
 from __future__ import annotations
 
@@ -22,15 +22,16 @@ from stickslip.figures.sweeps.varied import Shown
 Floats = NDArray[np.float64]
 
 FEW = 10
-"""At most so many whole numbers have a colour each in a key; more have a scale."""
+"""Up to this number of different whole numbers, each has its own colour in a key; more are drawn with a scale."""
 TWO = ("#D6E6F4", ORANGE)
-"""No and yes, or the only two numbers there are."""
+"""Colours of no and yes, or of the numbers of a quantity that takes only two."""
 FAILED, HATCH = "#EDEDED", "////"
+"""Background of a map, and its hatch, where members failed."""
 
 
 @dataclass(frozen=True)
 class Colours:
-    """A colour for every number; `key` holds the numbers that have an entry in a key, none where there is a scale."""
+    """The colours of numbers; `key` holds the numbers with an entry in the key and their texts, none if there is a scale."""
 
     cmap: Any
     norm: Any
@@ -38,16 +39,16 @@ class Colours:
 
     @property
     def options(self) -> dict[str, Any]:
-        """What pcolormesh and scatter need."""
+        """Return the colour arguments of `pcolormesh` and `scatter`."""
         return {"cmap": self.cmap, "norm": self.norm}
 
     def of(self, value: float) -> Any:
-        """The colour of a number."""
+        """Return the colour of a number."""
         return self.cmap(self.norm(value))
 
 
 def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
-    """Colours for the numbers of a quantity, or for those of them that are drawn: the same in all panels."""
+    """Return colours, the same in all panels, for the numbers of a quantity, or for the numbers `drawn` if they are given."""
     known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
     if quantity.is_flag:
         return _key(np.array([0.0, 1.0]), ("no", "yes"))
@@ -69,14 +70,14 @@ def _key(different: Floats, texts: Sequence[str]) -> Colours:
 
 
 def prepare(axes: Axes, quantity: Shown) -> None:
-    """A background that says failed where nothing is drawn over it."""
+    """Give the axes a hatched background if members failed: it shows wherever nothing is drawn over it."""
     axes.set_facecolor(FAILED if quantity.has(2) else "white")
     if quantity.has(2):
         axes.patch.set(hatch=HATCH, edgecolor=GREY, linewidth=0.0)
 
 
 def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist) -> None:
-    """The key or the scale, under the name of the quantity, and what areas without a number mean."""
+    """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists."""
     marks: list[Artist] = [Patch(facecolor=colours.of(value), label=text) for value, text in colours.key]
     marks += [Patch(facecolor=PALE, label="no such number")] if quantity.has(1) else []
     marks += [Patch(facecolor="white", edgecolor=GREY, linewidth=0.5, label="not run")] if quantity.has(3) else []
@@ -93,5 +94,5 @@ def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: 
 
 
 def failed_area(quantity: Shown) -> list[Artist]:
-    """The entry of a key for the background of `prepare`."""
+    """Return the key's entry for the background that `prepare` sets, or nothing if no member failed."""
     return [Patch(facecolor=FAILED, edgecolor=GREY, hatch=HATCH, linewidth=0.0, label="failed")] if quantity.has(2) else []

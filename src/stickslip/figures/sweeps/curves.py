@@ -1,4 +1,4 @@
-"""Curves of a sweep: a quantity over one varied key, or a family of them."""
+"""Figure of a sweep as curves: a quantity over one varied key, and a curve for each value of a second."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ Floats = NDArray[np.float64]
 
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
 MOST_CURVES = len(_COLOURS)
-"""An axis of at most so many values gives the curves of a family; one of more makes a map."""
+"""A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""
 SEPARATE = 40
-"""At most so many members of a curve are marked each."""
+"""Members of a curve are marked by dots up to this number; more would run together."""
 
 
 def draw_curves(dataset: xr.Dataset) -> Figure:
-    """The quantity over the longer axis, one curve for each value of the other."""
+    """Draw the quantity over the longer axis, with a curve for each value of the other, if there is one."""
     quantity = shown(dataset)
     along = str(quantity.values.dims[int(np.argmax(quantity.values.shape))])
     others = [str(name) for name in quantity.values.dims if name != along]
@@ -52,7 +52,7 @@ def draw_curves(dataset: xr.Dataset) -> Figure:
 
 
 def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
-    """Crosses at the foot of the panel."""
+    """Draw crosses at the bottom of the panel at the values whose members failed."""
     if places.size:
         text = "" if "failed" in axes.get_legend_handles_labels()[1] else "failed"
         at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
@@ -60,7 +60,7 @@ def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
 
 
 def show_ordinate(axes: Axes, quantity: Shown) -> None:
-    """Label and scale of the quantity's axis."""
+    """Set label, scale and ticks of the axis of the quantity."""
     if not quantity.known.size:
         axes.set_yticks([])
     elif quantity.is_flag:

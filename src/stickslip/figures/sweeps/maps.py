@@ -1,4 +1,4 @@
-"""Maps of a sweep: a quantity over two varied keys, side by side for some values of a third."""
+"""Figure of a sweep as maps: a quantity over two varied keys, side by side for some values of a third."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from stickslip.figures.sweeps.colours import Colours, colours_of, explain, faile
 from stickslip.figures.sweeps.varied import Shown, scaled, shown, value_text
 
 PANELS = 9
-"""At most so many maps side by side."""
+"""Largest number of maps side by side; more would be too small to read."""
 
 
 def draw_maps(dataset: xr.Dataset) -> Figure:
-    """The first key across, the second up; of three, the one with the fewest values goes from map to map."""
+    """Draw the first key along x and the second along y; of three keys, the one with the fewest values gives the separate maps."""
     quantity = shown(dataset)
     colours, title = colours_of(quantity), str(dataset.attrs.get("title", ""))
     lengths = {str(name): length for name, length in quantity.values.sizes.items()}
@@ -44,7 +44,10 @@ def draw_maps(dataset: xr.Dataset) -> Figure:
 
 
 def side_by_side(third: xr.DataArray, draw_one: Callable[[Axes, int], None]) -> tuple[Figure, NDArray[Any]]:
-    """A panel for each value of a key, or for some of them, evenly chosen; `draw_one` is told which."""
+    """Return a figure with a panel for each value of a key, or for `PANELS` of them evenly chosen, and its axes.
+
+    `draw_one` draws a panel; it receives its axes and the index of the value.
+    """
     chosen = np.unique(np.linspace(0, third.size - 1, min(third.size, PANELS)).round().astype(int))
     columns = min(len(chosen), 3)
     rows = -(-len(chosen) // columns)
@@ -63,7 +66,7 @@ def side_by_side(third: xr.DataArray, draw_one: Callable[[Axes, int], None]) -> 
 
 
 def draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours) -> None:
-    """One map."""
+    """Draw one map, with members that have no such number in pale grey and those not run in white."""
     names = [str(name) for name in quantity.values.dims]
     x, y = (scaled(dataset[name]) for name in names)
     columns, rows = np.argsort(x.values), np.argsort(y.values)

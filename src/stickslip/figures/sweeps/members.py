@@ -1,4 +1,4 @@
-"""Members of a sweep that are no grid: points, or the cells of a refined map."""
+"""Figure of a sweep whose members are not a grid: samples, lists, or the members of a refined map, as points."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, Recipe
 
 SIZE = 12.0
-"""Area of a point (square points)."""
+"""Area of a point (in square points, as `scatter` takes it)."""
 
 
 def draw_members(dataset: xr.Dataset) -> Figure:
-    """Coloured points over two varied keys; for any other number of them the quantity over each key, whatever the others are."""
+    """Draw coloured points over two varied keys; for any other number of keys, draw the quantity against each key in turn."""
     quantity, places = shown(dataset), list(axes_of(dataset).values())
     if len(places) == 2:
         colours = colours_of(quantity)
@@ -45,12 +45,13 @@ def draw_members(dataset: xr.Dataset) -> Figure:
 
 
 def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
-    """The keys that members differ in."""
+    """Return the varied keys, scaled for drawing; of a refined map, an axis is logarithmic if the search was."""
     names = [str(name) for name in json.loads(dataset.attrs["design"])["keys"]]
     found = {name: scaled(dataset[name]) for name in names}
     if ATTRIBUTE not in dataset.attrs:
         return found
-    logarithmic = dict(zip(names, Recipe.read(dataset).logarithmic, strict=True))  # members crowd where the answer changes
+    # The values themselves do not tell: members crowd where the answer changes.
+    logarithmic = dict(zip(names, Recipe.read(dataset).logarithmic, strict=True))
     return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 

@@ -1,6 +1,6 @@
-"""A sweep: one of its quantities over what was varied - curves, a map, small multiples of it, or the members as points.
+"""Figure of a sweep: one quantity over the varied keys, as curves, a map, several maps, or points.
 
-A grid's dataset has one dimension for each varied key; samples, lists and refined maps have the dimension `member`.
+The dataset of a grid has one dimension for each varied key; those of samples, lists and refined maps have the dimension `member`.
 """
 
 from __future__ import annotations
@@ -24,11 +24,29 @@ from stickslip.sweeps.results.refinement_spec import ATTRIBUTE
 
 
 def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None) -> Figure:
-    """Draw a quantity of a sweep (default: its first) over what was varied, and save it if a file is named.
+    """Draw a quantity of a sweep over the varied keys, and save the figure if a file is named.
 
-    One varied key gives a curve, two a map (or a family of curves where one has few values), three maps side by side; members
-    that are no grid are points or, of a refined map, its cells. Raises InputError for a quantity that is none, and for a grid of
-    more than three keys: select some values of the others first.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `sweep` or `refine`.
+    quantity : str, optional
+        Name of the quantity; by default the first one of the sweep.
+    path : str or Path, optional
+        File to be written, either whole or not at all.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure. One varied key gives a curve; two give a map, or a family of curves if one of them has at most four values;
+        three give maps side by side. Members that are not a grid are drawn as points; a refined map whose members have all been run
+        is drawn as cells, if the quantity is the refined one and two or three keys are varied.
+
+    Raises
+    ------
+    InputError
+        If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
+        the other keys first.
     """
     figure = draw(data(dataset, quantity))
     if path is not None:
@@ -37,7 +55,11 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
 
 
 def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
-    """What is drawn: the quantity, `state` (0: a number, 1: the run has no such number, 2: failed, 3: not run), what was varied."""
+    """Return the dataset that is drawn: the quantity (NaN without a number), its `state` and the varied keys.
+
+    The state of a member is 0 if it has a number, 1 if its run has no such number, 2 if it failed, 3 if it was not run. Keys with a
+    single value are dropped as dimensions. Raises InputError as `plot_sweep` does.
+    """
     names = [str(name) for name in dataset.data_vars if _can_be_drawn(dataset, str(name))]
     name = quantity or next(iter(names), "")
     if name not in names:
@@ -63,7 +85,7 @@ def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """The figure that fits the members."""
+    """Draw the kind of figure that suits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
         whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()

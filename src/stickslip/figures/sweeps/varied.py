@@ -1,4 +1,4 @@
-"""The axes of a sweep's figure: what was varied, in a unit that can be read, logarithmic where it was spread so."""
+"""Axes of the figure of a sweep: varied keys in readable units, on a logarithmic axis if their values are spread that way."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ from stickslip.figures.style import length_unit, readable, time_unit
 Floats = NDArray[np.float64]
 
 SPREAD = 3.0
-"""Values that do not span this factor are drawn on a linear axis however they are spread."""
+"""Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""
 LONG = 60
-"""Letters in a line of a key's title."""
+"""Number of characters in a line of the title of a key or a scale."""
 NARROW = 500.0
-"""Logarithmic axes that span less than this factor have numbers at 1, 2, 5, 10, ..."""
+"""Logarithmic axes that span less than this factor have ticks at 1, 2, 5, 10, ...: powers of ten alone would be too few."""
 WIDE = 100.0
-"""Positive numbers of a quantity that span more than this factor are drawn on a logarithmic axis."""
+"""Positive numbers of a quantity that span more than this factor are drawn on a logarithmic axis or scale of colours."""
 _TEXTS = {"m s-1": "m/s", "J m-2": "J/m²"}
+"""Units as readers expect to see them."""
 
 
 @dataclass(frozen=True)
 class Scaled:
-    """Numbers as they are drawn, in a unit of so many SI units (`size`); words stand at 0, 1, 2, ..."""
+    """Numbers as they are drawn, in a unit of `size` SI units; words are placed at 0, 1, 2, ..."""
 
     values: Floats
     label: str
@@ -38,7 +39,7 @@ class Scaled:
 
     @property
     def edges(self) -> Floats:
-        """Where areas around ascending values meet: half way, on a logarithmic axis in the logarithm."""
+        """Return the edges of areas around ascending values: halfway between them, on a logarithmic axis in the logarithm."""
         place = np.log(self.values) if self.log else self.values
         if len(place) == 1:
             return np.asarray(self.values[0] + np.array([-0.5, 0.5]))
@@ -47,7 +48,7 @@ class Scaled:
         return np.asarray(np.exp(edges) if self.log else edges)
 
     def show(self, axes: Axes, which: str) -> None:
-        """Label, scale and ticks of the axis "x" or "y"."""
+        """Set label, scale and ticks of the axis named "x" or "y"."""
         axis = getattr(axes, f"{which}axis")
         axis.set_label_text(self.label)
         if self.log:
@@ -61,7 +62,7 @@ class Scaled:
 
 
 def scaled(variable: xr.DataArray, name: str = "") -> Scaled:
-    """A varied key, or a quantity under another name, in a readable unit; spread by its values."""
+    """Return a varied key in a readable unit, under `name` if it is given; its values decide whether the axis is logarithmic."""
     name = name or str(variable.name)
     if not np.issubdtype(variable.dtype, np.number):
         words, places = np.unique(variable.values.astype(str), return_inverse=True)
@@ -73,7 +74,7 @@ def scaled(variable: xr.DataArray, name: str = "") -> Scaled:
 
 
 def unit_of(units: str, largest: float) -> tuple[str, float]:
-    """A unit in which a quantity of that size can be read, and how many SI units it holds."""
+    """Return a unit in which a quantity whose largest value (in SI) is given can be read, and its size in SI units."""
     if units in ("m", "s") and largest > 0.0:
         return length_unit(largest) if units == "m" else time_unit(largest)
     if units in ("Pa", "N"):
@@ -82,7 +83,7 @@ def unit_of(units: str, largest: float) -> tuple[str, float]:
 
 
 def is_logarithmic(values: Floats) -> bool:
-    """Whether positive values are spread more evenly in their logarithm than in themselves."""
+    """Return True if values are positive and their median lies nearer to the middle in the logarithm than on a linear scale."""
     known = values[np.isfinite(values)]
     if known.size < 3 or known.min() <= 0.0 or known.max() < SPREAD * known.min():
         return False
@@ -92,7 +93,7 @@ def is_logarithmic(values: Floats) -> bool:
 
 
 def value_text(variable: xr.DataArray) -> str:
-    """One value of a varied key, with its unit, as it is said in a key or a title: thickness 12.5 km."""
+    """Return one value of a varied key with its name and unit, for a legend or a title, as in "thickness 12.5 km"."""
     name = str(variable.name).rpartition(".")[2].replace("_", " ")
     if not np.issubdtype(variable.dtype, np.number):
         return f"{name} {variable.item()}"
@@ -102,7 +103,7 @@ def value_text(variable: xr.DataArray) -> str:
 
 @dataclass(frozen=True)
 class Shown:
-    """A quantity as it is drawn: its numbers (NaN where there is none), what it is, and what kind of numbers it has."""
+    """A quantity as it is drawn: its numbers (NaN if there is none), the state of each member, and a title with the unit."""
 
     values: xr.DataArray
     state: xr.DataArray
@@ -111,27 +112,27 @@ class Shown:
 
     @property
     def known(self) -> Floats:
-        """Its numbers."""
+        """Return the finite numbers, in one dimension."""
         return np.asarray(self.values.values[np.isfinite(self.values.values)], float)
 
     @property
     def is_whole(self) -> bool:
-        """Whether it counts something."""
+        """Return True if all numbers are whole, as counts are."""
         return bool((self.known == np.rint(self.known)).all())
 
     @property
     def is_wide(self) -> bool:
-        """Whether it is to be seen on a logarithmic scale."""
+        """Return True if the numbers are to be drawn on a logarithmic scale."""
         known = self.known
         return known.size > 0 and known.min() > 0.0 and known.max() > WIDE * known.min()
 
     def has(self, state: int) -> bool:
-        """Whether some member is in this state."""
+        """Return True if some member is in this state."""
         return bool((self.state == state).any())
 
 
 def shown(dataset: xr.Dataset) -> Shown:
-    """The quantity of a figure's dataset, in a readable unit."""
+    """Return the quantity of a figure's dataset in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
     known = np.abs(values.values[np.isfinite(values.values)])
     unit, size = unit_of(values.attrs.get("units", "1"), float(known.max(initial=0.0)))

@@ -1,4 +1,4 @@
-"""Every claim of the paper and the function that measures it."""
+"""The claims of the paper, by number, and the functions that measure them."""
 
 from __future__ import annotations
 
@@ -30,5 +30,6 @@ CLAIMS: dict[int, Callable[[Runs], Verdict]] = {
     19: rate_law.like_coulomb,
     20: rate_law.load_before_the_echo,
 }
+"""The function that measures each claim, by the number of the claim."""
 
 __all__ = ["CLAIMS", "STATEMENTS", "Measured", "Outcome", "Runs", "Verdict"]

@@ -1,4 +1,4 @@
-"""Claims on the block's mass and on its rest: 14 and 15."""
+"""Claims 14 and 15, on the mass of the block and on its rest after an event."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
 LONG = YEAR
-"""What counts as a long rest, in s: a year, against events of seconds."""
+"""A rest of at least this time (s) counts as long: one year, against events of seconds."""
 MASS_FACTORS = (1.0, 1e-2, 1e-4, 1e-6)
+"""Factors by which the mass of the block is multiplied."""
 CONTACT_MASSES = (1e6, 1e5, 1e4)
-"""Masses on the slab's contact, kg/m^2: for comparison, the slab itself has rho h = 2.8e7."""
+"""Masses on the slab's contact, in kg/m^2; the slab itself has rho h = 2.8e7."""
 
 
 def concentrated_mass(runs: Runs) -> Verdict:
-    """Claim 14: take the mass from the block and its rise becomes a jump; put mass on the slab's contact and its jumps vanish."""
+    """Measure claim 14: without mass the block's rise becomes a jump, and with mass on the slab's contact its jumps vanish."""
     jump = runs.case("fig6-slab").shocks.rate_after.iloc[0]
     light = {factor: _lightened(factor) for factor in MASS_FACTORS}
     block = {factor: runs(case, duration) for factor, (case, duration) in light.items()}
@@ -52,7 +53,10 @@ def concentrated_mass(runs: Runs) -> Verdict:
 
 
 def _lightened(factor: float) -> tuple[Problem, float]:
-    """The block of Fig. 6 with less mass and the slab's radiation as damping; and a duration that ends shortly after its peak."""
+    """Return the block of Fig. 6 with its mass times `factor` and the slab's radiation as damping, and a duration (s).
+
+    The duration is 120 times that in which a small slip rate grows by a factor e without the spring; it ends after the peak.
+    """
     case, slab = problem("fig6-block-reconstructed"), problem("fig6-slab").body
     body, law = case.body, case.friction
     assert isinstance(body, SpringBlock)
@@ -75,14 +79,17 @@ def _peak(solution: Solution) -> float:
 
 
 def rise_time(solution: Solution) -> float:
-    """Time (s) from 10 to 90 % of the peak of the first event, on its way up."""
+    """Return the time (s) that the slip rate of the first event takes to rise from 10 to 90 % of its peak."""
     event = solution.events.iloc[0]
     low, high = (_reaches(solution, share * event.peak_rate, event.start, event.peak_time) for share in (0.1, 0.9))
     return high - low
 
 
 def _reaches(solution: Solution, rate: float, start: float, end: float) -> float:
-    """The first time (s) in (start, end) at which the slip rate reaches `rate`, by sections of 256."""
+    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s).
+
+    The interval is divided into 256 parts again and again, and the first part in which the rate is reached is kept.
+    """
     for _ in range(12):
         time = np.linspace(start, end, 257)
         first = int(np.argmax(solution.slip_rate(time) >= rate))
@@ -93,7 +100,7 @@ def _reaches(solution: Solution, rate: float, start: float, end: float) -> float
 
 
 def block_stays_put(runs: Runs) -> Verdict:
-    """Claim 15: run the block on to its second event; beside it, what the spring needs to regain the strength."""
+    """Measure claim 15: the rest of the block before its second event, and the time in which the spring regains the strength."""
     readings = {
         "slip law, as printed": "fig5-block-printed",
         "rate law, as printed": "fig6-block-printed",
@@ -119,8 +126,11 @@ def block_stays_put(runs: Runs) -> Verdict:
 
 
 def rest_after_event(runs: Runs, name: str) -> tuple[float, float, float]:
-    """Rest (s) between the first two times that the block slips at all, the reloading time (s) from the end of the first, and
-    how long (s) the first lasted."""
+    """Return three times (s) of a case: the rest, the reloading time, and the duration of the first slip.
+
+    The rest lies between the first two intervals in which the block slips at all; the reloading time counts from the end of the
+    first.
+    """
     first = runs.case(name)
     slip = first.catalogue(0.0).iloc[0]
     expected = reloading_time(first, slip.end)
@@ -129,7 +139,10 @@ def rest_after_event(runs: Runs, name: str) -> tuple[float, float, float]:
 
 
 def reloading_time(solution: Solution, at: float) -> float:
-    """Time (s) in which the driver raises the spring's force from its value at a time of rest to the static strength."""
+    """Return the time (s) that the driver needs to raise the spring's force from its value at `at` (s) to the static strength.
+
+    The block must rest at that time.
+    """
     case = solution.problem
     assert isinstance(case.body, SpringBlock)
     strength = case.normal * float(case.friction.static_coefficient(float(solution.slip(at))))

@@ -1,4 +1,4 @@
-"""Claims on the rate law: 5, 6, 13, 18 and 19; and on the load before the first echo, 20."""
+"""Claims 5, 6, 13, 18 and 19, on the rate law, and claim 20, on the load before the first echo."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
 SCAN = (1.0001, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0)
-"""Multiples of the critical alpha at which claim 13 is measured, besides alpha_c + 1e-6 s/m."""
+"""Multiples of the critical alpha at which claim 13 is measured, in addition to alpha_c + 1e-6 s/m."""
 SECOND_EVENT_BY = 93_890.0
-"""Time (s) by which the slab just above the critical alpha slips again; soon after come events in every round trip."""
+"""Time (s) by which the slab just above the critical alpha slips again; soon after, it has events in every round trip."""
 LIKE_COULOMB = 0.9
-"""Share of Coulomb's slip rate from which we say "behaves as with Coulomb's law"."""
+"""Share of the slip rate under Coulomb's law from which on the slab counts as behaving as with that law."""
 
 
 def block_is_continuous(runs: Runs) -> Verdict:
-    """Claim 5: the block's shocks, and the largest step of its slip rate between neighbouring instants."""
+    """Measure claim 5: the number of the block's shocks, and the largest change of its slip rate within 1 µs."""
     solutions = {"as printed": runs.case("fig6-block-printed"), "K = G × 10³ m": runs.case("fig6-block-reconstructed")}
     holds = {r: len(s.shocks) == 0 for r, s in solutions.items()}
     why = (
@@ -53,7 +53,7 @@ def _largest_step(solution: Solution, step: float) -> float:
 
 
 def slab_jumps(runs: Runs) -> Verdict:
-    """Claim 6: the shocks of the alpha = 1 slab."""
+    """Measure claim 6: the shocks of the slab with alpha = 1 s/m."""
     solution = runs.case("fig6-slab")
     shocks = solution.shocks
     why = (
@@ -70,7 +70,7 @@ def slab_jumps(runs: Runs) -> Verdict:
 
 
 def irregular_regime(runs: Runs) -> Verdict:
-    """Claim 13: the share of all change of slip rate that happens in shocks, scanned over alpha; the block beside it."""
+    """Measure claim 13: the share of all change of slip rate that happens in shocks, over alpha, and the shocks of the block."""
     slab, block = problem("fig6-slab"), problem("fig6-block-reconstructed")
     critical = _critical(slab)
     alphas = [critical + 1e-6, *(factor * critical for factor in SCAN)]
@@ -95,7 +95,7 @@ def irregular_regime(runs: Runs) -> Verdict:
 
 
 def shock_share(solution: Solution) -> float:
-    """Change of slip rate in shocks over all its change (total variation)."""
+    """Return the change of slip rate in shocks, divided by all its change (total variation)."""
     jumps = (solution.shocks.rate_after - solution.shocks.rate_before).abs().sum()
     _, rate = solution.curve("slip_rate")
     before = solution.slip_rate(0.0, side="left")
@@ -119,7 +119,7 @@ def _round_trip(case: Problem) -> float:
 
 
 def just_above_critical(runs: Runs) -> Verdict:
-    """Claim 18: shocks of the run at alpha_c + 1e-6, and when slip comes back."""
+    """Measure claim 18: the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
     case = problem("fig7-slab-critical")
     back = _round_trip(case)
     event = runs(case, 2.0 * back)
@@ -143,7 +143,7 @@ def just_above_critical(runs: Runs) -> Verdict:
 
 
 def like_coulomb(runs: Runs) -> Verdict:
-    """Claim 19: slip rate over that of Coulomb's law, at several alpha."""
+    """Measure claim 19: the slip rate divided by that under Coulomb's law, at several alpha."""
     slab = problem("fig6-slab")
     critical, back = _critical(slab), _round_trip(slab)
     law = slab.friction
@@ -168,7 +168,7 @@ def like_coulomb(runs: Runs) -> Verdict:
 
 
 def load_before_the_echo(runs: Runs) -> Verdict:
-    """Claim 20: the engine's load against the paper's formula, up to h/c, up to 2h/c, and at 2h/c."""
+    """Measure claim 20: the computed load against the paper's formula, up to h/c, from there to 2h/c, and at 2h/c."""
     worst: dict[str, float] = {"to h/c": 0.0, "from h/c to 2h/c": 0.0}
     beyond = []
     for name in ("fig5-slab-reconstructed", "fig6-slab", "fig7-slab-critical"):
@@ -193,5 +193,5 @@ def load_before_the_echo(runs: Runs) -> Verdict:
 
 
 def _formula(case: Problem, body: ElasticSlab, time: np.ndarray) -> np.ndarray:
-    """G (V t + D0 - u0) / h."""
+    """Return the paper's formula for the load (Pa) at times (s): G (V t + D0 - u0) / h."""
     return case.load + body.stiffness * case.first_pull_rate * time

@@ -1,4 +1,4 @@
-"""Claims on uniqueness and on selection rules: 7, 8, 9, 11, 12 and 17."""
+"""Claims 7, 8, 9, 11, 12 and 17, on uniqueness and on selection rules."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.solution.solution import Solution
 
 SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from a physical regularisation are not in this report."
+"""Limits of claims 11 and 12, added to their explanations."""
 
 
 def critical_value(_: Runs) -> Verdict:
-    """Claim 7: the critical alpha of the contact analysis against the formula, and the regime on both sides."""
+    """Measure claim 7: the critical alpha of the contact analysis against the formula, and the regime on both sides of it."""
     slab = problem("fig6-slab")
     law, body = slab.friction, slab.body
     assert isinstance(law, HyperbolicRate)
@@ -45,7 +46,7 @@ def critical_value(_: Runs) -> Verdict:
 
 
 def three_solutions(_: Runs) -> Verdict:
-    """Claim 8: count the admissible slip rates on a grid of loads that contains both folds."""
+    """Measure claim 8: the number of admissible slip rates on a grid of loads that contains both folds."""
     contact = uniqueness(problem("fig6-slab"))
     lower, upper = fold_loads(contact)
     loads = {
@@ -71,13 +72,13 @@ def three_solutions(_: Runs) -> Verdict:
 
 
 def fold_loads(contact: Uniqueness) -> tuple[float, float]:
-    """Loads (Pa) of the lower fold and of the end of stick."""
+    """Return the loads (Pa) of the lower fold and of the end of stick, which is the upper fold."""
     assert contact.resistance is not None
     return min(fold.load for fold in contact.folds), contact.resistance.strength
 
 
 def one_solution(_: Runs) -> Verdict:
-    """Claim 9: a grid of loads under a regular rate law and under the slip law."""
+    """Measure claim 9: the number of solutions on a grid of loads, under a regular rate law and under the slip law."""
     slab, slip = problem("fig6-slab"), problem("fig5-slab-printed")
     law = slab.friction
     assert isinstance(law, HyperbolicRate)
@@ -98,7 +99,7 @@ def one_solution(_: Runs) -> Verdict:
 
 
 def shocks_for_every_rule(runs: Runs) -> Verdict:
-    """Claim 11: shocks of the alpha = 1 slab through its second event, under every rule."""
+    """Measure claim 11: the shocks of the slab with alpha = 1 s/m through its second event, under every rule."""
     tables = {rule: runs.case(f"second-event-{rule}").shocks for rule in SELECTION_RULES}
     numbers = []
     for rule, shocks in tables.items():
@@ -112,7 +113,7 @@ def shocks_for_every_rule(runs: Runs) -> Verdict:
 
 
 def not_an_energy_criterion(runs: Runs) -> Verdict:
-    """Claim 12: when the second event comes, and at which load, under each rule."""
+    """Measure claim 12: the time of the second event, and the load at which stick ends, under each rule."""
     waits, levels, firsts = {}, {}, {}
     for rule in SELECTION_RULES:
         solution = runs.case(f"second-event-{rule}")
@@ -135,24 +136,27 @@ def not_an_energy_criterion(runs: Runs) -> Verdict:
 
 
 def waiting_time(solution: Solution) -> float:
-    """Time (s) from the end of the first event to the start of the second."""
+    """Return the time (s) from the end of the first event to the start of the second."""
     events = solution.events
     return float(events.start.iloc[1] - events.end.iloc[0])
 
 
 def stick_ends(case: Problem) -> float:
-    """Load (Pa) at which the rule leaves stick as the load slowly rises."""
+    """Return the load (Pa) at which the rule leaves stick as the load slowly rises."""
     return next(jump.load for jump in uniqueness(case).jumps if jump.direction == "up" and jump.rate_before == 0.0)
 
 
 def rate_at_load(solution: Solution, load: float, start: float, end: float) -> float:
-    """Slip rate (m/s) where the load of a run (Pa) passes a value between two times (s) at which it is on either side of it."""
+    """Return the slip rate (m/s) when the load of a run passes `load` (Pa).
+
+    At the times `start` and `end` (s) the load must lie on different sides of that value.
+    """
     passing = sign_change(lambda t: float(solution.load(start + t * (end - start))) - load, 0.0, 1.0)
     return float(solution.slip_rate(start + passing * (end - start)))
 
 
 def hysteresis(runs: Runs) -> Verdict:
-    """Claim 17: one run whose load rises and falls: where it jumps, and its slip rate at one load on both ways."""
+    """Measure claim 17: the jumps of a run whose load rises and falls, and its slip rates at the same load on both ways."""
     solution = runs.case("fig4-loop")
     time, load = solution.curve("load")
     _, rate = solution.curve("slip_rate")

@@ -1,4 +1,4 @@
-"""Claims on the slip law: 1 to 4, 10 and 16."""
+"""Claims 1 to 4, 10 and 16, on the slip law."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
 MUCH = 0.25
-"""Share of the initial load that counts as "much of its stress"."""
+"""A release of more than this share of the initial load counts as "much of its stress"."""
 SEVERAL = 2
+"""This many pulses or more count as "several"."""
 
 
 def block_slips_once(runs: Runs) -> Verdict:
-    """Claim 1: count the events, compare the spring's force before and after, see that it rests at the end."""
+    """Measure claim 1: the number of events, the share of the load that is released, and whether the block rests at the end."""
     names = {
         "as printed": "fig5-block-printed",
         "K = G × 10³ m": "fig5-block-reconstructed-k",
@@ -59,14 +60,14 @@ def _rests_at_end(solution: Solution) -> bool:
 
 
 def _steepest(case: Problem) -> float:
-    """Largest fall of the friction force per metre of slip: S a omega."""
+    """Return the steepest weakening with slip, S a omega (block: N/m; slab: Pa/m)."""
     law = case.friction
     assert isinstance(law, SinusoidalSlip)
     return case.normal * abs(law.amplitude) * law.wavenumber
 
 
 def slab_pulses(runs: Runs) -> Verdict:
-    """Claim 2: count the pulses of the first event."""
+    """Measure claim 2: the number of pulses in each reading."""
     printed, other = runs.case("fig5-slab-printed"), runs.case("fig5-slab-reconstructed")
     centimetre = runs.case("fig5-slab-u0-1e-2")
     pulses = {name: int(s.events.pulses.sum()) for name, s in (("printed", printed), ("other", other), ("cm", centimetre))}
@@ -88,7 +89,7 @@ def slab_pulses(runs: Runs) -> Verdict:
 
 
 def echo_arrests(runs: Runs) -> Verdict:
-    """Claim 3: the end of all slip against 2h/c, and rest after it."""
+    """Measure claim 3: the end of all slip compared with 2h/c, and the rest after it."""
     solutions = {"as printed": runs.case("fig5-slab-printed"), "ω = 50 /m": runs.case("fig5-slab-reconstructed")}
     ends = {r: float(s.catalogue(0.0).end.iloc[0]) for r, s in solutions.items()}
     body = solutions["as printed"].problem.body
@@ -120,7 +121,7 @@ def _rests_after(solution: Solution, end: float) -> bool:
 
 
 def what_sets_the_pulses(runs: Runs) -> Verdict:
-    """Claim 4: same thickness and wave speed, other excess or other law: count again."""
+    """Measure claim 4: the number of pulses at the same thickness and wave speed, for other initial loads and other wavenumbers."""
     start = problem("fig5-slab-reconstructed")
     body, law = start.body, start.friction
     assert isinstance(body, ElasticSlab)
@@ -145,7 +146,7 @@ def what_sets_the_pulses(runs: Runs) -> Verdict:
 
 
 def _with_wavenumber(start: Problem, wavenumber: float) -> Problem:
-    """The same slab, load and slip beyond the peak of friction, with another omega."""
+    """Return the problem with another omega, and the same initial load and slip beyond the first peak of friction."""
     law = start.friction
     assert isinstance(law, SinusoidalSlip)
     beyond = start.initial_slip - math.pi / (2.0 * law.wavenumber)
@@ -156,7 +157,10 @@ def _with_wavenumber(start: Problem, wavenumber: float) -> Problem:
 
 
 def pulse_period(case: Problem) -> float:
-    """Time (s) between pulses under the initial load, were it constant: 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2))."""
+    """Return the time (s) between pulses if the load beta kept its initial value.
+
+    It is 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2)).
+    """
     body, law = case.body, case.friction
     assert isinstance(body, ElasticSlab)
     assert isinstance(law, SinusoidalSlip)
@@ -165,7 +169,7 @@ def pulse_period(case: Problem) -> float:
 
 
 def well_posed(runs: Runs) -> Verdict:
-    """Claim 10: one slip rate for every load, and slip that changes in proportion to a small change of the start."""
+    """Measure claim 10: the change of slip at 2h/c per small change of the initial load, for two sizes of that change."""
     numbers, holds = [], {}
     for reading, name in (("as printed", "fig5-slab-printed"), ("ω = 50 /m", "fig5-slab-reconstructed")):
         case = problem(name)
@@ -184,7 +188,7 @@ def well_posed(runs: Runs) -> Verdict:
 
 
 def _response(runs: Runs, case: Problem, share: float) -> float:
-    """Change of slip just before 2h/c per change of the initial load, for a change of `share` of the excess."""
+    """Return the change of slip at 2h/c per change of the initial load (m/Pa); the load changes by `share` of its excess."""
     body = case.body
     assert isinstance(body, ElasticSlab)
     changed = replace(case, initial_excess=case.excess * (1.0 + share), initial_load=None)
@@ -194,7 +198,7 @@ def _response(runs: Runs, case: Problem, share: float) -> float:
 
 
 def close_to_instability(_: Runs) -> Verdict:
-    """Claim 16: how far the start is from the slip at which friction weakens as fast as the body unloads."""
+    """Measure claim 16: the distance from the initial slip to the slip at which friction weakens as fast as the slab unloads."""
     printed, other = problem("fig5-slab-printed"), problem("fig5-slab-reconstructed")
     missing, ratio = {}, {}
     for reading, case in (("as printed", printed), ("ω = 50 /m", other)):
@@ -219,7 +223,7 @@ def close_to_instability(_: Runs) -> Verdict:
 
 
 def unstable_from(case: Problem) -> float:
-    """The slip (m) behind the first peak of friction at which S |mu'| = G/h."""
+    """Return the slip (m) after the first peak of friction at which S |mu'| = G/h."""
     body, law = case.body, case.friction
     assert isinstance(body, ElasticSlab)
     assert isinstance(law, SinusoidalSlip)
@@ -227,7 +231,7 @@ def unstable_from(case: Problem) -> float:
 
 
 def _weakening(case: Problem) -> float:
-    """-S mu'(u0), Pa/m."""
+    """Return the weakening at the initial slip, -S mu'(u0), in Pa/m."""
     law = case.friction
     assert isinstance(law, SinusoidalSlip)
     return -case.normal * law.amplitude * law.wavenumber * math.cos(law.wavenumber * case.initial_slip)

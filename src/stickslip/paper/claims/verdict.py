@@ -1,4 +1,4 @@
-"""What a verdict is, and the claims in our words."""
+"""The parts of a verdict on a claim, and the claims of the paper in our words."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """How a claim fares."""
+    """The possible outcomes for a claim."""
 
     PRINTED = "holds as printed"
     READING = "holds in the reading named"
@@ -17,7 +17,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Measured:
-    """A number that was measured, not assumed."""
+    """A number that was measured, with its label and unit."""
 
     label: str
     value: float
@@ -26,7 +26,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome for one claim, the reading it holds in, the numbers, and why."""
+    """The outcome for one claim, with the reading in which it holds, the measured numbers and an explanation."""
 
     number: int
     claim: str
@@ -36,7 +36,7 @@ class Verdict:
     explanation: str
 
     def value(self, label: str) -> float:
-        """The measured number of that label."""
+        """Return the measured number with this label."""
         return next(m.value for m in self.measured if m.label == label)
 
 
@@ -62,17 +62,17 @@ STATEMENTS = {
     19: "For α > 3 αc the slab behaves as with Coulomb's law.",
     20: "The load is β(t) = G(Vt + D0 − u0)/h up to t = h/c.",
 }
-"""What the paper claims, in our words."""
+"""The claims of the paper in our words, by number."""
 
 
 def judge(printed: bool, reading: bool = False) -> Outcome:
-    """The outcome for a claim that holds under the printed constants, or only under another reading, or not at all."""
+    """Return the outcome for a claim, given whether it holds under the printed constants and under another reading."""
     if printed:
         return Outcome.PRINTED
     return Outcome.READING if reading else Outcome.NOT
 
 
 def verdict(number: int, outcome: Outcome, reading: str, explanation: str, *measured: tuple[str, float, str]) -> Verdict:
-    """A verdict on claim `number`."""
+    """Return a verdict on claim `number`; each measured number is given as label, value and unit."""
     numbers = tuple(Measured(label, float(value), unit) for label, value, unit in measured)
     return Verdict(number, STATEMENTS[number], outcome, reading, numbers, explanation)
