@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from distributed import Security
 
 NAME = "dask-internal"
-"""Host name in the certificate."""
+"""Host name in the certificate, the same as in the keys that dask makes."""
 LASTS = 365
 """Number of days for which a key is valid: longer than any sweep takes."""
 PATIENCE = 60.0
