@@ -1,4 +1,4 @@
-"""Batches: many members of one scenario in compiled code, in parallel threads, each folded into a few numbers."""
+"""Batches: many members of one scenario run in compiled code and parallel threads; each run is reduced to a few numbers."""
 
 from stickslip.batch.batch_support import QUANTITIES, why_not
 from stickslip.batch.run import Members, run_members

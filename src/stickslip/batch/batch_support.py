@@ -1,4 +1,4 @@
-"""What a batch can run, and what it leaves to one run after another."""
+"""The scenarios, parameters and quantities that a batch can handle. All others need one single run after another."""
 
 from __future__ import annotations
 
@@ -13,18 +13,33 @@ from stickslip.foundation.errors import nearest
 from stickslip.scenarios.scenario import Scenario
 
 QUANTITIES = COLUMNS
-"""Names of the numbers into which a batch folds a run."""
+"""Names of the quantities to which a batch can reduce a run."""
 
 
 def why_not(scenario: Scenario, keys: Sequence[str], quantities: Sequence[str]) -> str:
-    """Why a batch cannot run a scenario with these keys varied and these quantities kept, in one line; "" where it can."""
+    """Return in one line why a batch cannot run a scenario; "" if it can.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario to be run.
+    keys : sequence of str
+        Names of the parameters that vary, such as "friction.alpha".
+    quantities : sequence of str
+        Names of the quantities to be kept.
+
+    Returns
+    -------
+    str
+        The first reason found, or "".
+    """
     if UNCOMPILED:
         return "the engine runs uncompiled, and lanes are registers of a processor"
     return of_quantities(quantities) or of_scenario(scenario) or of_law(scenario, keys) or of_keys(scenario, keys)
 
 
 def of_quantities(quantities: Sequence[str]) -> str:
-    """A quantity that only a whole solution has."""
+    """Return the reason if a quantity is unknown to a batch, as those that need a whole solution are; otherwise ""."""
     unknown = next((name for name in quantities if name not in QUANTITIES), None)
     if unknown is None:
         return ""
@@ -32,7 +47,7 @@ def of_quantities(quantities: Sequence[str]) -> str:
 
 
 def of_scenario(scenario: Scenario) -> str:
-    """What drives a run from outside the engine."""
+    """Return the reason if the run has a limit of events, a varying load or leaps over creep from its start; otherwise ""."""
     if scenario.events is not None:
         return "[run] events: a batch runs for a time, not until so many events are over"
     if scenario.problem.varies:
@@ -43,7 +58,7 @@ def of_scenario(scenario: Scenario) -> str:
 
 
 def of_law(scenario: Scenario, keys: Sequence[str]) -> str:
-    """Laws whose setup is more than formulas of plain numbers."""
+    """Return the reason if the law, or its selection rule, cannot be set up by formulas of plain numbers; otherwise ""."""
     problem = scenario.problem
     law, name = problem.friction, type(problem.friction).__name__
     if not law.many:
@@ -61,7 +76,7 @@ def of_law(scenario: Scenario, keys: Sequence[str]) -> str:
 
 
 def of_keys(scenario: Scenario, keys: Sequence[str]) -> str:
-    """What may be varied."""
+    """Return the reason if one of the keys cannot be varied in a batch; otherwise ""."""
     for key in keys:
         if declared_at(scenario, key) is None:
             return f"{ascii(key)[:60]} is not a plain number of this scenario that a batch can vary"

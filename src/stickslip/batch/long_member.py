@@ -1,6 +1,6 @@
-"""A member whose history is too long to be kept, or that creeps for long: run by itself, as `simulate` would run it.
+"""Members of a batch whose history is too long to be kept, or that creep for long. They run by themselves, as in `simulate`.
 
-Its events are folded as they become known, and the rest is forgotten.
+Slip events are reduced to numbers as soon as they are complete, and history that is no longer needed is discarded.
 """
 
 from __future__ import annotations
@@ -25,33 +25,39 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LARGEST = 500_000
-"""Pieces of one event, with what stands in the body before it, beyond which a member ends: 250 MB."""
+"""Largest number of pieces of history: those of one event, and those whose waves are still in the body. A member that needs more
+fails, because they take 250 MB."""
 FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
+"""Columns of an event table that are kept of the first event, in the order of `reduction.FIRST_START` and its successors."""
 
 
 @dataclass
 class Fold:
-    """Numbers of events so far: those of `reduction.fold_events` and `fold_first`, row after row of a catalogue."""
+    """The reduction of slip events to numbers, event by event: those of `reduction.fold_events` and `reduction.fold_first`.
+
+    `out` holds one number for each of `reduction.COLUMNS`. `recurrences` counts the recurrence times so far, and `spread` is the
+    sum of their squared deviations from the mean (s^2).
+    """
 
     out: Floats
     recurrences: int = 0
     spread: float = 0.0
 
     def add(self, rows: pd.DataFrame) -> None:
-        """More events, in order of time."""
+        """Add events, in order of time."""
         out = self.out
         if len(rows) and out[of.EVENTS] == 0:
             out[of.FIRST_START : of.FIRST_STATIC_DROP + 1] = rows[list(FIRST)].iloc[0]
         out[of.EVENTS] += len(rows)
         out[of.PULSES] += rows.pulses.sum()
         for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
-            if not rate <= out[of.PEAK_RATE]:
+            if not rate <= out[of.PEAK_RATE]:  # also where no event has been counted yet, and the peak is NaN
                 out[of.PEAK_RATE], out[of.PEAK_TIME] = rate, when
         for since in rows.recurrence.dropna():
             self.recur(since)
 
     def recur(self, since: float) -> None:
-        """The next time between starts of events, s."""
+        """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
         mean = 0.0 if self.recurrences == 0 else self.out[of.RECURRENCE]
         self.recurrences += 1
         change = since - mean
@@ -64,20 +70,26 @@ class Fold:
 
 @dataclass
 class Folding:
-    """Looks after the run (`run_loop.Watch`)."""
+    """The watch (`run_loop.Watch`) of a run in bounded memory: it reduces events and discards history when this is full.
+
+    `stop` is the flag that ends the whole batch.
+    """
 
     stream: EventStream
     fold: Fold
     stop: Integers
     counted: int = field(default=0)
-    """Pieces whose shocks are counted."""
+    """Number of pieces whose shocks have been counted."""
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
-        """See `run_loop.Watch`."""
+        """End the run if the batch is to stop: see `run_loop.Watch`."""
         return INTERRUPTED if self.stop[0] != 0 else None
 
     def make_room(self, run: RunInProgress) -> bool:
-        """See `run_loop.Watch`: what is known is folded, what stands nowhere is forgotten."""
+        """Reduce the events that are complete, and discard pieces whose waves have left the body: see `run_loop.Watch`.
+
+        Returns False if the history cannot grow any more either.
+        """
         self.count_shocks(run.store, run.length)
         look = self.stream.look(run.store, run.length)
         self.fold.add(look.table())
@@ -89,13 +101,16 @@ class Folding:
         return run.length < len(run.store.whole) // 2 or run.grow(LARGEST)
 
     def count_shocks(self, store: Store, length: int) -> None:
-        """Those of the pieces that came since the last count."""
+        """Count the shocks of the pieces that were added since the last count."""
         self.fold.out[of.SHOCKS] += np.count_nonzero(store.cause[self.counted : length])
         self.counted = length
 
 
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
-    """Run a member in bounded memory and fill in its numbers, but for the contact equation's. Returns the code of its end."""
+    """Run a member in bounded memory and fill `out` with its numbers, except those of the contact equation.
+
+    `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
+    """
     problem = scenario.problem
     run = RunInProgress.begin(problem, scenario.rtol, scenario.creep_rtol, scenario.shortest_event)
     run.reserve(capacity)

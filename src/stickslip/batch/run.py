@@ -1,4 +1,4 @@
-"""Run the members of a batch: in chunks, in threads, each chunk set up and run by itself so that memory stays flat."""
+"""The execution of a batch: threads take chunks of members, and set up and run each chunk by itself, which bounds the memory."""
 
 from __future__ import annotations
 
@@ -24,33 +24,60 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED
 
 CHUNK = 8192
-"""Members that are set up together: enough for numpy, few enough for the cache."""
+"""Largest number of members that are set up together: enough to make numpy efficient, and few enough for the processor's cache."""
 SMALLEST_CHUNK = 1024
-"""Members for which the Python of a chunk is no matter."""
+"""Smallest number of members in a chunk: enough to make the time that a chunk spends in Python negligible."""
 NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
 NO_START = "the run ends where it starts"
 
 
 class Members(NamedTuple):
-    """What came of each member, in the order of the values given."""
+    """The results of the members of a batch, in the order of the values given.
+
+    Attributes
+    ----------
+    results : dict of str to array, shape (members,)
+        One number for each member, by the name of the quantity; NaN for a member whose parameters are invalid.
+    status : array of int, shape (members,)
+        What ended each run: codes of `stickslip.trajectory.status.STATUSES`.
+    reason : dict of int to str
+        Why the parameters of a member are invalid, in one line, by the index of the member.
+    """
 
     results: dict[str, Floats]
-    """By quantity: one number a member; NaN for a member that made no problem."""
     status: Integers
-    """What ended each run: codes of `stickslip.trajectory.status.STATUSES`."""
     reason: dict[int, str]
-    """Of members with bad parameters, by their place: why, in one line."""
 
 
 def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> Members:
-    """Run a scenario once for each of the numbers given, in compiled code, and fold each run into the quantities asked for.
+    """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
-    values: by key ("friction.alpha", "body.thickness", "loading.pull_rate", "initial.excess", "run.duration"): one-dimensional
-    arrays of one length, in SI, one number a member. quantities: of `QUANTITIES`. What comes out depends neither on the number of
-    threads nor on which members run together. A member whose numbers make no problem gets the status BAD_PARAMETERS and a reason;
-    it stops nobody else.
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario whose parameters vary.
+    values : mapping of str to array, shape (members,)
+        Values (SI) by key, such as "friction.alpha", "body.thickness", "loading.pull_rate", "initial.excess" or "run.duration".
+    quantities : sequence of str
+        Names from `stickslip.batch.QUANTITIES`.
+    threads : int
+        Number of threads.
 
-    Raises InputError where `why_not` says that the batch cannot run this, and for values that do not fit together.
+    Returns
+    -------
+    Members
+        Quantities and status of each member. A member whose parameters are invalid gets the status BAD_PARAMETERS and a reason;
+        it does not affect the others.
+
+    Raises
+    ------
+    InputError
+        If `why_not` gives a reason against running this scenario in a batch, or if the values are not one-dimensional arrays of
+        the same length.
+
+    Notes
+    -----
+    The results depend neither on the number of threads nor on which members run together.
     """
     arrays = checked(scenario, values, quantities)
     count = len(next(iter(arrays.values())))
@@ -62,7 +89,10 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
 
 
 def chunks(count: int, threads: int) -> Iterator[slice]:
-    """Members in chunks: large ones first, for there is some Python to each, then smaller ones: threads are to end together."""
+    """Yield the chunks of a batch as slices of its members.
+
+    Large chunks come first, because each costs some time in Python, and smaller ones later, so that all threads end together.
+    """
     start = 0
     while start < count:
         share = -(-(count - start) // (2 * threads)) if threads > 1 else count
@@ -72,7 +102,7 @@ def chunks(count: int, threads: int) -> Iterator[slice]:
 
 
 def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str]) -> dict[str, Floats]:
-    """The values as arrays. Raises InputError."""
+    """Return the values as arrays, after checking that the batch can run with them. Raises InputError."""
     reason = why_not(scenario, tuple(values), quantities)
     if reason:
         raise InputError(f"run_members: {reason}")
@@ -83,7 +113,7 @@ def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequen
 
 
 class _Batch:
-    """A batch at work: chunks yet to be done, and the numbers of those that are."""
+    """A batch in progress: a queue of chunks that are still to be done, and the results of those that are."""
 
     def __init__(self, scenario: Scenario, values: Values, quantities: Sequence[str], count: int) -> None:
         self.scenario, self.values, self.wants_events = scenario, values, not OF_EVENTS.isdisjoint(quantities)
@@ -96,7 +126,7 @@ class _Batch:
         self.alike: dict[int, Alike] = {}
 
     def run(self, threads: int) -> None:
-        """Do all chunks; an error, or Ctrl-C, ends every thread."""
+        """Run all chunks on the given number of threads. An error, or Ctrl-C, ends every thread."""
         if threads == 1:
             self.work()
             return
@@ -110,7 +140,7 @@ class _Batch:
                 raise
 
     def work(self) -> None:
-        """What one thread does."""
+        """Run chunks on one thread until the queue is empty or the batch is to stop."""
         work = new_workspace()
         while self.stop[0] == 0:
             try:
@@ -120,7 +150,7 @@ class _Batch:
             work = self.chunk(chunk, work)
 
     def chunk(self, chunk: slice, work: Workspace) -> Workspace:
-        """Run one chunk; gives the workspace back, which may have grown."""
+        """Run one chunk. Returns the workspace, which may have been replaced by a larger one."""
         values = {key: value[chunk] for key, value in self.values.items()}
         fine = are_fine(self.scenario, values)
         for n in np.flatnonzero(~fine).tolist():
@@ -133,7 +163,10 @@ class _Batch:
         return work
 
     def group(self, kind: int, places: Integers, values: Values, work: Workspace) -> Workspace:
-        """Run members that are alike but for their numbers; `places` says where they stand in the batch."""
+        """Run the members of one group, which differ in numbers only. `places` are their indices in the batch.
+
+        Returns the workspace, which may have been replaced by a larger one.
+        """
         if kind not in self.alike:
             self.alike[kind] = alike(self.scenario, values)
         setups = set_up(self.scenario, values, self.alike[kind])
@@ -161,11 +194,11 @@ class _Batch:
         return work
 
     def member(self, n: int) -> Scenario:
-        """One member by itself. Raises InputError where its numbers make no problem."""
+        """Return the scenario of one member. Raises InputError if its parameters are invalid."""
         return member(self.scenario, {key: float(value[n]) for key, value in self.values.items()})
 
     def refuse(self, n: int) -> None:
-        """Note why a member is no problem."""
+        """Record why the parameters of a member are invalid."""
         self.status[n] = BAD_PARAMETERS
         try:
             self.member(n)

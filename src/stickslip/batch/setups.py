@@ -1,4 +1,4 @@
-"""From the numbers of many members to what the engine works on: `engine_input.prepare`, with a row a member."""
+"""The input of the engine for many members at once: the counterpart of `engine_input.prepare` with one row for each member."""
 
 from __future__ import annotations
 
@@ -23,47 +23,51 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.tables import default_event_rate
 
 LOADING = Lock()
-"""Threads must not load a formula twice: the code of which the other has the address would go."""
+"""Lock around the compilation of formulas: if two threads loaded the same formula, machine code whose address the other thread
+holds would be freed."""
 FASTEST = 1e9
-"""Rates beyond so many times the contact's own scale do not matter: as `contact.equation`."""
+"""Slip rates beyond this multiple of the contact's own scale S (variation of mu)/Z do not matter, as in `contact.equation`."""
 
 
 class Setups(NamedTuple):
-    """Members that are alike but for their numbers. The engine's tables have a row a member, or one for all of them."""
+    """The input of the engine for members that differ in numbers only.
 
-    par: Floats  # (members, PARAMETERS)
-    address: Integers  # (5, pieces), the same for all
-    jets: Integers  # (pieces,): the formulas' series for lanes; (0,) where members take their steps alone
+    The engine's tables (see `engine.state.layout.Setup`) have one row for each member, or a single row if all members share it.
+    """
+
+    par: Floats  # (members, numbers of Params)
+    address: Integers  # (5, pieces of the law), the same for all members
+    jets: Integers  # (pieces,): addresses of the formulas' series for lanes; (0,) if members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Floats  # (members, 3, pieces)
-    branch: Floats  # (members, 6 times the most branches), of which the first 6 branches[n] are filled
+    branch: Floats  # (members, 6 times the largest number of branches); in row n the first 6 branches[n] numbers are filled
     first: Floats  # (members, 4, pieces of the first load + 1)
-    branches: Integers  # (members,); 0 where friction falls for ever, -1 where there are more than MOST_BRANCHES
-    irregular: Floats
-    state: Floats  # at t = 0, the same for all
-    counts: Integers
-    last_row: Integers  # where each run ends
-    last_theta: Floats
-    duration: Floats
-    threshold: Floats  # event rate, m/s
-    stiffness: Floats
-    excess: Floats  # initial load minus strength
+    branches: Integers  # (members,): number of branches; 0 if Z v + S mu does not rise at high rates, -1 if more than MOST_BRANCHES
+    irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
+    state: Floats  # at t = 0, the same for all members
+    counts: Integers  # at t = 0, the same for all members
+    last_row: Integers  # (members,): the round trip in which each run ends
+    last_theta: Floats  # (members,): the offset (s) in this round trip at which it ends
+    duration: Floats  # (members,), s
+    threshold: Floats  # (members,): slip rate (m/s) above which slip is an event
+    stiffness: Floats  # (members,): Pa/m for a slab, N/m for a block
+    excess: Floats  # (members,): initial load minus static strength, Pa or N
 
 
 class Alike(NamedTuple):
-    """What the members of a group have in common, whatever their numbers."""
+    """The properties that the members of a group share, whatever their numbers."""
 
-    problem: Problem  # of one of them
-    address: Integers  # (5, pieces), of the law's functions
+    problem: Problem  # the problem of one of the members
+    address: Integers  # (5, pieces of the law): addresses of the law's compiled functions
     jets: Integers  # as in `Setups`
-    prepare: Integers  # (pieces,)
-    size: int  # of the constants of a piece
+    prepare: Integers  # (pieces,): addresses of the functions that fill the constants of each piece
+    size: int  # number of constants for which each piece has room
     state: State  # at t = 0
     counts: Counts
 
 
 def alike(scenario: Scenario, values: Values) -> Alike:
-    """What the members of one group (`vectorised_problem.groups`) have in common. Compiles the law's formulas if they are new."""
+    """Return what the members of one group (`vectorised_problem.groups`) share. Compiles the law's formulas if they are new."""
     problem = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
     law = problem.friction
     with LOADING:
@@ -78,7 +82,10 @@ def alike(scenario: Scenario, values: Values) -> Alike:
 
 
 def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Setups:
-    """Members of one group (`vectorised_problem.groups`); `group` is what they have in common, where that is known."""
+    """Return the input of the engine for the members of one group (`vectorised_problem.groups`).
+
+    `group` is what the members share, if that is known already.
+    """
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
     problem = many(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
@@ -113,18 +120,21 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
 
 
 def rows(table: Floats, axes: int) -> Floats:
-    """With the members first, behind which so many axes come; one row where they do not differ."""
+    """Return a table with its last axis, that of the members, moved before the other axes, of which there are `axes`.
+
+    A table that has only these other axes, because the members do not differ, gets a first axis of length 1.
+    """
     return np.ascontiguousarray(np.moveaxis(table, -1, 0) if table.ndim > axes else table[None])
 
 
 def spread(numbers: Any, count: int) -> Floats:
-    """One number a member, also where all have the same; of a table, along a last axis."""
+    """Return numbers with one value for each member along the last axis, repeated if all members have the same."""
     found = np.asarray(numbers, float)
     return np.array(np.broadcast_to(found, (*found.shape[: max(found.ndim - 1, 0)], count)), order="C")
 
 
 def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
-    """As `run.run_loop.split_time`."""
+    """Split times (s) into whole rows and an offset in the row, in (0, row], as `run.run_loop.split_time` does for one time."""
     whole = np.floor(time / row)
     offset = time - whole * row
     back = (offset <= 0.0) & (whole > 0)
@@ -135,7 +145,11 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 
 
 def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
-    """Constants of the law's functions, and shifts, offsets and knots: as in `engine_input.prepare`."""
+    """Return the constants of the law's functions, and the table of slip shifts, offsets and knots, as in `engine_input.prepare`.
+
+    The constants have the shape (members or 1, pieces, size). The table has the shape (3, pieces), with a last axis of members if
+    these differ.
+    """
     law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
     references = near if law.knot_variable == "slip" else [start] * pieces
@@ -152,12 +166,12 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
 
 
 def steps_alone(problem: Problem) -> bool:
-    """Whether a run's steps are not for lanes: the slip rate is a root of the contact equation, or has knots."""
+    """Return True if steps cannot be taken in lanes: the rate is a root of the contact equation, or the law has knots in it."""
     return is_algebraic(problem) or (len(problem.friction.knots) > 0 and problem.friction.knot_variable == "rate")
 
 
 def jets_of(formula: CompiledFormula, problem: Problem) -> int:
-    """Address of a formula's series for lanes."""
+    """Return the address of the compiled series of a formula for lanes."""
     return formula.address("motion_jets" if has_inertia(problem) else "rate_jets")
 
 
@@ -165,7 +179,11 @@ def jets_of(formula: CompiledFormula, problem: Problem) -> int:
 
 
 def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
-    """Branches of each member's resistance, how many, whether some loads have several solutions, and where stick is left."""
+    """Return the branches of each member's resistance g(v) = Z v + S mu(v), and what follows from them.
+
+    The results are the rows of `Setups.branch`, the number of branches, 1 for members for which some load has several solutions,
+    and the load minus strength (Pa) at which stick ends.
+    """
     branches, one = np.ones(count, np.int64), group.problem
     if group.counts.is_algebraic == 0:
         return branch_rows(one, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
@@ -185,7 +203,10 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
 
 
 def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:
-    """The slowest and the fastest of `Resistance.scales`, m/s."""
+    """Return the slowest and the fastest of the slip rates `Resistance.scales` (m/s) of each member.
+
+    `own` is the contact's own scale S (variation of mu)/Z, m/s.
+    """
     rates = {name: declared.unit for name, declared in quantities_of(type(law)).items() if declared.unit in ("m/s", "s/m")}
     with np.errstate(divide="ignore"):
         sizes = [np.abs(getattr(law, name)) if unit == "m/s" else 1.0 / np.abs(getattr(law, name)) for name, unit in rates.items()]

@@ -1,7 +1,7 @@
-"""Problems of many members: a `Problem` whose numbers are arrays where they are varied, one number a member.
+"""The problems of many members as one `Problem`, whose varied numbers are arrays with one element for each member.
 
-Bodies, laws and setup are written so that their formulas take arrays; only what asks a question of a number cannot. So members are
-first sorted into groups for which all such questions have one answer.
+The formulas of bodies, laws and setup accept arrays. Only conditions on a number ("if") cannot. Members are therefore first sorted
+into groups in which every such condition has the same outcome.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import DURATION, LARGEST_RTOL, RTOL, check_rtol
 
 Values = Mapping[str, Floats]
-"""By key such as "friction.alpha": numbers in SI, one a member."""
+"""Numbers in SI, one for each member, by key such as "friction.alpha"."""
 Booleans = NDArray[np.bool_]
 Places = NDArray[np.intp]
 Owner = TypeVar("Owner")
 
 RUN = {"duration": DURATION, "rtol": RTOL}
-"""What of [run] may be varied."""
+"""The entries of [run] in a scenario that may be varied."""
 
 
 class Numbers(NamedTuple):
-    """What varies, by the object to which it belongs and the name of its field there."""
+    """The numbers that vary, sorted by the object to which they belong, and by the name of the field there."""
 
     body: dict[str, Any]
     friction: dict[str, Any]
@@ -45,7 +45,7 @@ class Numbers(NamedTuple):
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Numbers:
-        """Sorted from keys; a load at the start takes the place of an excess, and the other way round."""
+        """Sort numbers by their keys. A varied initial load replaces the initial excess, and vice versa."""
         found = cls({}, {}, {}, {})
         for key, value in values.items():
             table, _, name = key.partition(".")
@@ -58,7 +58,7 @@ class Numbers(NamedTuple):
 
 
 def declared_at(scenario: Scenario, key: str) -> Quantity | None:
-    """The quantity that a key names, if it is a plain number of the scenario that may be varied."""
+    """Return the quantity that a key names, or None unless it is a plain number of the scenario that may be varied."""
     table, _, name = key.partition(".")
     problem = scenario.problem
     if table == "run":
@@ -73,7 +73,7 @@ def declared_at(scenario: Scenario, key: str) -> Quantity | None:
 
 
 def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
-    """The scenario of one member. Raises InputError where its numbers make none."""
+    """Return the scenario of one member. Raises InputError if its numbers make no valid scenario."""
     numbers = Numbers.of(values)
     body, law = replace(scenario.problem.body, **numbers.body), replace(scenario.problem.friction, **numbers.friction)
     run = {name: RUN[name].check("run", name, value) for name, value in numbers.run.items()}
@@ -86,14 +86,14 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
 
 
 def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
-    """A body, law or problem with other numbers, arrays too, which nobody checks."""
+    """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
     made = copy.copy(owner)
     vars(made).update(numbers)
     return made
 
 
 def many(scenario: Scenario, values: Values) -> Problem:
-    """The problem with arrays where it is varied; `strength` and `excess` follow suit."""
+    """Return the problem with arrays for the numbers that vary, and with `strength` and `excess` calculated from them."""
     numbers = Numbers.of(values)
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     problem = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem)
@@ -104,13 +104,13 @@ def many(scenario: Scenario, values: Values) -> Problem:
 
 
 def shared(numbers: Any) -> Any:
-    """A single number where all members have the same one: what is made of it need not be made for each."""
+    """Return a single number if all members have the same one, so that what depends on it is calculated only once."""
     found = np.asarray(numbers)
     return found.flat[0] if found.ndim and (found == found.flat[0]).all() else numbers
 
 
 def excess_of(problem: Problem, strength: Any) -> Any:
-    """As `Problem.excess`."""
+    """Return the initial load minus the static strength (Pa or N) of all members, as `Problem.excess` does for one problem."""
     if problem.initial_excess is not None:
         return problem.initial_excess
     load = np.asarray(problem.initial_load)
@@ -120,7 +120,7 @@ def excess_of(problem: Problem, strength: Any) -> Any:
 
 
 def pieces_at_start(problem: Problem) -> Places:
-    """The piece of the law that holds where each member starts."""
+    """Return the index of the law's piece in which each member starts; a single one if the members cannot differ in it."""
     law = problem.friction
     if not law.knots or law.knot_variable == "rate":
         return np.zeros(1, np.intp)
@@ -128,11 +128,11 @@ def pieces_at_start(problem: Problem) -> Places:
     return np.asarray(np.sum([knot <= problem.law_slip for knot in knots], axis=0))
 
 
-# ---- who takes part ---------------------------------------------------------------------------------------------------------
+# ---- valid members and their groups -----------------------------------------------------------------------------------------
 
 
 def allowed(declared: Quantity, value: Floats) -> Booleans:
-    """Which values a quantity takes, as `Quantity.check`."""
+    """Return True for the values that a quantity allows, as `Quantity.check` does for one value."""
     fine = ~np.isnan(value) if declared.infinite else np.abs(value) <= LARGEST
     if declared.above is not None:
         fine &= (value > declared.above) & (value >= declared.above + SMALLEST)
@@ -142,7 +142,7 @@ def allowed(declared: Quantity, value: Floats) -> Booleans:
 
 
 def are_fine(scenario: Scenario, values: Values) -> Booleans:
-    """Which members make a problem: what bodies, laws, problems and scenarios check one by one."""
+    """Return True for the members whose parameters are valid: bodies, laws, problems and scenarios check the same for one."""
     numbers = Numbers.of(values)
     fine = np.ones(len(next(iter(values.values()))), bool)
     for key, value in values.items():
@@ -152,7 +152,7 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
     fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
-    with np.errstate(all="ignore"):  # of numbers that are refused already
+    with np.errstate(all="ignore"):  # members that are refused already may overflow or divide by zero
         row = row_time(with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem))
         fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= MOST_ROUND_TRIPS * np.asarray(row)
     if isinstance(body, ElasticSlab):
@@ -167,15 +167,16 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
 
 
 def driven_rigidly(body: ElasticSlab) -> Booleans:
-    """Which slabs have a driver that sends everything back, turned round (r = -1)."""
+    """Return True for the slabs whose driver reflects everything with the opposite sign (reflection coefficient r = -1)."""
     driver = np.asarray(body.driver_impedance)
     return np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
 
 
 def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, dict[str, Floats]]]:
-    """Members that are alike but for their numbers: their kind, their places, and their values.
+    """Yield the groups of members that differ in numbers only: the kind of a group, and the indices and values of its members.
 
-    They are driven rigidly all or none, with mass all or none, and start in the same piece of the law: the kind says so.
+    The kind encodes what the members of a group have in common: whether their drivers are rigid, whether their contacts have mass,
+    and the piece of the law in which they start.
     """
     numbers, count = Numbers.of(values), len(next(iter(values.values())))
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
@@ -184,7 +185,7 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     if isinstance(body, ElasticSlab):
         rigid = driven_rigidly(body)
         kind += 2 * rigid + (np.asarray(body.contact_mass) > 0.0)
-        if "driver_impedance" in numbers.body:  # what nothing passes is rigid
+        if "driver_impedance" in numbers.body:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
             values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)

@@ -1,4 +1,4 @@
-"""What a thread of a batch works in: lanes, each with a state and a history, whatever members come."""
+"""The memory in which a thread of a batch works: lanes, each with a state and a history, which serve one member after another."""
 
 from __future__ import annotations
 
@@ -19,39 +19,39 @@ from stickslip.engine.waves.echo_queue import Echoes, new_echoes
 from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
-"""Pieces of history for which a lane has room; a member that needs more is run by itself."""
+"""Numbers of pieces of history for which a lane has room at first, and at most; a member that needs more is run by itself."""
 LINE = 16
-"""Numbers in two cache lines, which processors fetch together; addresses of lanes must be multiples of one."""
+"""Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
 
 
 class Workspace(NamedTuple):
-    """What one thread needs, whatever members come: of each table, one for each lane."""
+    """The memory of one thread, which serves all its members. The tables of `store` and `echoes` have a first axis of lanes."""
 
     store: Store
     echoes: Echoes
     points: Points
-    numbers: Floats  # room for the block of `kernels.lanes`, and the block's address
-    block: Integers
-    stage: Integers  # of each lane, see `kernels.runs`
-    waits: Integers
-    member: Integers  # the one in each lane
-    code: Integers  # what its run has come to
-    table: Integers  # the memory of its run
-    upcoming: Integers  # the next member to be taken
+    numbers: Floats  # room for the block of `kernels.lanes`
+    block: Integers  # the address of this block
+    stage: Integers  # (WIDTH,): FREE, UNDER_WAY or AT_END, see `kernels.runs`
+    waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
+    member: Integers  # (WIDTH,): index of the member in the lane
+    code: Integers  # (WIDTH,): what the engine returned last for this member
+    table: Integers  # (WIDTH, PLACES): the memory of its run, see `engine.state.workspace.Run`
+    upcoming: Integers  # (1,): index of the next member to start
 
     @property
     def capacity(self) -> int:
-        """Pieces of history for which each lane has room."""
+        """Return the number of pieces of history for which each lane has room."""
         return self.store.whole.shape[1]
 
     def ready_for(self, constants: int) -> Workspace:
-        """All lanes free, for members from the first one on of a law with so many constants."""
+        """Free all lanes and begin with the first member of a group, whose law has the given number of constants."""
         self.stage[:], self.waits[:], self.upcoming[:] = FREE, AWAY, 0
         numbers, block = new_block(constants)
         return self._replace(numbers=numbers, block=block)
 
     def larger(self) -> Workspace:
-        """With room for four times as many pieces; the histories so far are kept."""
+        """Return a workspace with room for four times as many pieces, up to LARGEST_CAPACITY, which keeps the histories so far."""
         capacity = min(4 * self.capacity, LARGEST_CAPACITY)
         store, echoes = in_lanes(at.new_store(WIDTH * capacity)), in_lanes(new_echoes(WIDTH * capacity))
         for old, new in zip((*self.store, *self.echoes), (*store, *echoes), strict=True):
@@ -59,7 +59,7 @@ class Workspace(NamedTuple):
         return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
 
     def with_more_points(self) -> Workspace:
-        """With twice the room for turning points."""
+        """Return a workspace with twice the room for turning points."""
         return self._replace(points=new_points(2 * len(self.points.xi)))
 
 
@@ -67,18 +67,21 @@ Tables = TypeVar("Tables", Store, Echoes)
 
 
 def in_lanes(tables: Tables) -> Tables:
-    """The rows of tables, shared out among the lanes."""
+    """Divide the rows of tables equally among the lanes."""
     shared: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, table.shape[1]) for table in tables]
     return type(tables)(*shared)
 
 
 def lane_of(tables: Tables, n: int) -> Tables:
-    """The tables of one lane."""
+    """Return the tables of one lane."""
     return type(tables)(*[table[n] for table in tables])
 
 
 def apart(*shape: int, dtype: type = float) -> Any:
-    """Zeros that no other array's cache lines touch: what another thread writes next to them would be fetched again and again."""
+    """Return zeros that share no cache line with other arrays.
+
+    Otherwise the processor would have to fetch a line again whenever another thread writes to an array beside it.
+    """
     count = math.prod(shape)
     room: Any = np.zeros(count + 2 * LINE, dtype)
     first = -(room.ctypes.data // room.itemsize) % LINE
@@ -86,13 +89,13 @@ def apart(*shape: int, dtype: type = float) -> Any:
 
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
-    """For a law of so many constants: see `Workspace.numbers`."""
+    """Return `Workspace.numbers` and `Workspace.block` for a law with the given number of constants."""
     numbers = apart(WIDTH * (CONSTANTS + constants))
     return numbers, np.array([numbers.ctypes.data])
 
 
 def new_workspace() -> Workspace:
-    """For one thread."""
+    """Return the workspace of one thread."""
     stage, waits, member, code = apart(4, WIDTH, dtype=np.int64)
     return Workspace(
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
@@ -109,7 +112,10 @@ def new_workspace() -> Workspace:
 
 
 def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
-    """The addresses that each lane lends its run for the first member, and what to add to them from one member to the next."""
+    """Return the addresses of the tables that the first member uses in each lane, and their strides from member to member (bytes).
+
+    The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
+    """
     par, branch = Params(setups.par[0]), setups.branch[0].reshape(6, -1)
     own = Setup(par, setups.address, setups.constants[0], setups.law[0], branch, setups.first[0], NOT_VARYING)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)

@@ -1,1 +1,4 @@
-"""Many runs of one scenario over what varies: maps, samples, lists; kept in a store that a killed sweep takes up again."""
+"""Sweeps run one scenario many times with different parameters: on a grid, for random samples, or for a list of members.
+
+Results are kept in a store. A sweep that was killed continues from its store.
+"""

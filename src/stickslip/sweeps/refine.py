@@ -1,7 +1,7 @@
-"""Refine a map where an answer changes: a coarse sweep, then ever smaller cells along the boundary
-(`stickslip.sweeps.design.adaptive_grid`).
+"""Refinement of a map where an answer changes: a coarse sweep, then smaller and smaller cells along the boundary.
 
-Each round of the search is a sweep over a list of members, kept like any other: a search that was killed finds its rounds done.
+The cells are chosen by `stickslip.sweeps.design.adaptive_grid`. Each round of the search is a sweep over a list of members with a
+store of its own, so that a search that was killed continues after the rounds that are complete.
 """
 
 from __future__ import annotations
@@ -30,13 +30,15 @@ from stickslip.sweeps.results.store import open_store, publish, writing
 from stickslip.sweeps.sweep import Progress, Runner, carry_out, check_out, runner_of
 
 DEPTH = 6
+"""Default number of halvings: the finest cells are 1/64 of the coarse step along each axis."""
 LEVEL = "level"
+"""Name of the coordinate that holds the number of halvings after which the grid contains a member."""
 COMPLETE = "refinement_complete"
-"""Attribute: 1 where the search came to its end, 0 where it was stopped or ran into the most members that were allowed."""
+"""Name of the attribute that is 1 if the search was completed, 0 if it was stopped or reached the largest number of members."""
 
 
 class _StoppedError(Exception):
-    """Ctrl-C."""
+    """The signal that a round of the search was stopped by Ctrl-C."""
 
 
 def refine(
@@ -55,16 +57,40 @@ def refine(
     chunk: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Run a coarse grid, then halve its cells `depth` times wherever a quantity differs around them.
+    """Run a coarse grid, then halve its cells up to `depth` times wherever a quantity differs around them.
 
-    The grid is that of `stickslip.sweep`: its axes are numbers in ascending order. A boundary that the coarse grid has seen is
-    followed to its ends, to 1/2^depth of the coarse steps. The quantity must be a whole number, unless a factor is given: then
-    cells are halved around which it differs by more than that factor. Members that failed, or have no such number, say nothing.
-    Ends early rather than run more than `most` members.
+    A boundary that the coarse grid detects is followed to its ends, with a resolution of 1/2^depth of the coarse steps.
 
-    Returns the members, in the order in which they were run, along the dimension `member`, with their `level` (0: coarse grid) and
-    the attribute `refinement_complete` (0 where it ended early); `stickslip.sweeps.results.refinement_spec.cells_of` finds the
-    cells in it again; all else is as for `stickslip.sweep`, also what goes on after a kill. Raises InputError like it.
+    Parameters
+    ----------
+    scenario : Scenario or str
+        A scenario, the path of a scenario file, or a bundled name.
+    vary : str, sequence of str, or mapping
+        Axes of the coarse grid, as for `stickslip.sweep`, each of two or more numbers in ascending order.
+    quantity : str
+        Name of the quantity whose changes are sought. It must be a whole number unless `factor` is given. Members that failed, or
+        that have no such number (NaN), cause no refinement.
+    depth : int
+        Number of halvings.
+    factor : float, optional
+        If given (above 1), halve the cells around which the quantity differs by more than this factor, or in sign.
+    most : int
+        Largest number of members. The search ends early rather than exceed it.
+    quantities, out, threads, workers, scheduler, chunk, progress
+        As for `stickslip.sweep`. Until the store `out` (.zarr) is complete, the rounds are kept beside it in a folder of the same
+        name with the suffix .rounds. If a search was stopped or killed, the same call continues it.
+
+    Returns
+    -------
+    xarray.Dataset
+        The members in the order in which they were run, along the dimension `member`, with their `level` (0 for the coarse grid).
+        The attribute `refinement_complete` is 0 if the search ended early.
+        `stickslip.sweeps.results.refinement_spec.cells_of` reconstructs the cells from this dataset.
+
+    Raises
+    ------
+    InputError
+        For anything that cannot be used, as for `stickslip.sweep`.
     """
     chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
     axes, kept = axes_of(chosen, vary, "refine: vary"), _with(quantities, quantity)
@@ -74,21 +100,21 @@ def refine(
     place = None if out is None else check_out(Path(out), "refine: out")
     if place is not None and place.exists():
         found = search.there(place)
-        shutil.rmtree(_rounds_of(place), ignore_errors=True)  # of a search that was killed in its last moment
+        shutil.rmtree(_rounds_of(place), ignore_errors=True)  # left by a search that was killed after the store was complete
         return found
     with runner_of(threads, workers, scheduler) as (run, _):
         return search.carried_out(place, run, progress)
 
 
 def _with(quantities: Iterable[Wanted], name: str) -> tuple[Summary, ...]:
-    """The quantities, and the one that is searched for."""
+    """Return the quantities to keep, with the one whose changes are sought added if it is missing."""
     kept = quantities_named(quantities)
     return kept if name in {one.name for one in kept} else (*kept, *quantities_named(name))
 
 
 @dataclass
 class _Search:
-    """Rounds of members, each a sweep of its own."""
+    """A search in rounds, each of which is a sweep over a list of members."""
 
     recipe: Recipe
     keys: tuple[Key, ...]
@@ -96,7 +122,7 @@ class _Search:
     rounds: list[xr.Dataset] = field(default_factory=list)
 
     def carried_out(self, place: Path | None, run: Runner, progress: Progress | None) -> xr.Dataset:
-        """Every round, and their members together, at `place` when all are there."""
+        """Run every round and return their members together. When all rounds are done, store them at `place`, if there is one."""
         folder = None if place is None else _made(_rounds_of(place))
 
         def evaluate(points: Integers) -> Floats:
@@ -114,7 +140,7 @@ class _Search:
         return self.there(place)
 
     def round(self, points: Integers, out: Path | None, run: Runner, progress: Progress | None) -> Floats:
-        """Run members at points, and say what the quantity is."""
+        """Run the members at the given points and return the quantity of each."""
         found = carry_out(self.plan(self.members(points)), out, run, self.beyond(progress))
         level = xr.Variable(MEMBER, self.recipe.lattice.levels(points), {"long_name": "how often the coarse grid was halved"})
         self.rounds.append(found.assign_coords({LEVEL: level}).load())
@@ -123,11 +149,11 @@ class _Search:
         return _answers(found[self.recipe.quantity], self.recipe.factor)
 
     def members(self, points: Integers) -> Design:
-        """The members at points, as a list."""
+        """Return the members at the given points as a design of the kind "list"."""
         return Design("list", self.keys, self.recipe.values(points))
 
     def beyond(self, tell: Progress | None) -> Progress | None:
-        """Tell of a round as of all of them up to it."""
+        """Return a progress callback that adds the members of all earlier rounds to the counts of the present round."""
         if tell is None:
             return None
         done = sum(one.sizes[MEMBER] for one in self.rounds)
@@ -135,19 +161,19 @@ class _Search:
         return lambda now: tell(now._replace(done=now.done + done, failed=now.failed + failed, members=now.members + done))
 
     def together(self, complete: bool) -> xr.Dataset:
-        """The members of all rounds."""
+        """Return the members of all rounds in one dataset."""
         return xr.concat(self.rounds, MEMBER).assign_attrs(self.attributes, **{COMPLETE: int(complete)})
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Where the members come from."""
+        """Return the attributes that record the origin of the members: those of a sweep, and the recipe of the search."""
         lattice = self.recipe.lattice
         coarse = attributes(self.plan(self.members(lattice.grid(lattice.coarse))))
         design = json.dumps({"design": "refined", "keys": list(self.recipe.columns)})
         return coarse | {"design": design, ATTRIBUTE: str(self.recipe)}
 
     def there(self, place: Path) -> xr.Dataset:
-        """What is kept at `place`. Raises InputError if it is of another search."""
+        """Open the store at `place`. Raises InputError if it belongs to another search."""
         found = open_store(place)
         for name, ours in self.attributes.items():
             if found.attrs.get(name) != ours:
@@ -156,7 +182,7 @@ class _Search:
 
 
 def _answers(found: xr.DataArray, factor: float | None) -> Floats:
-    """The answers of a round. Raises InputError where they are no whole numbers and no factor is given."""
+    """Return the answers of a round. Raises InputError if they are not whole numbers and no factor is given."""
     values = np.asarray(found.values, float)
     known = values[np.isfinite(values)]
     if factor is None and (known != np.rint(known)).any():

@@ -1,4 +1,4 @@
-"""Run a sweep, or go on with one."""
+"""Sweeps: `stickslip.sweep`, which runs a sweep or continues one, and the progress and interruption of sweeps."""
 
 from __future__ import annotations
 
@@ -25,8 +25,12 @@ if TYPE_CHECKING:
 
 
 class Report(NamedTuple):
-    """How far a sweep is: members done and failed (those of earlier runs of it counted), all of them, members a second since it
-    was taken up, and the wall clock (s) that is left; NaN where that is not known yet."""
+    """The progress of a sweep.
+
+    `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
+    number. `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the
+    end. Both are NaN until a chunk is finished.
+    """
 
     done: int
     failed: int
@@ -37,7 +41,7 @@ class Report(NamedTuple):
 
 Progress = Callable[[Report], object]
 Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
-"""Runs chunks, each given by its number and its values, and yields their results in any order."""
+"""A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
 
 
 def sweep(
@@ -57,23 +61,53 @@ def sweep(
     chunk: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Run a scenario over what varies, and collect summary quantities of every run in a Dataset with units.
+    """Run a scenario with varied parameters and collect summary quantities of every run in a dataset with units.
 
-    scenario: a `Scenario`, the path of a file, or a bundled name. vary: a mapping from keys of the scenario to
-    "LOW..HIGH:POINTS" (":log" behind it for equal ratios), to "VALUE,VALUE,..." or to a list of values, numbers in SI or texts
-    with units; or a DataFrame, or the `Path` of a CSV file, with a member a row. design "grid" runs every combination, with a
-    dimension a key; "random" and "lhs" (Latin hypercube) draw so many `members` between LOW and HIGH from a seed.
+    Parameters
+    ----------
+    scenario : Scenario or str
+        A scenario, the path of a scenario file, or a bundled name.
+    vary : mapping, str, sequence of str, pandas.DataFrame or pathlib.Path
+        A mapping from keys of the scenario to "LOW..HIGH:POINTS" (followed by ":log" for equal ratios), to "VALUE,VALUE,...", or
+        to a list of values, which are numbers in SI or texts with units. The same may be given as texts "KEY=...". A DataFrame, or
+        the `Path` of a CSV file, has one member in each row.
+    design : {"grid", "random", "lhs"}
+        "grid" runs every combination, with one dimension for each key. "random" and "lhs" (Latin hypercube) draw members between
+        LOW and HIGH.
+    members : int, optional
+        Number of members of the designs "random" and "lhs".
+    seed : int
+        Seed of the random designs.
+    quantities : iterable
+        Names of built-in quantities (`stickslip.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`).
+    series : sequence of str
+        Curves of a solution to keep over time, as variables `series_...`.
+    samples : int
+        Number of times at which curves are sampled.
+    out : str or pathlib.Path, optional
+        Folder (.zarr) in which results are stored chunk by chunk. A call with the folder of an earlier, stopped call of the same
+        sweep runs the members that are missing.
+    threads : int, optional
+        Number of threads (default: all cores). Results depend neither on it nor on the order in which members run.
+    workers : int, optional
+        Run the chunks on a local dask.distributed cluster of this number of processes instead of on threads.
+    scheduler : str, optional
+        Run the chunks on the dask.distributed cluster whose scheduler has this address (or scheduler file).
+    chunk : int, optional
+        Number of members in a chunk: at most this many, because a chunk is a block of the design.
+    progress : callable, optional
+        Function that is called with a `Report` after each chunk.
 
-    quantities: names (`stickslip.sweeps.design.quantities.QUANTITIES`), or (name, unit, function of a `Solution`). series: curves
-    of a solution at so many `samples` of time, kept as `series_...`. `status` says how each member ended; a member that failed has
-    NaN for results and a `reason`.
+    Returns
+    -------
+    xarray.Dataset
+        The quantities and curves of every member. `status` says how each member ended. A member that failed has NaN for results
+        and a `reason`. After Ctrl-C, members that have not been run have the status `not_run`.
 
-    With out (a folder, .zarr) results are written there in chunks (of `chunk` members) as they come; called again it runs what is
-    missing. Ctrl-C ends the sweep with what is there. Results depend neither on `threads` (default: all cores) nor on the order.
-    Instead of threads, a dask.distributed cluster may run the chunks: one of so many local `workers` (processes), or the one whose
-    `scheduler` answers at an address.
-
-    Raises InputError for anything that cannot be used: a key, a value, a quantity, or an `out` of another sweep.
+    Raises
+    ------
+    InputError
+        For anything that cannot be used: a key, a value, a quantity, or an `out` that belongs to another sweep.
     """
     plan = make_plan(
         scenario,
@@ -92,8 +126,10 @@ def sweep(
 
 @contextmanager
 def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[tuple[Runner, int]]:
-    """What runs the chunks, and how many at a time: threads of this process, or a cluster where `workers` or a `scheduler` are
-    given. Raises InputError."""
+    """Provide a function that runs chunks, and the number of chunks that it runs at the same time.
+
+    Chunks run on threads of this process, or on a cluster if `workers` or a `scheduler` is given. Raises InputError.
+    """
     if workers is None and scheduler is None:
         yield on_threads(threads), 1
         return
@@ -108,10 +144,11 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
 
 
 def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progress | None = None) -> xr.Dataset:
-    """Run what is missing of a plan. Raises InputError where the store cannot be used."""
+    """Run the chunks of a plan that are missing in its store, and return the dataset. Raises InputError for an unusable store."""
     store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
     tally = Tally(store, progress)
-    with store, ctrl_c_breaks_in(), suppress(KeyboardInterrupt):  # what is there by then is valid, and says itself what is not
+    # Ctrl-C leaves a valid store, in which members that have not been run have the status NOT_RUN.
+    with store, ctrl_c_breaks_in(), suppress(KeyboardInterrupt):
         for chunk, result in run(plan.work, ((chunk, store.plan.values(chunk)) for chunk in store.missing())):
             store.write(chunk, result)
             tally.add(result)
@@ -120,9 +157,11 @@ def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progres
 
 @contextmanager
 def ctrl_c_breaks_in() -> Iterator[None]:
-    """Ctrl-C ends the sweep, not just the run of one member, which would take it for its own and might end just then anyway.
+    """Let Ctrl-C end the whole sweep and not only the run of one member.
 
-    Handlers that are not Python's own stay as they are; so they do outside the main thread, where none can be set.
+    A run (`run.run_loop.interrupts`) replaces Python's own handler to note Ctrl-C for itself, and might be about to end anyway.
+    It leaves the handler that is set here in place. Other handlers than Python's own are not replaced, nor are any outside the
+    main thread, where none can be set.
     """
     ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     if ours:
@@ -135,14 +174,17 @@ def ctrl_c_breaks_in() -> Iterator[None]:
 
 
 def on_threads(threads: int | None) -> Runner:
-    """Runs chunks one after the other in this process, each on so many threads. Raises InputError."""
+    """Return a function that runs chunks one after the other in this process, each on the given number of threads.
+
+    Raises InputError.
+    """
     if threads is not None and not (isinstance(threads, int) and threads > 0):
         raise InputError(f"sweep: threads must be a whole number above 0, got {threads!r}")
     return lambda work, chunks: ((chunk, run_chunk(work, values, threads)) for chunk, values in chunks)
 
 
 def check_out(path: Path, what: str = "sweep: out") -> Path:
-    """Refuse a store that could not be written. Raises InputError."""
+    """Return the path of a store after checking that it could be created there. Raises InputError."""
     if path.suffix != ".zarr":
         raise InputError(f"{what} {path}: the name must end in .zarr")
     if not path.parent.is_dir():
@@ -151,7 +193,7 @@ def check_out(path: Path, what: str = "sweep: out") -> Path:
 
 
 class Tally:
-    """Counts what comes in, and tells."""
+    """A counter of the members done, which reports progress after each chunk."""
 
     def __init__(self, store: ResultStore, tell: Progress | None) -> None:
         before = Counter(store.status.ravel().tolist())
@@ -163,13 +205,13 @@ class Tally:
             self.report()
 
     def add(self, result: ChunkResult) -> None:
-        """Another chunk is done."""
+        """Count the members of a chunk that is done, and report."""
         self.done += len(result.status)
         self.failed += int((result.status >= FIRST_FAILURE).sum())
         self.report()
 
     def report(self) -> None:
-        """Say how far it is."""
+        """Report the progress to the user's callback, if there is one."""
         if self.tell is None:
             return
         took = time.monotonic() - self.started

@@ -1,1 +1,1 @@
-"""Which members a sweep has, and what is kept of each."""
+"""The design of a sweep: its members, and the results that are kept for each of them."""

@@ -1,9 +1,10 @@
-"""Where answers change: the cells of a grid in which they differ are halved again and again, and only their corners are computed.
+"""Adaptive refinement of a grid along the boundaries at which an answer changes.
 
-Points are whole numbers on the finest grid, so that none is computed twice and every run of the same search asks for the same
-points in the same order. A cell is halved along every axis if answers differ among the computed points that touch it: its
-corners, and what a finer neighbour has computed on its sides. So a boundary that the coarse grid has seen somewhere is followed
-wherever it leads, also into cells whose corners agree.
+Cells around which answers differ are halved again and again, and only the corners of cells are computed. Points are stored as
+integer coordinates on the finest grid. Hence no point is computed twice, and every run of the same search asks for the same points
+in the same order. A cell is halved along every axis if answers differ among the computed points that touch it: its corners, and
+the points that a finer neighbour has computed on its sides. A boundary that the coarse grid detects somewhere is therefore
+followed wherever it leads, also into cells whose corners agree.
 """
 
 from __future__ import annotations
@@ -23,14 +24,15 @@ Integers = NDArray[np.int64]
 Differ = Callable[[Floats, Floats], NDArray[np.bool_]]
 
 MOST_MEMBERS = 10_000_000
-"""Where a search ends at the latest: an answer that changes everywhere has no boundary."""
+"""Default limit on the number of computed points. It ends a search for an answer that changes everywhere and has no boundary."""
 
 
 @dataclass(frozen=True)
 class Lattice:
-    """A coarse grid (points along each axis, two or more) with each of its steps halved `depth` times: all points there may be.
+    """The finest grid of a search: a coarse grid of which every step is halved `depth` times.
 
-    Raises InputError for fewer than two points, and for more points than can be counted.
+    `coarse` is the number of points of the coarse grid along each axis, at least two. Raises InputError for fewer than two points
+    along an axis, for a negative depth, and for a finest grid whose cells cannot be numbered in 62 bits.
     """
 
     coarse: tuple[int, ...]
@@ -44,42 +46,46 @@ class Lattice:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Points of the finest grid along each axis."""
+        """Return the number of points of the finest grid along each axis."""
         return tuple((count - 1) * 2**self.depth + 1 for count in self.coarse)
 
     def fractions(self, points: Integers) -> Floats:
-        """Where points lie, from 0 to 1 along each axis; shape (points, axes) both."""
+        """Return the positions of points, from 0 to 1 along each axis. Argument and result have the shape (points, axes)."""
         return np.asarray(points / (np.array(self.shape) - 1.0))
 
     def levels(self, points: Integers) -> Integers:
-        """How often the grid must be halved to have each point; 0 for the coarse grid."""
+        """Return the number of halvings after which the grid contains each point; 0 for a point of the coarse grid."""
         found = np.full(len(points), self.depth)
         for level in range(self.depth - 1, -1, -1):
             found[(points % self.size(level) == 0).all(axis=1)] = level
         return found
 
     def size(self, level: int) -> int:
-        """Steps of the finest grid along a side of a cell."""
+        """Return the side length of a cell of the given level, in steps of the finest grid."""
         return int(2 ** (self.depth - level))
 
     def keys(self, points: Integers) -> Integers:
-        """One number for each point, in the order of the axes."""
+        """Return a single integer for each point: its index in the flattened finest grid, the last axis varying fastest."""
         return np.asarray(np.ravel_multi_index(tuple(points.T), self.shape), dtype=np.int64)
 
     def points(self, keys: Integers) -> Integers:
-        """The points of these numbers."""
+        """Return the points (points, axes) with the given indices in the flattened finest grid, the inverse of `keys`."""
         return np.stack(np.unravel_index(keys, self.shape), axis=1).astype(np.int64)
 
     def grid(self, counts: tuple[int, ...]) -> Integers:
-        """The first so many points of the coarse grid along each axis: all of them, or all but the last, where its cells begin."""
+        """Return the first `counts` points of the coarse grid along each axis, as points (n, axes) of the finest grid.
+
+        With all points but the last along each axis, these are the lower corners of the coarse cells.
+        """
         return np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, len(counts)) * self.size(0)
 
 
 @dataclass(eq=False)
 class Cells:
-    """Cells that are not halved: lower corner (cells, axes) on the finest grid, level, and the range of answers around each.
+    """The cells that have not been halved: their lower corners, levels, and the range of the answers around each.
 
-    `least` and `most` are NaN around cells none of whose points has an answer.
+    `corner` has the shape (cells, axes), in steps of the finest grid. `least` and `most` are the smallest and the largest answer
+    at the points that touch a cell. They are NaN if none of these points has an answer.
     """
 
     corner: Integers
@@ -89,7 +95,7 @@ class Cells:
 
     @classmethod
     def new(cls, corner: Integers, level: Integers) -> Cells:
-        """Cells that nothing is known of."""
+        """Return cells around which no answer is known yet."""
         return cls(corner, level, np.full(len(corner), np.nan), np.full(len(corner), np.nan))
 
     def __getitem__(self, rows: NDArray[np.bool_]) -> Cells:
@@ -100,7 +106,7 @@ class Cells:
         return Cells(*(np.concatenate(pair) for pair in pairs))
 
     def learn(self, lattice: Lattice, points: Integers, answers: Floats) -> None:
-        """Widen the range of answers of every cell that a point touches."""
+        """Widen the range of answers of every cell that is touched by one of the points."""
         keys = lattice.keys(self.corner) * (lattice.depth + 1) + self.level
         order = np.argsort(keys)
         for level in np.unique(self.level):
@@ -113,7 +119,11 @@ class Cells:
 
 
 def _touched(lattice: Lattice, points: Integers, size: int) -> Iterator[tuple[Integers, NDArray[np.bool_]]]:
-    """Corners of the cells of a size that hold or touch each point, and which points those are of."""
+    """Yield the lower corners of the cells of the given size (steps of the finest grid) that contain or touch each point.
+
+    Each array of corners comes with a mask of the points to which they belong, because a point at the edge of the grid has fewer
+    cells around it.
+    """
     last = np.array(lattice.shape) - 1 - size
     for shift in product((0, 1), repeat=len(lattice.coarse)):
         corners = (points - np.array(shift)) // size * size
@@ -123,35 +133,35 @@ def _touched(lattice: Lattice, points: Integers, size: int) -> Iterator[tuple[In
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """What was computed: points (members, axes) on the finest grid in the order of computing, their answers, and the cells.
+    """The result of a search: points (members, axes) on the finest grid in the order of computation, their answers, and the cells.
 
-    `complete` says whether the search came to its end, and not to the most members allowed.
+    `complete` is False if the search ended early at the largest number of members allowed.
     """
 
     lattice: Lattice
     points: Integers
     answers: Floats
     cells: Cells
-    changes: NDArray[np.bool_]  # whether answers differ around each cell
+    changes: NDArray[np.bool_]  # True for each cell around which answers differ
     complete: bool
 
     @property
     def boundary(self) -> Floats:
-        """Middles of the finest cells around which answers differ, from 0 to 1 along each axis; shape (cells, axes).
+        """Return the midpoints (cells, axes) of the finest cells around which answers differ, from 0 to 1 along each axis.
 
-        The boundary is nowhere farther from one than half a cell's size along an axis.
+        Every point of the boundary lies within half a cell of one of these midpoints, along each axis.
         """
         finest = self.changes & (self.cells.level == self.lattice.depth)
         return np.asarray((self.cells.corner[finest] + 0.5) / (np.array(self.lattice.shape) - 1.0))
 
 
 def unequal(least: Floats, most: Floats) -> NDArray[np.bool_]:
-    """Whole numbers differ."""
+    """Return True where the smallest and the largest answer differ; meant for answers that are whole numbers."""
     return np.asarray(least < most)
 
 
 def apart(factor: float) -> Differ:
-    """Numbers differ by more than a factor, or in sign."""
+    """Return a comparison that is True where the smallest and the largest answer differ by more than a factor, or in sign."""
 
     def differ(least: Floats, most: Floats) -> NDArray[np.bool_]:
         smaller, larger = np.sort(np.abs([least, most]), axis=0)
@@ -163,11 +173,11 @@ def apart(factor: float) -> Differ:
 def refine_cells(
     lattice: Lattice, evaluate: Callable[[Integers], Floats], differ: Differ = unequal, most: int = MOST_MEMBERS
 ) -> Refined:
-    """Compute a coarse grid, then halve the cells where answers differ, down to the lattice's depth.
+    """Compute a coarse grid, then halve the cells around which answers differ, down to the depth of the lattice.
 
-    `evaluate` takes points (n, axes) and returns n answers; NaN says nothing, and nothing is refined on its account.
-    `differ` compares the least and the most around cells. Ends before the round that would bring more than `most` points.
-    Raises InputError if the coarse grid alone has more.
+    `evaluate` takes points (n, axes) and returns n answers. NaN means that there is no answer, and causes no refinement.
+    `differ` compares the smallest and the largest answer around each cell. The search ends before a round that would take it
+    beyond `most` points. Raises InputError if the coarse grid alone has more points than that.
     """
     points, answers = np.empty((0, len(lattice.coarse)), np.int64), np.empty(0)
     corners, fresh = (lattice.grid(tuple(count - less for count in lattice.coarse)) for less in (1, 0))
@@ -190,14 +200,14 @@ def refine_cells(
 
 
 def _halved(lattice: Lattice, cells: Cells) -> Cells:
-    """Every cell in 2^axes parts."""
+    """Divide every cell into 2^axes equal cells."""
     half = (2 ** (lattice.depth - cells.level - 1))[:, np.newaxis]
     parts = [cells.corner + half * np.array(shift) for shift in product((0, 1), repeat=len(lattice.coarse))]
     return Cells.new(np.concatenate(parts), np.tile(cells.level + 1, len(parts)))
 
 
 def _missing(lattice: Lattice, cells: Cells, known: Integers) -> Integers:
-    """Corners of cells that are not computed yet, each once, in order."""
+    """Return the corners of cells that have not been computed yet, without repetition and in the order of their keys."""
     size = (2 ** (lattice.depth - cells.level))[:, np.newaxis]
     corners = [cells.corner + size * np.array(shift) for shift in product((0, 1), repeat=len(lattice.coarse))]
     return lattice.points(np.setdiff1d(lattice.keys(np.concatenate(corners)), lattice.keys(known)))

@@ -1,4 +1,4 @@
-"""What one key runs through: "body.thickness=1km..50km:300:log", "friction.alpha=0.1,0.5,2" or a list of values."""
+"""The values of one parameter of a sweep: "body.thickness=1km..50km:300:log", "friction.alpha=0.1,0.5,2", or a list of values."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from stickslip.scenarios.values import show
 from stickslip.sweeps.design.parameter_paths import Key, key_named
 
 Values = NDArray[Any]
-"""Numbers in SI (float64) or words."""
+"""Numbers in SI (float64), or words (strings)."""
 LARGEST_AXIS = 10_000_000
+"""Largest number of values of an axis, and of members of a random design: 80 MB for each key."""
 FORM = '"KEY=LOW..HIGH:POINTS", with ":log" behind it for equal ratios, or "KEY=VALUE,VALUE,..."'
 
 _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
@@ -26,7 +27,10 @@ _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A key with its `values`, or with the `ends` between which samples are drawn (evenly, or evenly in the logarithm)."""
+    """A parameter (`key`) with its `values`, or with the `ends` (SI) between which samples are drawn.
+
+    Samples are distributed evenly between the ends, or evenly in the logarithm if `log` is True.
+    """
 
     key: Key
     values: Values
@@ -34,7 +38,7 @@ class Axis:
     log: bool = False
 
     def at(self, shares: NDArray[np.float64]) -> Values:
-        """Samples at shares (0 to 1) of the way from one end to the other, or of the list of values."""
+        """Return the values at the given fractions (0 to 1) of the way from one end to the other, or through the list of values."""
         if self.ends is None:
             return self.values[np.minimum((shares * len(self.values)).astype(np.intp), len(self.values) - 1)]
         low, high = self.ends
@@ -44,7 +48,7 @@ class Axis:
 
 
 def read_axis(scenario: Scenario, text: str, where: str) -> Axis:
-    """An axis typed by hand. Raises InputError beginning with `where`."""
+    """Read an axis that was typed as "KEY=...". Raises InputError, whose message begins with `where`."""
     name, equals, content = text.partition("=")
     if not equals or not name.strip() or not content.strip():
         raise InputError(f"{where} must be {FORM}, got {show(text)}")
@@ -52,7 +56,10 @@ def read_axis(scenario: Scenario, text: str, where: str) -> Axis:
 
 
 def axis_of(scenario: Scenario, name: str, content: Any, where: str) -> Axis:
-    """The axis of a key: text as behind the "=" of FORM, or values (numbers in SI or texts with a unit). Raises InputError."""
+    """Return the axis of a key from the text after the "=" of FORM, or from values (numbers in SI or texts with a unit).
+
+    Raises InputError.
+    """
     key = key_named(scenario, name, where)
     if isinstance(content, str):
         found = _RANGE.fullmatch(content)
@@ -63,7 +70,7 @@ def axis_of(scenario: Scenario, name: str, content: Any, where: str) -> Axis:
 
 
 def read_values(key: Key, values: Iterable[Any], where: str) -> Values:
-    """Values of a key in SI. Raises InputError for the first that cannot be read."""
+    """Return the values of a key in SI. Raises InputError for the first value that cannot be read."""
     read = [key.read(value, where) for value in values]
     return np.array(read, dtype=float if key.unit else np.dtypes.StringDType())
 

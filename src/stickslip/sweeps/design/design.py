@@ -1,4 +1,4 @@
-"""Which members a sweep has: every combination of axes (a grid), samples between ends, or a list."""
+"""The members of a sweep: every combination of the values of its axes (a grid), random samples between ends, or a list."""
 
 from __future__ import annotations
 
@@ -22,19 +22,21 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KINDS = ("grid", "random", "lhs")
+"""Designs made from axes: every combination, independent random samples, or a Latin hypercube."""
 LARGEST_TABLE = 1_000_000_000
-"""Bytes of the largest table of members."""
+"""Largest size (bytes) of a CSV file of members; a larger one is refused before it fills the memory."""
 LARGEST_GRID = 1_000_000_000
-"""Members of the largest grid."""
+"""Largest number of members of a grid: 8 GB for each quantity that is kept."""
 MEMBER = "member"
-"""Dimension of samples and lists."""
+"""Name of the single dimension of samples and lists."""
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """The members of a sweep, in their order: the last axis of a grid runs fastest.
+    """The members of a sweep, in their order: the last axis of a grid varies fastest.
 
-    `columns` holds the coordinates: of a grid one array an axis, of samples and lists one value a member (SI, or words).
+    `columns` holds one array for each key (SI, or words). For a grid it contains the values of the axis, for samples and lists
+    one value for each member.
     """
 
     kind: str
@@ -42,30 +44,30 @@ class Design:
     columns: tuple[Values, ...]
     seed: int | None = None
     logs: frozenset[str] = frozenset()
-    """Names of the keys that run in equal ratios."""
+    """Names of the keys whose values are spaced evenly in the logarithm."""
 
     @property
     def is_grid(self) -> bool:
-        """Whether every combination of the columns is a member."""
+        """Return True if every combination of the values in the columns is a member."""
         return self.kind == "grid"
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Members along each dimension."""
+        """Return the number of members along each dimension."""
         return tuple(len(column) for column in (self.columns if self.is_grid else self.columns[:1]))
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions: the keys of a grid, else `member`."""
+        """Return the names of the dimensions: the keys of a grid, otherwise `member`."""
         return tuple(key.name for key in self.keys) if self.is_grid else (MEMBER,)
 
     @property
     def size(self) -> int:
-        """How many members."""
+        """Return the number of members."""
         return math.prod(self.shape)
 
     def values(self, members: slice | NDArray[np.intp]) -> dict[str, Values]:
-        """What each of these members has for each key: one-dimensional arrays in SI."""
+        """Return the values of these members for each key, as one-dimensional arrays in SI."""
         numbers = np.arange(*members.indices(self.size)) if isinstance(members, slice) else np.asarray(members)
         if not self.is_grid:
             return {key.name: column[numbers] for key, column in zip(self.keys, self.columns, strict=True)}
@@ -85,15 +87,15 @@ class Design:
 
 
 Vary = str | Sequence[str] | Mapping[str, Any]
-"""Axes: texts "KEY=LOW..HIGH:POINTS", or a mapping from keys to what is behind the "=", or to lists of values."""
+"""Axes: texts "KEY=LOW..HIGH:POINTS", or a mapping from keys to the text after the "=" or to lists of values."""
 
 
 def read_design(
     scenario: Scenario, vary: Any, kind: str = "grid", members: int | None = None, seed: int = 0, where: str = "sweep: vary"
 ) -> Design:
-    """The design that `vary` describes: `Vary`, a DataFrame or a CSV file (`Path`) of members, or a design as it is.
+    """Return the design that `vary` describes: axes (`Vary`), a DataFrame or CSV file (`Path`) of members, or a finished design.
 
-    Raises InputError beginning with `where`.
+    Raises InputError. A message on the axes or the table begins with `where`.
     """
     if isinstance(vary, Design):
         return vary
@@ -110,7 +112,7 @@ def read_design(
 
 
 def axes_of(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
-    """The axes that are described. Raises InputError beginning with `where`."""
+    """Return the axes that `vary` describes. Raises InputError, whose message begins with `where`."""
     if isinstance(vary, Mapping):
         axes = [axis_of(scenario, str(name), content, where) for name, content in vary.items()]
     else:
@@ -131,7 +133,10 @@ def _check_keys(keys: Sequence[Key], where: str) -> None:
 
 
 def grid(axes: Iterable[Axis], where: str) -> Design:
-    """Every combination. Raises InputError for an axis without points, or with the same value twice."""
+    """Return the design of every combination of the axes.
+
+    Raises InputError for an axis without points or with a repeated value, and for more than LARGEST_GRID members.
+    """
     axes = list(axes)
     for axis in axes:
         if len(axis.values) == 0:
@@ -152,8 +157,11 @@ def _logs(axes: Iterable[Axis]) -> frozenset[str]:
 
 
 def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, where: str) -> Design:
-    """So many members drawn between the ends of the axes, each evenly ("random") or with one in each of as many equal parts of
-    every axis ("lhs", Latin hypercube: McKay, Beckman & Conover 1979, Technometrics 21, 239)."""
+    """Return a design of the given number of members, drawn between the ends of the axes.
+
+    `kind` "random" draws members independently. "lhs" is a Latin hypercube: every axis is divided into as many equal intervals as
+    there are members, with one member in each (McKay, Beckman & Conover 1979, Technometrics 21, 239). Raises InputError.
+    """
     if members is None or not (isinstance(members, int) and members > 0):
         raise InputError(f"sweep: members must be a whole number above 0 for the design {kind}, got {members!r}")
     if not (isinstance(seed, int) and seed >= 0):
@@ -177,7 +185,7 @@ def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64
 
 
 def read_csv(path: Path, where: str) -> pd.DataFrame:
-    """A table of members: a header line with keys, a line a member. Raises InputError."""
+    """Read a table of members from a CSV file: a header line with keys, then one line for each member. Raises InputError."""
     import pandas as pd
 
     try:
@@ -192,7 +200,10 @@ def read_csv(path: Path, where: str) -> pd.DataFrame:
 
 
 def listed(scenario: Scenario, table: pd.DataFrame, where: str) -> Design:
-    """One member a row; columns are named by keys, cells are numbers in SI or texts with units. Raises InputError."""
+    """Return the design of a table with one member in each row.
+
+    Columns are named by keys, and cells hold numbers in SI or texts with units. Raises InputError.
+    """
     if not len(table) or not len(table.columns):
         raise InputError(f"{where}: the table has no members")
     keys = tuple(key_named(scenario, str(name).strip(), where) for name in table.columns)

@@ -1,4 +1,4 @@
-"""One member of a sweep as a scenario: the scenario's document with other values in it, read like any other file."""
+"""The scenario of one member of a sweep: the document of the swept scenario with other values, read like any scenario file."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from stickslip.scenarios.scenario import Scenario, scenario_of
 from stickslip.sweeps.design.parameter_paths import Key
 
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
-"""A scenario holds one of the two: the one that is varied takes the place of the other."""
+"""A scenario has either an initial load or an initial excess. The one that is varied replaces the other."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
 class Members:
-    """Makes scenarios: `text` is that of the scenario (TOML, SI), `keys` are what varies."""
+    """A factory of member scenarios, from the text of the swept scenario (TOML, in SI) and the `keys` that vary."""
 
     def __init__(self, text: str, keys: tuple[Key, ...]) -> None:
         self.document = tomllib.loads(text)
@@ -27,7 +27,10 @@ class Members:
             self.document["initial"].pop(EXCLUDE_EACH_OTHER.get(key.name), None)
 
     def scenario(self, values: Mapping[str, float | str]) -> Scenario:
-        """The member with these values (SI). Raises InputError: the usual one line of a scenario that cannot be used."""
+        """Return the scenario of the member with these values (SI).
+
+        Raises InputError with the same one-line message as a scenario file that cannot be used.
+        """
         document = copy.deepcopy(self.document)
         for key in self.keys:
             _put(document, key, values[key.name])

@@ -1,6 +1,7 @@
-"""What of a scenario can be varied: every quantity, by its place in the file: "body.thickness", "friction.slip.mean", "run.rtol".
+"""The parameters of a scenario that a sweep can vary, named by their place in the file.
 
-The end of a name is enough where it is clear: "thickness". One of a series is "friction.values[2]".
+Every quantity can be varied: "body.thickness", "friction.slip.mean", "run.rtol". The last part of a name ("thickness") is
+sufficient if it is unambiguous. One element of a series is written "friction.values[2]".
 """
 
 from __future__ import annotations
@@ -24,25 +25,28 @@ SELECTION = "selection rule"
 
 @dataclass(frozen=True)
 class Key:
-    """A place in a scenario, and what may stand there: a quantity, or one of several words."""
+    """A parameter of a scenario: its place in the file, and its declaration as a quantity or as one of several words."""
 
     name: str
     declared: Quantity | Choice
     written: str = ""
-    """Unit that is written behind the number in the scenario (parameters of an expression)."""
+    """Unit that follows the number in the scenario file (only parameters of an expression have one)."""
 
     @property
     def unit(self) -> str:
-        """SI; "1" for a pure number, "" for words."""
+        """Return the SI unit: "1" for a pure number, "" for words."""
         return self.declared.unit if isinstance(self.declared, Quantity) else ""
 
     @property
     def meaning(self) -> str:
-        """What it is."""
+        """Return the meaning of the parameter in words."""
         return self.declared.meaning
 
     def read(self, value: Any, where: str) -> float | str:
-        """A value in SI from a number or a text with or without a unit, or a word. Raises InputError beginning with `where`."""
+        """Read a value: a number (SI), a text with or without a unit, or a word. Returns it in SI.
+
+        Raises InputError, whose message begins with `where`.
+        """
         if isinstance(self.declared, Choice):
             return self.declared.check(where, self.name, value.strip() if isinstance(value, str) else value)
         return read_quantity(_number(value), self.declared, where, self.name)
@@ -58,7 +62,7 @@ def _number(value: Any) -> Any:
 
 
 def key_named(scenario: Scenario, name: str, where: str) -> Key:
-    """The key of that name, or with that end. Raises InputError for a name that fits none, or several."""
+    """Return the key with this name, or whose name ends with it. Raises InputError if no key fits, or several do."""
     found = {key.name: key for key in keys_of(scenario)}
     if name in found:
         return found[name]
@@ -73,7 +77,7 @@ def key_named(scenario: Scenario, name: str, where: str) -> Key:
 
 
 def keys_of(scenario: Scenario) -> Iterator[Key]:
-    """Every key that can be varied, in the order of the file."""
+    """Yield every key that can be varied, in the order of the scenario file."""
     problem = scenario.problem
     yield from _of(problem.body, "body")
     yield from _of(problem.friction, "friction")

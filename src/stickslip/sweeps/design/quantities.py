@@ -1,4 +1,4 @@
-"""What a sweep keeps of each member: summary quantities of its solution, by name, or functions of the user's own."""
+"""Summary quantities that a sweep keeps for each member: built-in ones by name, or functions supplied by the user."""
 
 from __future__ import annotations
 
@@ -20,8 +20,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Summary:
-    """A number that says something of a whole run: name, unit ("load" is Pa or N, "energy" J m-2 or J), meaning, and the function
-    of the solution that gives it. NaN where the run has no such number. `is_flag`: 1 for yes, 0 for no."""
+    """A number that summarises a whole run.
+
+    Parameters
+    ----------
+    name : str
+        Name of the variable in the dataset of a sweep.
+    unit : str
+        SI unit. "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J.
+    meaning : str
+        Description in words, stored as the variable's long name.
+    of : callable
+        Function of a `Solution` that returns the number, or NaN where the run has no such number.
+    is_flag : bool
+        True for a quantity that is 1 for yes and 0 for no.
+    """
 
     name: str
     unit: str
@@ -30,16 +43,16 @@ class Summary:
     is_flag: bool = False
 
     def unit_for(self, problem: Problem) -> str:
-        """The unit under a body."""
+        """Return the unit for the body of a problem."""
         energy = "J m-2" if isinstance(problem.body, ElasticSlab) else "J"
         return {"load": problem.load_unit, "energy": energy}.get(self.unit, self.unit)
 
     def value(self, solution: Solution) -> float:
-        """Of a solution."""
+        """Return the quantity of a solution."""
         return float(self.of(solution))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """A built-in one goes to other processes by its name."""
+        """Pickle a built-in quantity by its name, so that another process recognises it as built-in; others by their contents."""
         if QUANTITIES.get(self.name) is self:
             return _built_in, (self.name,)
         return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag)
@@ -62,7 +75,7 @@ def _energy(part: str) -> Callable[[Solution], float]:
 
 @lru_cache(maxsize=1)
 def _energies(solution: Solution) -> dict[str, float]:
-    """At the end of a run; several quantities ask for them one after the other."""
+    """Return the energies at the end of a run, kept for the last solution because several quantities ask for them in turn."""
     found = solution.energy(solution.history.duration)
     return {str(name): float(values.item()) for name, values in found.items()}
 
@@ -143,19 +156,20 @@ _ALL = (
     ),
 )
 QUANTITIES = {one.name: one for one in _ALL}
-"""Those that are known by their name."""
+"""The built-in quantities, by name."""
 DEFAULT = ("events", "pulses", "slip", "peak_rate", "first_duration", "recurrence", "arrested")
+"""The quantities that a sweep keeps if none are given."""
 
 TAKEN = ("status", "reason", "time", "member")
-"""Other names in the dataset."""
+"""Names in the dataset of a sweep that a user's quantity cannot have."""
 _NAME = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
 
 Wanted = str | tuple[str, str, Callable[["Solution"], Any]] | Summary
-"""A quantity by its name; one of the user's own as (name, unit, function of a solution), or in full."""
+"""A quantity that a user asks for: the name of a built-in one, (name, unit, function of a solution), or a `Summary`."""
 
 
 def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
-    """The quantities that are wanted. Raises InputError for a name that is unknown, or twice."""
+    """Return the quantities that were asked for. Raises InputError for an unknown or repeated name, and for an empty list."""
     found = tuple(_one(item) for item in ([wanted] if isinstance(wanted, str) else wanted))
     names = [one.name for one in found]
     for name in names:

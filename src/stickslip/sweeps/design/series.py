@@ -1,4 +1,4 @@
-"""Curves of every member at the same times."""
+"""Curves over time that a sweep keeps for every member, sampled at the same times."""
 
 from __future__ import annotations
 
@@ -16,26 +16,27 @@ from stickslip.sweeps.design.design import Design
 
 Floats = NDArray[np.float64]
 PREFIX = "series_"
-"""Before the name of a curve among the results: a slip over time is not the slip of the whole run."""
+"""Prefix of a curve's name among the results. It tells slip over time from the quantity `slip`, that of the whole run."""
 TIME = "time"
-"""Dimension of the samples."""
+"""Name of the dimension of the samples."""
 LARGEST = 1_000_000
+"""Largest number of samples of a curve, which limits its size to 8 MB for each member."""
 
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Which curves of a solution are kept, right limits, and at which times (s)."""
+    """The curves of a solution that are kept, and the sampling times (s). Samples at a shock are right limits."""
 
     curves: tuple[str, ...]
     times: Floats
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names among the results."""
+        """Return the names of the curves among the results."""
         return tuple(PREFIX + curve for curve in self.curves)
 
     def of(self, solution: Solution) -> dict[str, Floats]:
-        """Samples by name; NaN after the end of the run."""
+        """Return the samples of a solution by name, with NaN after the end of its run."""
         there = self.times <= solution.history.duration
         found = {}
         for curve, name in zip(self.curves, self.names, strict=True):
@@ -46,9 +47,10 @@ class Series:
 
 
 def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> Series | None:
-    """The series that are wanted, at so many times from the start to the longest duration; None for no curves.
+    """Return the series of these curves, or None if there are no curves.
 
-    Raises InputError for an unknown curve or a number of samples out of range.
+    `samples` is the number of times, evenly spaced from 0 s to the longest duration of any member. Raises InputError for an
+    unknown or repeated curve, and for a number of samples out of range.
     """
     if not curves:
         return None

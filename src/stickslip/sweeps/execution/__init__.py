@@ -1,1 +1,1 @@
-"""The work of a sweep: its plan, its chunks, and the processes that run them."""
+"""The execution of a sweep: its plan, its chunks, and the processes that run them."""

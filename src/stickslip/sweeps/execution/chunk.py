@@ -1,4 +1,4 @@
-"""The work of a sweep, in chunks: values of some members in, their results out. All of it can be sent to other processes."""
+"""The work of a sweep, in chunks: from the values of some members to their results. Everything here can be pickled."""
 
 from __future__ import annotations
 
@@ -25,14 +25,19 @@ from stickslip.trajectory.status import STATUSES, Status
 
 Floats = NDArray[np.float64]
 END = "end_time"
+"""The quantity that the message on a failed member needs: the time (s) at which its run ended."""
 MAX_PIECES = 200_000
-"""Pieces of history of one member: one that needs more fails."""
+"""Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
+"""The status code of a member by the name of the status of its run."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """What is done for every member: the scenario (TOML in SI), what varies in it, and what is kept."""
+    """The work that is done for every member.
+
+    `text` is the scenario (TOML, in SI), `keys` are the parameters that vary, and `quantities` and `series` are the results kept.
+    """
 
     text: str
     keys: tuple[Key, ...]
@@ -41,17 +46,17 @@ class Work:
 
     @cached_property
     def members(self) -> Members:
-        """Makes the scenarios of members."""
+        """Return the factory of the members' scenarios."""
         return Members(self.text, self.keys)
 
     @cached_property
     def scenario(self) -> Scenario:
-        """What is varied."""
+        """Return the scenario whose parameters are varied."""
         return read_scenario(self.text, "member")
 
     @cached_property
     def why_one_by_one(self) -> str:
-        """Why the compiled batch cannot do this work, in one line; "" where it can."""
+        """Return in one line why the compiled batch cannot do this work; "" if it can."""
         if self.series:
             return "curves over time need whole solutions"
         own = next((one.name for one in self.quantities if QUANTITIES.get(one.name) is not one), None)
@@ -61,14 +66,17 @@ class Work:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of everything that is kept."""
+        """Return the names of all results."""
         return tuple(one.name for one in self.quantities) + (self.series.names if self.series else ())
 
 
 @dataclass(frozen=True)
 class ChunkResult:
-    """Results of some members, in their order: `results` by name, float64, one number a member (a series: members x samples);
-    `status` codes (`outcome.MEANINGS`); `reasons` by the place of those that failed, which have NaN for results."""
+    """The results of some members, in their order.
+
+    `results` holds a float64 array for each name, of shape (members,), or (members, samples) for a series. `status` holds codes
+    (`outcome.MEANINGS`). `reasons` says why members failed, by their index; such members have NaN for results.
+    """
 
     results: dict[str, Floats]
     status: NDArray[np.int8]
@@ -76,15 +84,15 @@ class ChunkResult:
 
 
 def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = None) -> ChunkResult:
-    """Run members with these values (SI, one-dimensional, by key) on so many threads (default: all cores).
+    """Run the members with these values (SI, one-dimensional arrays by key) on a number of threads (default: all cores).
 
-    What a member gives depends on nothing but its own values.
+    The results of a member depend on nothing but its own values.
     """
     return compiled_batch(work, values, threads) or one_by_one(work, values)
 
 
 def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None) -> ChunkResult | None:
-    """All members in the compiled batch (`stickslip.batch`); None where it cannot do them."""
+    """Run all members in the compiled batch (`stickslip.batch`); return None if it cannot do this work."""
     if work.why_one_by_one:
         return None
     names = [one.name for one in work.quantities]
@@ -102,7 +110,7 @@ def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None
 
 
 def _refused(work: Work, values: Mapping[str, Values], i: int, otherwise: str) -> str:
-    """Why a member is no scenario, in the words of one that is read alone."""
+    """Return why the values of a member make no valid scenario, in the same words as when it is read by itself."""
     try:
         work.members.scenario(_of_member(values, i))
     except InputError as error:
@@ -115,19 +123,19 @@ def _of_member(values: Mapping[str, Values], i: int) -> dict[str, float | str]:
 
 
 def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
-    """Each member as a run of its own. Raises KeyboardInterrupt on Ctrl-C."""
+    """Run each member by itself, one after the other. Raises KeyboardInterrupt on Ctrl-C."""
     count = len(next(iter(values.values())))
     result = nothing(work, count)
     for i in range(count):
         try:
             _run_one(work, _of_member(values, i), result, i)
-        except Exception as error:  # whatever it is, also in a function of the user's: it must stop nobody else
+        except Exception as error:  # no error, not even one in a user's function, may stop the other members
             _fail(result, i, ERROR, f"{type(error).__name__}: {error}")
     return result
 
 
 def nothing(work: Work, count: int) -> ChunkResult:
-    """Room for the results of so many members: NaN, finished."""
+    """Return empty results of `count` members: NaN, with the status "finished"."""
     results = {one.name: np.full(count, np.nan) for one in work.quantities}
     if work.series:
         results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}

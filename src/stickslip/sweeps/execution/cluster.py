@@ -1,7 +1,7 @@
-"""Chunks of a sweep on the workers of a dask.distributed cluster, local or not; results come back as they are ready.
+"""Execution of the chunks of a sweep on the workers of a dask.distributed cluster, on this machine or elsewhere.
 
-Retries, the loss of workers and balancing are dask's. A chunk's task carries all that it needs, a few kilobytes: nothing is
-placed on the workers beforehand, so nothing is lost with one.
+Results come back as they are ready. Retries, the loss of workers and load balancing are left to dask. The task of a chunk carries
+everything that it needs, a few kilobytes: nothing is placed on the workers beforehand, so nothing is lost with a worker.
 """
 
 from __future__ import annotations
@@ -32,41 +32,47 @@ Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
 
 LOOPBACK = "127.0.0.1"
-"""Where a cluster that is started here listens: no other machine reaches it."""
+"""Address at which a local cluster listens; no other machine can reach it."""
 PATIENCE = 10.0
 """Time (s) within which a scheduler must answer."""
 LARGEST_FILE = 1_000_000
-"""Bytes of the largest scheduler file."""
+"""Largest size (bytes) of a scheduler file; a larger one is refused before it fills the memory."""
 AHEAD = 2
-"""Chunks in flight for each thread of the cluster: one that it works on, and the next."""
+"""Chunks in flight for each thread of the cluster: the one that it works on, and the next."""
 LEAST = 8
-"""Chunks in flight at least: workers that a cluster starts on demand have to be asked for."""
+"""Smallest number of chunks in flight: a cluster that starts workers on demand does so only when chunks are waiting."""
 RETRIES = 2
+"""Number of times that dask repeats a chunk that failed."""
 GONE = "sweep: the dask scheduler is gone; what is done is kept: the same command goes on"
 GONE_AGAIN = ("lost", "pending")
-"""A result that was ready went with its worker before it was fetched: dask works it out anew."""
+"""Statuses of a chunk whose result was ready but lost with its worker before it was fetched. Dask computes it again."""
 ENVIRON = "distributed.nanny.pre-spawn-environ"
+"""Prefix of dask's settings for the environment variables with which worker processes start."""
 SETTINGS = {
-    "distributed.worker.profile.enabled": False,  # a few per cent of everything, and nobody looks at it here
-    f"{ENVIRON}.MALLOC_TRIM_THRESHOLD_": 2**28,  # dask's workers return every freed array to the system and fetch it again:
-    f"{ENVIRON}.MALLOC_MMAP_THRESHOLD_": 2**25,  # 15 per cent of a chunk of the compiled batch
-    "distributed.scheduler.http.routes": [],  # pages that show what runs, to whoever asks
+    "distributed.worker.profile.enabled": False,  # profiling costs a few per cent of all time, and is not used here
+    # With dask's own settings, workers return every freed array to the operating system and fetch it again,
+    # which costs 15 per cent of the time of a chunk of the compiled batch.
+    f"{ENVIRON}.MALLOC_TRIM_THRESHOLD_": 2**28,
+    f"{ENVIRON}.MALLOC_MMAP_THRESHOLD_": 2**25,
+    # No status pages, which would show what runs to anyone who asks.
+    "distributed.scheduler.http.routes": [],
     "distributed.worker.http.routes": [],
 }
-"""Of workers that are started here."""
+"""Settings of dask for a local cluster; the thresholds are in bytes."""
 LEAVE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
-"""What workers that are started here do first: Ctrl-C reaches them too, but it is for the sweep to end them."""
+"""Code that local workers run first. Ctrl-C reaches them too, but the sweep must be the one to end them."""
 
 
 class ChunksLostError(RuntimeError):
-    """Chunks that no worker brought to an end: one line that says why, and what to do."""
+    """The error of chunks that no worker could finish, with a message of one line that says why, and what to do."""
 
 
 @contextmanager
 def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterator[Client]:
-    """A client of the cluster at an address (or of a scheduler file), or of a local one with so many worker processes.
+    """Provide a client of the cluster at an address (or of a scheduler file), or of a local one with `workers` processes.
 
-    Raises InputError where dask.distributed is not installed or the scheduler does not answer within 10 s.
+    Raises InputError if dask.distributed is not installed, if the number of workers is missing or below 1, or if the scheduler
+    does not answer within 10 s.
     """
     try:
         from dask import config
@@ -87,7 +93,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
 
 @contextmanager
 def _quietly() -> Iterator[None]:
-    """Keep dask's client from telling a lost connection with all that it was doing: one line tells it."""
+    """Silence the log of dask's client, which reports a lost connection at length; the sweep reports it in one line."""
     log = logging.getLogger("distributed.client")
     before = log.level
     log.setLevel(logging.CRITICAL)
@@ -104,7 +110,7 @@ def _checked(workers: int | None) -> int:
 
 
 def _answering(scheduler: str) -> str:
-    """The address of a scheduler that answers. Raises InputError."""
+    """Return the address of a scheduler after checking that it answers. Raises InputError."""
     from distributed import Security
     from distributed.comm import connect
 
@@ -115,9 +121,9 @@ def _answering(scheduler: str) -> str:
     try:
         path = Path(scheduler)
         address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
-        with ThreadPoolExecutor(1) as aside:  # a notebook has an event loop of its own in this thread
+        with ThreadPoolExecutor(1) as aside:  # in this thread a notebook may run an event loop of its own
             aside.submit(lambda: asyncio.run(knock())).result()
-    except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError: tls:// without a key in dask's configuration
+    except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError means tls:// without a key in dask's configuration
         raise InputError(
             f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"
         ) from None
@@ -125,19 +131,20 @@ def _answering(scheduler: str) -> str:
 
 
 def on_cluster(client: Client) -> Runner:
-    """Runs chunks on the workers of a cluster, each chunk on one thread: a worker with more threads runs more chunks at a time."""
+    """Return a function that runs chunks on a cluster, each on one thread. A worker with n threads runs n chunks at a time."""
     return lambda work, chunks: stream(client, partial(run_chunk, work, threads=1), chunks)
 
 
 def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
-    """Number and result of each chunk, in the order in which they are ready; few are in flight at a time.
+    """Yield the number and the result of each chunk, in the order in which they are ready, with few in flight at a time.
 
-    `run` and the chunks must be picklable. A chunk that fails holds up no others: when these are done ChunksLostError is raised.
-    Raises InputError at once where a worker has another version of the engine, ChunksLostError where the scheduler is lost.
+    `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError is raised when these
+    are done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
     """
     try:
         yield from _streamed(client, run, chunks)
-    except (OSError, CancelledError):  # of the connection: what fails in a chunk is its result, what fails in the store is not here
+    except (OSError, CancelledError):
+        # Only the connection can raise these: an error in a chunk is part of its result, and the store is not written here.
         raise ChunksLostError(GONE) from None
 
 
@@ -176,14 +183,14 @@ def _submitted(client: Client, run: Callable[[Chunk], Result], chunk: Chunk) -> 
 
 
 def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:
-    """On the worker."""
+    """Run a chunk on the worker, after checking that it has the expected version of the engine. Raises InputError."""
     if engine() != expected:
         raise InputError("sweep: a worker of the cluster has another version of stickslip: install the same everywhere")
     return run(chunk)
 
 
 def _why(future: Future) -> str:
-    """What became of a chunk. Raises what stops the whole sweep: a user's mistake, or a scheduler that is gone."""
+    """Return why a chunk was not finished. Raises what stops the whole sweep: InputError, or ChunksLostError without scheduler."""
     from distributed import KilledWorker
 
     if future.status != "error":

@@ -1,4 +1,4 @@
-"""How each member of a sweep ended: codes in the variable `status` of the dataset."""
+"""The codes that say how each member of a sweep ended, in the variable `status` of the dataset."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY
 
 NOT_RUN = -1
+"""Code of a member that has not been run; a new store is filled with it."""
 BAD_PARAMETERS = 10
-"""The scenario with these values is refused, or cannot start."""
+"""Code of a member whose scenario is refused, or cannot start."""
 ERROR = 14
-"""A quantity could not be worked out, or something else went wrong."""
+"""Code of a member for which a quantity could not be calculated, or something else went wrong."""
 MEANINGS = {
     NOT_RUN: "not_run",
     0: "finished",
@@ -24,8 +25,10 @@ MEANINGS = {
     16: "off_the_law",
     ERROR: "error",
 }
-"""Names of the codes: below 0 the member has not been run, from 10 on it failed and has no results but a reason."""
+"""Names of the codes. Codes below 0 are of members that have not been run; members with codes from 10 on failed, and have a reason
+in place of results."""
 FIRST_FAILURE = 10
+"""Smallest code of a failure."""
 
 CODES = {
     FINISHED: 0,
@@ -38,4 +41,4 @@ CODES = {
     OFF_THE_LAW: 16,
     REFUSED: BAD_PARAMETERS,
 }
-"""Of the codes that end a run (`engine.state.layout`, `trajectory.status`)."""
+"""The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""

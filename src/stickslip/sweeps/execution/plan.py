@@ -1,4 +1,4 @@
-"""A sweep before it is run: scenario, design, what is kept, and how it is cut into chunks."""
+"""The plan of a sweep before it is run: scenario, design, results to keep, and the division into chunks."""
 
 from __future__ import annotations
 
@@ -19,13 +19,18 @@ from stickslip.sweeps.design.series import read_series
 from stickslip.sweeps.execution.chunk import Work
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
-"""Into how many chunks a sweep is cut, and their sizes, one by one and in the compiled batch: what is lost when it is killed."""
+"""Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).
+
+The upper limit is LARGEST_CHUNK if members run one by one, and LARGEST_BATCH in the compiled batch. The chunks in progress are
+lost when a sweep is killed.
+"""
 SAMPLES = 200
+"""Default number of times at which curves are sampled."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A sweep: `tile` is the shape of a chunk, along each dimension of the design."""
+    """The plan of a sweep. `tile` is the shape of a chunk: its number of members along each dimension of the design."""
 
     scenario: Scenario
     design: Design
@@ -33,33 +38,33 @@ class Plan:
     tile: tuple[int, ...]
 
     def with_tile(self, tile: tuple[int, ...]) -> Plan:
-        """The same with chunks of another shape."""
+        """Return the same plan with chunks of another shape."""
         return replace(self, tile=tile)
 
     @property
     def tiles(self) -> tuple[int, ...]:
-        """How many chunks along each dimension."""
+        """Return the number of chunks along each dimension."""
         return tuple(-(-whole // part) for whole, part in zip(self.design.shape, self.tile, strict=True))
 
     @property
     def chunks(self) -> int:
-        """How many chunks."""
+        """Return the number of chunks."""
         return math.prod(self.tiles)
 
     def region(self, chunk: int) -> tuple[slice, ...]:
-        """Where the members of a chunk stand, along each dimension."""
+        """Return the slices of the members of a chunk along each dimension."""
         places = np.unravel_index(chunk, self.tiles)
         spans = zip(places, self.tile, self.design.shape, strict=True)
         return tuple(slice(int(at) * part, min((int(at) + 1) * part, whole)) for at, part, whole in spans)
 
     def members(self, chunk: int) -> NDArray[np.intp]:
-        """Numbers of the members of a chunk, in the order of its results."""
+        """Return the indices of the members of a chunk, in the order of its results."""
         region = self.region(chunk)
         places = np.meshgrid(*(np.arange(one.start, one.stop) for one in region), indexing="ij")
         return np.ravel_multi_index(tuple(place.ravel() for place in places), self.design.shape)
 
     def values(self, chunk: int) -> dict[str, Values]:
-        """What the members of a chunk have for each key."""
+        """Return the values of the members of a chunk (SI, one-dimensional arrays) for each key."""
         return self.design.values(self.members(chunk))
 
 
@@ -76,7 +81,7 @@ def make_plan(
     chunk: int | None = None,
     where: str = "sweep: vary",
 ) -> Plan:
-    """Everything that `stickslip.sweep` is asked for, checked. Raises InputError."""
+    """Make a plan from the arguments of `stickslip.sweep`, after checking them. Raises InputError."""
     chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
     members_of = read_design(chosen, vary, design, members, seed, where)
     kept = quantities_named(quantities)
@@ -93,7 +98,11 @@ def _chunk_size(members: int, chunk: int | None, work: Work) -> int:
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:
-    """Shape of a chunk of at most `size` members: whole last dimensions as far as they fit, then an even part of one, then ones."""
+    """Return the shape of a chunk of at most `size` members.
+
+    The last dimensions are not divided as long as they fit. The next one is divided into nearly equal parts, and a chunk has the
+    length 1 along all dimensions before it.
+    """
     tile: list[int] = []
     for length in reversed(shape):
         parts = -(-length // max(size, 1))

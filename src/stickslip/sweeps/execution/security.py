@@ -1,7 +1,7 @@
-"""Keys of a cluster that is started here: dask's processes run whatever code they are sent, so only their owner may send any.
+"""Keys of a local cluster. The processes of dask run any code that is sent to them, so only their owner may send it.
 
-Every user of this machine reaches its loopback address. Scheduler, workers and client of one sweep therefore share a key that is
-made for it and kept in memory: a connection without it is refused.
+The loopback address of a machine can be reached by all its users. The scheduler, the workers and the client of a sweep therefore
+share a key that is made for this sweep and kept in memory. A connection without the key is refused.
 """
 
 from __future__ import annotations
@@ -16,16 +16,17 @@ if TYPE_CHECKING:
     from distributed import Security
 
 NAME = "dask-internal"
+"""Host name in the certificate, the same as in the keys that dask makes."""
 LASTS = 365
-"""Days for which a key is valid: more than a sweep takes."""
+"""Number of days for which a key is valid: longer than any sweep takes."""
 PATIENCE = 60.0
-"""Time (s) that making a key may take."""
+"""Longest time (s) that making a key may take."""
 
 
 def own_security() -> Security | None:
     """Return a new key for a cluster, made by the package `cryptography` or by the command `openssl`.
 
-    Where there is neither, return None and say so in one line: other users of this machine could then run code in the cluster.
+    If neither exists, return None and write one line of warning: other users of the machine could then run code in the cluster.
     """
     from distributed import Security
 
@@ -45,8 +46,8 @@ def own_security() -> Security | None:
 
 
 def _made_by_openssl() -> tuple[str, str] | None:
-    """Return a key and its certificate as texts, None where there is no such command or it fails."""
-    with tempfile.TemporaryDirectory() as folder:  # which only this user can enter
+    """Return a key and its certificate as texts, or None if there is no such command or it fails."""
+    with tempfile.TemporaryDirectory() as folder:  # only this user can enter the folder
         key, certificate = Path(folder, "key.pem"), Path(folder, "certificate.pem")
         command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", str(LASTS), "-subj", f"/CN={NAME}"]
         command += ["-addext", f"subjectAltName=DNS:{NAME}", "-keyout", str(key), "-out", str(certificate)]

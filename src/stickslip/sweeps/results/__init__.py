@@ -1,1 +1,1 @@
-"""The store of a sweep and what is read from it."""
+"""The store of a sweep, and what is derived from its contents."""

@@ -1,4 +1,4 @@
-"""Where the answer of a sweep changes: between which members a count or a yes and no differ."""
+"""The places at which the answer of a sweep changes: neighbouring members between which a count or a flag differs."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import numpy as np
 import xarray as xr
 
 LARGEST_COUNT = 12
-"""Of different values: a quantity with more of them is no answer with a few cases."""
+"""Largest number of distinct values of a quantity that is reported case by case; one with more is a number, not a case."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """Along a key a quantity differs between so many `pairs` of neighbours, all of them between `low` and `high` (SI, or words)."""
+    """The changes of a quantity along one key: the number of pairs of neighbours that differ, and the values that enclose them.
+
+    All `pairs` pairs lie between the values `low` and `high` of the key (SI, or words).
+    """
 
     key: str
     pairs: int
@@ -22,7 +25,7 @@ class Change:
 
 
 def cases(dataset: xr.Dataset, name: str) -> dict[float, int]:
-    """How many members have each value, where these are a few whole numbers; else nothing."""
+    """Return the number of members with each value, if the values are a few whole numbers; otherwise an empty dictionary."""
     values = dataset[name].to_numpy()
     found, count = np.unique(values[np.isfinite(values)], return_counts=True)
     if found.size > LARGEST_COUNT or not np.array_equal(found, np.round(found)):
@@ -31,7 +34,7 @@ def cases(dataset: xr.Dataset, name: str) -> dict[float, int]:
 
 
 def changes(dataset: xr.Dataset, name: str) -> list[Change]:
-    """Along each key of a grid, where neighbours differ; a missing value differs from none."""
+    """Return the changes of a quantity along each key of a grid. A missing value (NaN) counts as no change."""
     values, found = dataset[name], []
     for axis, key in enumerate(values.dims):
         if key not in dataset.coords:

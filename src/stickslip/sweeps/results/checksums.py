@@ -1,8 +1,9 @@
-"""Checksums of the store of a sweep: what was written is what is read, or a line says which file is not.
+"""Checksums of the store of a sweep: a file that is not as it was written is detected, and named in an error.
 
-A store has a folder `.checksums` with one list for what is laid out at the start (all metadata and coordinates), and one for each
-chunk of members that is done. A list has a line a file, its SHA-256 and its name, `-` for one that there is not (zarr writes no
-file for a part that is empty), and at its end the SHA-256 of these lines. zarr and xarray do not look at this folder.
+A store has a folder `.checksums` with one list for the files that exist from the start (all metadata and coordinates), and one
+list for each chunk of members that is done. A list has one line for each file, with its SHA-256 and its name. The SHA-256 is `-`
+for a file that does not exist, because zarr writes no file for an empty part of an array. The last line is the SHA-256 of the
+lines before it. zarr and xarray ignore this folder.
 """
 
 from __future__ import annotations
@@ -15,12 +16,15 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
 FOLDER = ".checksums"
+"""Name of the folder of lists inside a store."""
 LAYOUT = "layout"
+"""Name of the list of the files that exist from the start; the other lists have the number of a chunk as their name."""
 ABSENT = "-"
+"""Text in place of the SHA-256 of a file that does not exist."""
 
 
 def digest_of(path: Path) -> str:
-    """Return the SHA-256 of a file, or ABSENT."""
+    """Return the SHA-256 of a file, or ABSENT if it does not exist."""
     if not path.is_file():
         return ABSENT
     with path.open("rb") as file:
@@ -28,7 +32,7 @@ def digest_of(path: Path) -> str:
 
 
 def vouch_for(store: Path, name: str, files: Iterable[str]) -> None:
-    """Write the list of this name, of files as they are now."""
+    """Write the list with this name, for the given files as they are now."""
     (store / FOLDER).mkdir(exist_ok=True)
     lines = "".join(f"{digest_of(store / file)} {file}\n" for file in sorted(files))
     text = lines + hashlib.sha256(lines.encode()).hexdigest() + "\n"
@@ -36,18 +40,18 @@ def vouch_for(store: Path, name: str, files: Iterable[str]) -> None:
 
 
 def vouch_for_layout(store: Path) -> None:
-    """Write the list of all files that there are."""
+    """Write the list LAYOUT of all files that exist now."""
     files = [path.relative_to(store).as_posix() for path in store.rglob("*") if path.is_file()]
     vouch_for(store, LAYOUT, [file for file in files if not file.startswith(FOLDER)])
 
 
 def is_vouched_for(store: Path, name: str) -> bool:
-    """Return True if there is a list of this name."""
+    """Return True if there is a list with this name."""
     return (store / FOLDER / name).is_file()
 
 
 def check_all(store: Path) -> set[str]:
-    """Check every file that a list of the store names, and return their names.
+    """Check every file that is named in a list of the store, and return the names of these files.
 
     Raises InputError at the first file that is not as it was written.
     """
@@ -59,7 +63,7 @@ def check_all(store: Path) -> set[str]:
 
 
 def _checked(store: Path, name: str) -> Iterator[str]:
-    """Yield the files of a list, each after it has been checked. Raises InputError."""
+    """Yield the names of the files of a list, each after the file has been checked. Raises InputError."""
     for line in _lines(store / FOLDER / name):
         wanted, _, file = line.partition(" ")
         parts = Path(file).parts
@@ -74,7 +78,7 @@ def _checked(store: Path, name: str) -> Iterator[str]:
 
 
 def _lines(path: Path) -> list[str]:
-    """Return the lines of a list but the last. Raises InputError for a list that does not have its checksum."""
+    """Return the lines of a list except the last. Raises InputError if the last line is not the checksum of the others."""
     content = path.read_bytes()
     lines, last = content[:-65], content[-65:]
     if last != hashlib.sha256(lines).hexdigest().encode() + b"\n":

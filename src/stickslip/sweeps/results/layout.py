@@ -1,4 +1,4 @@
-"""How the store of a sweep is laid out: coordinates, variables and attributes, all before the first member is run."""
+"""The layout of the store of a sweep: coordinates, variables and attributes, all created before the first member is run."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ from stickslip.sweeps.execution.plan import Plan
 from stickslip.trajectory.checkpoint import engine
 
 FORMAT = 1
-"""Version of the layout."""
+"""Version of the layout, stored in the attribute `stickslip_sweep`."""
 STATUS, REASON = "status", "reason"
+"""Names of the variables that say how a member ended, and why it failed."""
 WORDS = "string"
+"""The zarr data type of words."""
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
-"""With a checksum behind every chunk, which each reader of zarr looks at, whenever it reads it."""
+"""Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
 
 
 def lay_out(plan: Plan, place: Any) -> None:
-    """Begin a store (folder or zarr store) with everything but results."""
+    """Create a store (a folder or a zarr store) with its attributes and coordinates, and with variables that are still empty."""
     group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
     design, series = plan.design, plan.work.series
     for key, column in zip(design.keys, design.columns, strict=True):
@@ -59,13 +61,13 @@ def _put(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple
 def _new(
     group: zarr.Group, plan: Plan, name: str, about: dict[str, Any], kind: str, fill: Any, samples: tuple[tuple[str, int], ...] = ()
 ) -> None:
-    """An empty variable over the members; `samples` is one more dimension, its name and its length."""
+    """Create an empty variable over the members. `samples` holds the name and length of a further dimension, if there is one."""
     more = tuple(length for _, length in samples)
     group.create_array(
         name,
         shape=plan.design.shape + more,
         chunks=plan.tile + more,
-        chunk_key_encoding={"name": "default", "separator": "."},  # no folders in folders
+        chunk_key_encoding={"name": "default", "separator": "."},  # all chunks of a variable lie in one folder
         dtype=kind,
         compressors=COMPRESSED,
         fill_value=fill,
@@ -75,14 +77,14 @@ def _new(
 
 
 def array_of(group: zarr.Group, name: str) -> zarr.Array[Any]:
-    """A variable of a store."""
+    """Return a variable or coordinate of a store."""
     found = group[name]
     assert isinstance(found, zarr.Array)
     return found
 
 
 def results(plan: Plan) -> dict[str, dict[str, Any]]:
-    """Attributes of each result by its name."""
+    """Return the attributes (name in words, unit, flags) of each result, by the name of its variable."""
     problem, series = plan.scenario.problem, plan.work.series
     found: dict[str, dict[str, Any]] = {}
     for one in plan.work.quantities:
@@ -97,7 +99,7 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
 
 
 def attributes(plan: Plan) -> dict[str, Any]:
-    """Where the results come from: all that decides them, and nothing else."""
+    """Return the attributes of the store: everything that determines the results, and nothing else."""
     design, scenario = plan.design, plan.scenario
     about = {"design": design.kind, "keys": [key.name for key in design.keys], "chunk": list(plan.tile)}
     return {

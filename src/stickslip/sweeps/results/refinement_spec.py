@@ -1,4 +1,4 @@
-"""What decides the members of a refined map; kept with them, so that its cells can be found again."""
+"""The recipe that determines the members of a refined map. It is stored with them, so that the cells can be reconstructed."""
 
 from __future__ import annotations
 
@@ -18,14 +18,16 @@ from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.outcome import NOT_RUN
 
 ATTRIBUTE = "refinement"
-"""Attribute of the dataset that holds the recipe (JSON)."""
+"""Name of the attribute of the dataset that holds the recipe (JSON)."""
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """A search: the quantity whose changes are looked for, coarse values by key (SI, ascending), and how far to go.
+    """The recipe of a search: the quantity whose changes are sought, the coarse grid, and the limits of the refinement.
 
-    Raises InputError for a factor that is not above 1, and like `Lattice`.
+    `columns` holds the coarse values of each key (SI, ascending), and `logarithmic` says which of them are spaced evenly in the
+    logarithm. `depth` is the number of halvings, `most` the largest number of members, and `kept` the names of the quantities in
+    the dataset. Raises InputError for a factor that is not above 1, for numbers that are not whole, and in the cases of `Lattice`.
     """
 
     quantity: str
@@ -45,7 +47,7 @@ class Recipe:
 
     @classmethod
     def of(cls, quantity: str, axes: Sequence[Axis], kept: list[str], depth: int, factor: float | None, most: int) -> Self:
-        """Along these axes. Raises InputError for an axis that is not of numbers in ascending order."""
+        """Make the recipe of a search over these axes. Raises InputError unless each has two or more numbers in ascending order."""
         for axis in axes:
             if not axis.key.unit or len(axis.values) < 2 or not (axis.values[1:] > axis.values[:-1]).all():
                 raise InputError(f"refine: {axis.key.name} needs two or more numbers in ascending order: LOW..HIGH:POINTS")
@@ -54,7 +56,7 @@ class Recipe:
 
     @classmethod
     def read(cls, dataset: xr.Dataset) -> Self:
-        """That of a dataset. Raises InputError where there is none."""
+        """Read the recipe of a dataset. Raises InputError if it has none."""
         if ATTRIBUTE not in dataset.attrs:
             raise InputError("this sweep was not made by stickslip.refine")
         return cls(**json.loads(dataset.attrs[ATTRIBUTE]))
@@ -64,16 +66,19 @@ class Recipe:
 
     @cached_property
     def lattice(self) -> Lattice:
-        """The points there may be."""
+        """Return the finest grid, which contains every point of the search."""
         return Lattice(tuple(len(column) for column in self.columns.values()), self.depth)
 
     @property
     def differ(self) -> Differ:
-        """When answers differ."""
+        """Return the comparison that decides whether answers differ."""
         return unequal if self.factor is None else apart(self.factor)
 
     def values(self, points: Integers) -> tuple[Floats, ...]:
-        """What members at points (members, axes) of the finest grid have for each key (SI): coarse steps in equal parts."""
+        """Return the values of each key (SI) at points (members, axes) of the finest grid.
+
+        Each coarse step is divided into equal parts, or into equal ratios on a logarithmic axis.
+        """
         found = []
         for values, log, place in zip(self.columns.values(), self.logarithmic, points.T / self.lattice.size(0), strict=True):
             column = np.array(values)
@@ -86,8 +91,18 @@ class Recipe:
 
 @dataclass(frozen=True, eq=False)
 class RefinedMap:
-    """The cells of a refined map: lower and upper ends by key, shape (cells,) (SI), the answer around each (NaN where it
-    changes, and where there is none), and whether it changes there."""
+    """The cells of a refined map.
+
+    Attributes
+    ----------
+    low, high : dict of str to array, shape (cells,)
+        Lower and upper ends of the cells, by key (SI).
+    answer : array, shape (cells,)
+        The answer around each cell: NaN where it changes, and where there is none. With a factor, the mean of the smallest and
+        the largest answer.
+    changes : array of bool, shape (cells,)
+        True where the answer changes around the cell.
+    """
 
     low: dict[str, Floats]
     high: dict[str, Floats]
@@ -95,7 +110,7 @@ class RefinedMap:
     changes: NDArray[np.bool_]
 
     def at(self, key: str, value: float) -> RefinedMap:
-        """The cells that a value of one of the keys cuts; of two that touch there, the upper."""
+        """Return the cells that contain a value (SI) of one of the keys; where two cells touch at this value, the upper one."""
         low, high = self.low[key], self.high[key]
         rows = (low <= value) & ((value < high) | (high == high.max()) & (value == high))
         lower, upper = ({name: one[rows] for name, one in side.items()} for side in (self.low, self.high))
@@ -103,9 +118,22 @@ class RefinedMap:
 
 
 def cells_of(dataset: xr.Dataset) -> RefinedMap:
-    """The cells of what `stickslip.refine` returns; of a search that was stopped, those of the rounds that are complete.
+    """Reconstruct the cells of a refined map.
 
-    Raises InputError for any other dataset, and where not even the coarse grid is complete.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        What `stickslip.refine` returned or stored. If the search was stopped, only its complete rounds are used.
+
+    Returns
+    -------
+    RefinedMap
+        The cells that were not halved.
+
+    Raises
+    ------
+    InputError
+        For any other dataset, and for a search that was stopped before its coarse grid was complete.
     """
     recipe = Recipe.read(dataset)
     missing = np.flatnonzero(dataset["status"].values == NOT_RUN)
@@ -118,7 +146,7 @@ def cells_of(dataset: xr.Dataset) -> RefinedMap:
 
 
 def _again(recipe: Recipe, answers: Floats) -> Refined:
-    """The same search, as far as there are answers."""
+    """Repeat a search with stored answers, as far as there are any. It asks for the same points in the same order."""
     place = 0
 
     def evaluate(points: Integers) -> Floats:

@@ -1,9 +1,9 @@
-"""Results of a sweep as a zarr store: written chunk by chunk, readable by `xarray.open_zarr` at any time.
+"""The results of a sweep in a zarr store that is written chunk by chunk, and can be read by `xarray.open_zarr` at any time.
 
-The store is laid out before the first member is run, and then only chunks are added, each file under a temporary name that is
-changed when it is whole. The status of a chunk is written last: a chunk without it is not done and is run again. Nothing in the
-store depends on when, in which order or by whom chunks were done. Each file has a checksum (see `checksums`), and that of a chunk
-is written behind its status; a chunk without it is not done either.
+The store is laid out before the first member is run. After that, only chunks are added, each file under a temporary name that is
+changed when the file is complete. The status of a chunk is written after its results: a chunk without a status is not done, and is
+run again. Nothing in the store depends on when, in which order or by which process chunks were done. Each file has a checksum (see
+`checksums`). The checksums of a chunk are written after its status, and a chunk without them is not done either.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from stickslip.sweeps.results.store_compatibility import as_begun
 
 
 class ResultStore:
-    """The store of a plan, in memory or in a folder, which it holds against other sweeps until the end of its `with`."""
+    """The store of a plan, in memory or in a folder. A folder is locked against other sweeps until the `with` block ends."""
 
     def __init__(self, plan: Plan, place: Path | MemoryStore, hold: int | None = None) -> None:
         self.plan, self.place, self._hold = plan, place, hold
@@ -42,19 +42,22 @@ class ResultStore:
 
     @classmethod
     def in_memory(cls, plan: Plan) -> Self:
-        """An empty one."""
+        """Create an empty store in memory."""
         place = MemoryStore()
         lay_out(plan, place)
         return cls(plan, place)
 
     @classmethod
     def at(cls, plan: Plan, path: Path) -> Self:
-        """A new one, or the one that is there if it is of the same plan. Raises InputError for anything else that is there."""
+        """Create a store in a folder, or continue the one in it if it has the same plan. Raises InputError otherwise.
+
+        Temporary files and unverified chunks, left by a sweep that was killed, are removed first.
+        """
         if not path.exists():
             _create(plan, path)
         check_store(path)
         plan, hold = as_begun(plan, path), _held(path)
-        for draft in path.rglob("*.partial"):  # of a sweep that was killed while it wrote
+        for draft in path.rglob("*.partial"):  # left by a sweep that was killed while it wrote
             draft.unlink()
         store = cls(plan, path, hold)
         with writing(path):
@@ -71,30 +74,30 @@ class ResultStore:
             self._hold = None
 
     def files_of(self, chunk: int) -> list[str]:
-        """Return the files of a chunk in a folder, that of its status first."""
+        """Return the names of the files of a chunk in a folder, the file of its status first."""
         place = [str(int(at)) for at in np.unravel_index(chunk, self.plan.tiles)]
         arrays = ((name, array_of(self.group, name)) for name in (STATUS, REASON, *self.plan.work.names))
         return [f"{name}/c.{'.'.join(place + ['0'] * (array.ndim - len(place)))}" for name, array in arrays]
 
     def chunks_without_checksums(self) -> list[int]:
-        """Return the chunks with a status for which no list of checksums vouches: a writer died there, or the list was lost."""
+        """Return the chunks that have a status but no list of checksums: a writer died there, or the list was lost."""
         if not isinstance(self.place, Path):
             return []
         found = (chunk for chunk in range(self.plan.chunks) if not is_vouched_for(self.place, str(chunk)))
         return [chunk for chunk in found if (self.place / self.files_of(chunk)[0]).exists()]
 
     def missing(self) -> list[int]:
-        """Chunks that are not done."""
+        """Return the numbers of the chunks that are not done, judged by the status of the first member of each."""
         firsts = self.status[tuple(slice(None, None, part) for part in self.plan.tile)]
         return [int(chunk) for chunk in np.flatnonzero(firsts.ravel() == NOT_RUN)]
 
     @property
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
-        """Codes of all members (`outcome.MEANINGS`), in the shape of the design."""
+        """Return the status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
         return np.asarray(array_of(self.group, STATUS)[...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
-        """Keep what came of a chunk. Raises InputError where it cannot be written."""
+        """Store the results of a chunk. Raises InputError if they cannot be written."""
         region = self.plan.region(chunk)
         shape = tuple(one.stop - one.start for one in region)
         reasons = np.full(len(result.status), "", dtype=np.dtypes.StringDType())
@@ -109,7 +112,7 @@ class ResultStore:
                 vouch_for(self.place, str(chunk), self.files_of(chunk))
 
     def dataset(self) -> xr.Dataset:
-        """What is there: lazily from a folder, as arrays from memory."""
+        """Return the contents as a dataset, read lazily from a folder, or as arrays from a store in memory."""
         found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
         ordered = found[[*self.plan.work.names, STATUS, REASON]]
         return ordered if isinstance(self.place, Path) else ordered.load()
@@ -117,7 +120,7 @@ class ResultStore:
 
 @contextmanager
 def writing(place: Path | MemoryStore) -> Iterator[None]:
-    """Around what writes: an error of the file system becomes one line. Raises InputError."""
+    """Turn an error of the file system in the `with` block into an InputError with a message of one line."""
     try:
         yield
     except OSError as error:
@@ -127,9 +130,9 @@ def writing(place: Path | MemoryStore) -> Iterator[None]:
 
 
 def check_store(path: Path) -> set[str]:
-    """Check every file of a store against its checksum, and return their names.
+    """Check every file of a store against its checksum, and return the names of the files.
 
-    Raises InputError for a file that is damaged, and for what is no store of ours.
+    Raises InputError for a damaged file, and for anything that is not the store of a sweep.
     """
     if not is_vouched_for(path, LAYOUT):
         ours = (path / FOLDER).exists() or _mentions(path / "zarr.json", b"stickslip_sweep")
@@ -143,7 +146,23 @@ def _mentions(path: Path, word: bytes) -> bool:
 
 
 def open_store(path: str | Path) -> xr.Dataset:
-    """Open the store of a sweep or of a refined map to read it, lazily, once every file has been checked. Raises InputError."""
+    """Open the store of a sweep or of a refined map, after checking every file against its checksum.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        Folder of the store.
+
+    Returns
+    -------
+    xarray.Dataset
+        The contents, whose variables are read when they are used.
+
+    Raises
+    ------
+    InputError
+        If there is no such store, if a file is damaged or unreadable, or if chunks of a stopped sweep have no checksums.
+    """
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such store")
@@ -163,13 +182,17 @@ def _create(plan: Plan, path: Path) -> None:
 
 
 def publish(path: Path, fill: Callable[[Path], object]) -> None:
-    """Let `fill` make a store under another name, then give it its own: whole or not at all. Raises InputError."""
+    """Let `fill` create a store under a temporary name, then rename it to `path`, so that it appears complete or not at all.
+
+    Raises InputError.
+    """
     draft = draft_beside(path)
     try:
         with writing(path):
             fill(draft)
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore", category=UserWarning)  # not part of the format, but what xarray wishes
+                # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
+                warnings.simplefilter("ignore", category=UserWarning)
                 zarr.consolidate_metadata(draft)
             vouch_for_layout(draft)
             draft.replace(path)
@@ -179,9 +202,9 @@ def publish(path: Path, fill: Callable[[Path], object]) -> None:
 
 
 def _held(path: Path) -> int | None:
-    """Hold a store for one sweep, until the number that is returned is closed or the process ends, however it does.
+    """Lock a store for one sweep, until the returned file descriptor is closed or the process ends in any way.
 
-    Raises InputError where another one holds it.
+    Returns None where there are no such locks. Raises InputError if another sweep has locked the store.
     """
     try:
         import fcntl

@@ -1,4 +1,4 @@
-"""Whether the store that is there is of the sweep that is wanted."""
+"""Check that an existing store belongs to the sweep that is to be continued."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from stickslip.sweeps.design.series import TIME
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.layout import REASON, STATUS, array_of, attributes, results
 
+# Attributes that must agree, and the end of the error message if they do not.
 _SAME = {
     "stickslip_sweep": "by another version of stickslip",
     "source": "by another version of stickslip",
@@ -22,7 +23,7 @@ _SAME = {
 
 
 def as_begun(plan: Plan, path: Path) -> Plan:
-    """The plan with the chunks with which the store was begun. Raises InputError where the store is not of this plan."""
+    """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
     try:
         group = zarr.open_group(path, mode="r")
     except (OSError, ValueError, KeyError):
@@ -38,7 +39,7 @@ def as_begun(plan: Plan, path: Path) -> Plan:
 
 
 def _design_differs(plan: Plan, group: zarr.Group) -> str:
-    """What is another one in the store, in words; nothing if it is the same."""
+    """Return in words how the design or the quantities of the store differ from the plan; "" if they agree."""
     design, series = plan.design, plan.work.series
     theirs = json.loads(str(group.attrs["design"]))
     if theirs["keys"] != [key.name for key in design.keys] or theirs["design"] != design.kind:
