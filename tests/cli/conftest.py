@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import stickslip as ss
 from stickslip.cli.main import main
 
 
@@ -14,6 +15,12 @@ class Outcome:
     code: int
     out: str
     err: str
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_engine() -> None:
+    """Compile the engine before any test looks at what a command says on standard error."""
+    ss.simulate(ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), ss.friction.Coulomb(0.6, 0.5), initial_excess=0.0), 1.0)
 
 
 @pytest.fixture

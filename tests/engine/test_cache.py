@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from numba.core.caching import FunctionCache
 
 from stickslip.engine.codegen.cache import CACHE
 from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
@@ -145,3 +146,18 @@ def test_a_folder_of_another_user_is_not_private(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("os.geteuid", lambda: 12345)
     with pytest.raises(NotPrivateError, match="belongs to another user"):
         private_folder(folder)
+
+
+def test_somebody_who_waits_for_the_compiler_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The engine takes seconds to compile; a small kernel does not, and nothing is said of it."""
+    from stickslip.engine.codegen import cache
+    from stickslip.engine.loop import advance
+    from stickslip.engine.series.polynomial import total
+
+    said: list[str] = []
+    monkeypatch.setattr(FunctionCache, "load_overload", lambda *_: None)
+    monkeypatch.setattr(cache, "announce", cache.announce)
+    cache.announce_by(said.append)
+    for kernel in (advance, total):
+        assert kernel.entry._cache.load_overload(None, None) is None  # type: ignore[attr-defined]
+    assert said == ["compiling the engine for this machine: about 15 s, once"]

@@ -107,12 +107,13 @@ def progress_to(what: str) -> Iterator[Callable[..., Any]]:
         def report(*news: Any) -> None:
             bar.update(task, description=" ".join([what, *(clean(str(one)) for one in news)]))
 
-        if shown.is_terminal and not _is_compiled():
-            report("compiling the engine, which happens once and takes about a minute")
-        yield report
+        if not shown.is_terminal:
+            yield report
+            return
+        from stickslip.engine.codegen.cache import announce_by, tell  # with the compiler behind it, which is needed now anyway
 
-
-def _is_compiled() -> bool:
-    from stickslip.engine.codegen.cache import CACHE  # with the compiler behind it, which is needed now anyway
-
-    return any(CACHE.glob("*/engine.advance*.nbi"))
+        announce_by(report)
+        try:
+            yield report
+        finally:
+            announce_by(tell)

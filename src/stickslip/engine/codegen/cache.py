@@ -172,16 +172,20 @@ class SealedCache(FunctionCache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
+        self._name = function.__name__
         locator = self._impl.locator
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Return the compiled function, or None if it has to be compiled."""
+        """Return the compiled function, or None if it has to be compiled, which is said where it takes long."""
         try:
-            return super().load_overload(signature, context)
+            found = super().load_overload(signature, context)
         except Exception as error:  # whatever unpickling raises: it must not end every later start
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None
+        if found is None and self._name in SLOW:
+            announce(SLOW[self._name])
+        return found
 
     def save_overload(self, signature: Any, data: Any) -> None:
         """Keep a compiled function for later starts if there is room for it."""
@@ -189,6 +193,21 @@ class SealedCache(FunctionCache):
             super().save_overload(signature, data)
         except OSError as error:
             tell(f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again")
+
+
+SLOW = {
+    "advance": "compiling the engine for this machine: about 15 s, once",
+    "run_group": "compiling what batches add to the engine: a few seconds, once",
+}
+"""What to say before the functions are compiled whose compilation somebody waits for."""
+announce: Callable[[str], None] = tell
+"""Says it: on standard error, unless a progress display has put something else here."""
+
+
+def announce_by(show: Callable[[str], None]) -> None:
+    """Let something else than standard error say what is being compiled."""
+    global announce
+    announce = show
 
 
 def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
