@@ -1,4 +1,4 @@
-"""Bodies: what stands behind the contact."""
+"""Define the bodies that slide on the contact: a rigid block on a spring and an elastic slab."""
 
 from stickslip.bodies.elastic_slab import ElasticSlab
 from stickslip.bodies.spring_block import SpringBlock
@@ -6,5 +6,6 @@ from stickslip.bodies.spring_block import SpringBlock
 Body = ElasticSlab | SpringBlock
 
 BODIES: dict[str, type[Body]] = {body.kind: body for body in (SpringBlock, ElasticSlab)}
+"""Every body by its name in scenario files."""
 
 __all__ = ["BODIES", "Body", "ElasticSlab", "SpringBlock"]

@@ -1,4 +1,4 @@
-"""The infinite elastic slab, paper eqs (7)-(13)."""
+"""Define the infinite elastic slab, paper eqs (7)-(13)."""
 
 from __future__ import annotations
 
@@ -17,8 +17,31 @@ from stickslip.foundation.quantities import check_quantities, quantity
 class ElasticSlab:
     """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
 
-    The driver is rigid (driver_impedance = inf: the displacement is prescribed), a half-space of finite impedance, or a dead
-    load (0). A contact mass (kg/m^2) gives the sliding face inertia of its own: no shocks then.
+    Parameters
+    ----------
+    density
+        Density rho (kg/m^3).
+    wave_speed
+        Shear wave speed c (m/s).
+    thickness
+        Thickness h (m).
+    normal_stress
+        Normal stress S on the contact (Pa), compression positive.
+    driver_impedance
+        Impedance Zd of the driver at x = h (Pa s/m): inf for a rigid driver, which prescribes the displacement; a finite value
+        for a half-space; 0 for a dead load.
+    contact_mass
+        Mass of the sliding face per unit area (kg/m^2). If it is positive the slip rate has no jumps (shocks).
+    p_wave_speed
+        Compressional wave speed (m/s). It is needed only for the normal strain, which is constant.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3) `wave_speed`.
+
+    Notes
+    -----
     Source: Campillo et al. 1996, eqs (7)-(13).
     """
 
@@ -46,54 +69,78 @@ class ElasticSlab:
 
     @property
     def impedance(self) -> float:
-        """Z = rho c, in Pa s/m."""
+        """Return the wave impedance Z = rho c (Pa s/m)."""
         return self.density * self.wave_speed
 
     @property
     def shear_modulus(self) -> float:
-        """G = rho c^2, in Pa."""
+        """Return the shear modulus G = rho c^2 (Pa)."""
         return self.density * self.wave_speed**2
 
     @property
     def two_way_time(self) -> float:
-        """R = 2 h / c, in s."""
+        """Return the two-way travel time R = 2 h / c (s)."""
         return 2.0 * self.thickness / self.wave_speed
 
     @property
     def reflection(self) -> float:
-        """r = (Z - Zd) / (Z + Zd): what comes back from the driver; -1 rigid, 0 matched, +1 dead load."""
+        """Return the reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
+
+        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load.
+        """
         if np.all(np.isinf(self.driver_impedance)):
             return -1.0
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
 
     @property
     def is_driven_rigidly(self) -> bool:
-        """Whether the driver sends everything back, turned round: r = -1."""
+        """Return True if the driver reflects the whole wave with its sign reversed, r = -1."""
         return bool(np.all(self.reflection == -1.0))
 
     @property
     def stiffness(self) -> float:
-        """G / h, in Pa/m: the load lost per metre of slow slip under a rigid driver."""
+        """Return the stiffness G / h (Pa/m), the decrease of the load per metre of slow slip under a rigid driver."""
         return self.shear_modulus / self.thickness
 
     @property
     def normal_strain(self) -> float:
-        """u_x = -S / (lambda + 2 G), constant through the slab. Needs p_wave_speed."""
+        """Return the normal strain -S / (lambda + 2 G), no unit, which is constant through the slab.
+
+        Raises
+        ------
+        InputError
+            If the slab has no `p_wave_speed`.
+        """
         if self.p_wave_speed is None:
             raise InputError("ElasticSlab: normal_strain needs p_wave_speed")
         return -self.normal_stress / (self.density * self.p_wave_speed**2)
 
     def equivalent_block(self) -> SpringBlock:
-        """The block of the slab's slow limit, for each m^2 of contact: K = G/h, m = rho h/3 + contact mass, S of 1 m^2, no damping.
+        """Return the block to which the slab is equivalent in slow motion, for each m^2 of contact.
 
-        Slow means that the motion takes many travel times h/c. The slab is then sheared evenly, its velocity falls linearly from
-        the contact to the driver and it holds rho (h/3) v^2/2. It is the order (omega h/c)^2 of the load that the slab takes at
-        the frequency omega, G k cot(k h) = G/h - omega^2 rho h/3 + ..., k = omega/c. It is not the block of the first mode, whose
-        m = rho h/2 and K = (pi^2/8) G/h swings at the slab's own c/4h: this one swings at sqrt(3) c/(2 pi h), 10 % faster.
+        Returns
+        -------
+        SpringBlock
+            A block without damping: K = G/h (N/m), m = rho h/3 + contact mass (kg) and the normal force S of 1 m^2 (N).
 
-        Raises InputError for a driver that is not rigid: its impedance stands behind the spring, not beside it as a block's
-        damping does; in the slow limit it lets the spring go and leaves a mass rho h.
-        Source: Campillo et al. 1996 compare the two bodies; which block a slab is follows from its eqs (7)-(13) as above.
+        Raises
+        ------
+        InputError
+            If the driver is not rigid. A finite impedance acts in series with the spring, not in parallel as the damping of a
+            block does; in the slow limit the driver then gives way, no spring is left, and the slab is a mass rho h.
+
+        Notes
+        -----
+        Motion is slow if it takes many travel times h/c. The shear strain is then uniform, the velocity falls linearly from the
+        contact to the driver, and the kinetic energy is rho (h/3) v^2/2 per unit area.
+
+        At the angular frequency omega the load per unit displacement of the contact is G k cot(k h) = G/h - omega^2 rho h/3 + ...,
+        with k = omega/c. The block matches the terms up to the order (omega h/c)^2.
+
+        It is not the block that matches the first mode: that one has m = rho h/2 and K = (pi^2/8) G/h and oscillates at the
+        frequency c/(4h) of the slab, whereas this block oscillates at sqrt(3) c/(2 pi h), which is 10 % higher.
+
+        Source: Campillo et al. 1996 compare the two bodies; the equivalence follows from their eqs (7)-(13) as above.
         """
         if not math.isinf(self.driver_impedance):
             raise InputError(

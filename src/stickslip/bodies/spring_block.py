@@ -1,4 +1,4 @@
-"""The rigid block on a spring, paper eqs (4)-(6)."""
+"""Define the rigid block on a spring, paper eqs (4)-(6)."""
 
 from __future__ import annotations
 
@@ -15,6 +15,19 @@ from stickslip.foundation.quantities import check_quantities, quantity
 class SpringBlock:
     """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
 
+    Parameters
+    ----------
+    mass
+        Mass m (kg).
+    stiffness
+        Stiffness K of the spring (N/m).
+    normal_force
+        Normal force S on the contact (N), compression positive.
+    damping
+        Viscous resistance to slip (N s/m).
+
+    Notes
+    -----
     Source: Campillo et al. 1996, eqs (4)-(6); the damping is an addition.
     """
 
@@ -27,7 +40,7 @@ class SpringBlock:
 
     @property
     def period(self) -> float:
-        """2 pi sqrt(m / K): the period of free oscillation, in s."""
+        """Return the period of free undamped oscillation, 2 pi sqrt(m / K) (s)."""
         found: float = 2.0 * math.pi * np.sqrt(self.mass / self.stiffness)
         return found
 

@@ -1,7 +1,7 @@
-"""Friction laws: what the contact resists with.
+"""Export the friction laws of the contact.
 
-The laws of the registry are exported by the names of their classes; `FromExpression`, `FromFunction` and `FromTable` make laws
-of what users bring.
+The laws of the registry are exported under the names of their classes. `FromExpression`, `FromFunction` and `FromTable` make
+laws from formulas, functions and measured points of users.
 """
 
 from stickslip.friction.custom.from_expression import ExpressionLaw, FromExpression

@@ -1,4 +1,4 @@
-"""Two laws joined: one of slip, one of slip rate."""
+"""Join two laws, one of slip and one of slip rate, into one."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from stickslip.friction.law import Formula, FrictionLaw
 from stickslip.friction.parameters import Part, declare
 
 PREFIXES = ("slip_", "rate_")
-"""Put before the names of the parts' parameters."""
+"""Prefixes of the parameters of the slip law and of the rate law, so that names of the two cannot collide."""
 
 
 @dataclass(frozen=True)
 class CompositeLaw(FrictionLaw):
-    """A slip law and a rate law, joined number by number. It counts and remembers slip as its slip law does.
+    """A law whose friction coefficient combines the values of a slip law and a rate law.
 
-    One of the two may have knots, not both. The parts are `slip` and `rate`; their parameters get these names in front.
+    It counts and remembers slip as its slip law does. At most one of the two parts may have knots.
     """
 
     slip: FrictionLaw = declare(Part("a law of slip"))  # noqa: RUF009 - makes a dataclass field
@@ -29,11 +29,11 @@ class CompositeLaw(FrictionLaw):
     @staticmethod
     @abstractmethod
     def join(slip: Any, rate: Any) -> Any:
-        """The friction coefficient from the values of the two parts: numbers or expressions."""
+        """Return the friction coefficient from the values of the two parts, which are numbers or expressions."""
 
     @property
     def parts(self) -> tuple[FrictionLaw, FrictionLaw]:
-        """The slip law and the rate law."""
+        """Return the slip law and the rate law."""
         return self.slip, self.rate
 
     def check(self) -> None:
@@ -87,7 +87,7 @@ class CompositeLaw(FrictionLaw):
 
 
 class Prefixed:
-    """The parameters of a part, seen through those of the whole."""
+    """Give a part's formula access to its own parameters, which the whole law stores under prefixed names."""
 
     def __init__(self, law: SimpleNamespace, prefix: str) -> None:
         self._law, self._prefix = law, prefix

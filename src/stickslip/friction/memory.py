@@ -1,4 +1,4 @@
-"""Slip memory: which part of the slip behind it a law of slip knows."""
+"""Define slip memory: the part of the past slip that a law of slip takes into account."""
 
 from __future__ import annotations
 
@@ -12,17 +12,33 @@ from stickslip.friction.parameters import Choice, declare
 
 @dataclass(frozen=True, kw_only=True)
 class RemembersSlip(FrictionLaw):
-    """A law of slip, with the choice of how far back its slip is counted.
+    """A law of slip that lets users choose from when slip is counted.
 
-    `memory` "all" counts from the start of the run, initial slip included. "since-arrest" counts from the last arrest: the
-    contact heals at once. What is counted is what `counts` says: net slip, signed, or the path. An arrest is rest for a positive
-    time: the contact can stay where it is under the friction it has then, not yet healed. Then the counted slip is 0 again, and
-    where the healed strength is below the load the contact slips again at once. Passing through rest straight into slip the other
-    way is no arrest, nor is touching it: with inertia, rest that would be over, unhealed, within the root of `rtol` of a period or
-    round trip. The start is an arrest: with "since-arrest" initial slip does not enter friction.
+    Parameters
+    ----------
+    memory
+        "all" counts slip from the start of the run, initial slip included. "since-arrest" counts slip from the last arrest, at
+        which the contact heals at once.
+
+    Raises
+    ------
+    InputError
+        If `memory` is "since-arrest" and friction does not depend on slip.
+
+    Notes
+    -----
+    The class attribute `counts` says which slip is counted: net slip with its sign, or the path.
+
+    An arrest is rest for a positive time: the contact can stay at rest under the friction that it has at that moment, before it
+    heals. The counted slip is then set back to 0. If the healed strength is below the load, the contact slips again at once.
+
+    Passing through v = 0 directly into slip in the other direction is not an arrest. Touching v = 0 is not one either: with
+    inertia, a touch is rest that, without healing, would end within sqrt(rtol) times the period or the round trip.
+
+    The start of the run counts as an arrest: with "since-arrest" the initial slip does not enter friction.
     """
 
-    memory: Literal["all", "since-arrest"] = declare(  # type: ignore[misc] # here a choice of the user
+    memory: Literal["all", "since-arrest"] = declare(  # type: ignore[misc] # a class attribute in the base, a field here
         Choice("slip that friction remembers", ("all", "since-arrest")), "all"
     )
 

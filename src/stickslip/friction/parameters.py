@@ -1,7 +1,7 @@
-"""What a law may be made of besides single quantities: series of numbers, other laws, text, a choice, named numbers.
+"""Declare fields of laws other than single quantities: series of numbers, other laws, text, choices and named numbers.
 
-Like `stickslip.foundation.quantities`, a field says once what it is: laws check themselves from it, and scenarios, `stickslip new`
-and the documentation read it.
+As in `stickslip.foundation.quantities`, each field is declared once. Laws check their values against the declaration; scenarios,
+`stickslip new` and the documentation read it.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 
 LARGEST_SERIES = 10_000
-"""Points of the longest series."""
+"""Largest number of points in a series: a limit for scenario files, which are untrusted."""
 
 
 class Named(NamedTuple):
-    """A number with a name, and its unit in powers of m, kg and s ("m s^-1") where one was given."""
+    """A number with a name and, if one was given, its unit in powers of m, kg and s, such as "m s^-1"."""
 
     name: str
     value: float
@@ -31,20 +31,20 @@ class Named(NamedTuple):
 
 @dataclass(frozen=True)
 class Series:
-    """Numbers of one kind, ascending where they are places."""
+    """Declare a list of numbers of one kind, optionally in ascending order."""
 
     item: Quantity
     ascending: bool = False
     least: int = 2
-    """Numbers in the shortest series."""
+    """Smallest number of entries: two points by default, which a line needs."""
 
     @property
     def meaning(self) -> str:
-        """What the numbers are."""
+        """Return the meaning of the numbers."""
         return self.item.meaning
 
     def check(self, owner: str, name: str, value: Any) -> tuple[float, ...]:
-        """The numbers as a tuple of floats; InputError names owner, field and the place in the series."""
+        """Return the numbers as a tuple of floats. Raise InputError that names owner, field and index."""
         if isinstance(value, str | Mapping) or not isinstance(value, Iterable) or np.ndim(np.asarray(value, object)) != 1:
             raise InputError(f"{owner}: {name} must be a list of numbers in {self.item.label}, got {type(value).__name__}")
         numbers = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
@@ -59,24 +59,24 @@ class Series:
 
 @dataclass(frozen=True)
 class Part:
-    """Another friction law."""
+    """Declare a field that holds another friction law."""
 
     meaning: str
 
     def check(self, owner: str, name: str, value: Any) -> Any:
-        """The law as it is; what it must be is for the law that holds it to say."""
+        """Return the law unchanged: the law that contains it checks it."""
         return value
 
 
 @dataclass(frozen=True)
 class Text:
-    """A line of text."""
+    """Declare a line of text with at most `longest` characters."""
 
     meaning: str
     longest: int
 
     def check(self, owner: str, name: str, value: Any) -> str:
-        """The text without spaces around it."""
+        """Return the text without leading and trailing spaces. Raise InputError if it is not text or is too long."""
         if not isinstance(value, str):
             raise InputError(f"{owner}: {name} must be text, got {type(value).__name__}")
         if len(value) > self.longest:
@@ -86,13 +86,13 @@ class Text:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of several words."""
+    """Declare a choice between several words."""
 
     meaning: str
     allowed: tuple[str, ...]
 
     def check(self, owner: str, name: str, value: Any) -> str:
-        """The word, if it is allowed."""
+        """Return the word if it is allowed, else raise InputError."""
         if not isinstance(value, str) or value not in self.allowed:
             raise InputError(f"{owner}: {name} {ascii(value)[:60]} is unknown; {nearest(str(value), self.allowed)}")
         return value
@@ -100,13 +100,13 @@ class Choice:
 
 @dataclass(frozen=True)
 class NamedNumbers:
-    """Numbers with names of the user's choice; `key` is what scenario files call the table of them."""
+    """Declare numbers whose names users choose; `key` is the name of their table in scenario files."""
 
     meaning: str
     key: str
 
     def check(self, owner: str, name: str, value: Any) -> tuple[Named, ...]:
-        """The numbers, from a mapping or from triples of name, value and unit."""
+        """Return the numbers from a mapping of names to values, or from tuples of name, value and optional unit."""
         triples = value.items() if isinstance(value, Mapping) else value
         named = [Named(*one) for one in triples]
         return tuple(Named(n, Quantity("1", "").check(owner, f"{self.key} {ascii(n)[:60]}", x), unit) for n, x, unit in named)
@@ -116,14 +116,14 @@ Field = Series | Part | Text | Choice | NamedNumbers
 
 
 def declare(field: Field, default: Any = dataclasses.MISSING) -> Any:
-    """A dataclass field that holds what `field` says."""
+    """Return a dataclass field with the given declaration and default."""
     return dataclasses.field(default=default, metadata={"field": field})
 
 
 def fields_of(kind: type) -> dict[str, tuple[Quantity | Field, Any]]:
-    """Everything that a law declares, quantities too: by name, with its default.
+    """Return the declaration and the default of each field of a law, quantities included, by name.
 
-    First what has no default (MISSING), last the choices.
+    Fields without a default (MISSING) come first and choices come last.
     """
     found = [(f.name, f.metadata.get("quantity") or f.metadata.get("field"), f.default) for f in dataclasses.fields(kind)]
     found.sort(key=lambda one: (one[2] is not dataclasses.MISSING, isinstance(one[1], Choice)))
@@ -131,7 +131,10 @@ def fields_of(kind: type) -> dict[str, tuple[Quantity | Field, Any]]:
 
 
 def check_fields(owner: Any) -> None:
-    """Check everything that a frozen dataclass declares and store what came out; None stays where it is the default."""
+    """Check all declared fields of a frozen dataclass and store the converted values.
+
+    A field that is None is left as it is if None is its default.
+    """
     for name, (declared, default) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if value is not None or default is not None:

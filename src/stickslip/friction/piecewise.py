@@ -1,4 +1,4 @@
-"""Laws in stretches: a polynomial between each two places of slip or slip rate, constant outside them."""
+"""Define laws given by points: a polynomial between neighbouring points of slip or slip rate, constant outside them."""
 
 from __future__ import annotations
 
@@ -15,44 +15,47 @@ from stickslip.friction.law import Formula, FrictionLaw
 
 
 def along_slip(law: Any, u: Any, v: Any) -> Any:
-    """Cubic in slip from the start of the stretch."""
+    """Return a cubic in slip, counted from the start of the piece."""
     step = u - law.start
     return law.value + step * (law.first + step * (law.second + step * law.third))
 
 
 def along_rate(law: Any, u: Any, v: Any) -> Any:
-    """Cubic in slip rate from the start of the stretch."""
+    """Return a cubic in slip rate, counted from the start of the piece."""
     step = v - law.start
     return law.value + step * (law.first + step * (law.second + step * law.third))
 
 
 def line_along_slip(law: Any, u: Any, v: Any) -> Any:
-    """Straight in slip from the start of the stretch."""
+    """Return a linear function of slip, counted from the start of the piece."""
     return law.value + law.first * (u - law.start)
 
 
 def line_along_rate(law: Any, u: Any, v: Any) -> Any:
-    """Straight in slip rate from the start of the stretch."""
+    """Return a linear function of slip rate, counted from the start of the piece."""
     return law.value + law.first * (v - law.start)
 
 
 @dataclass(frozen=True)
 class PiecewiseLaw(FrictionLaw):
-    """A law given by points. All its pieces share one formula, each with its own `start`, value there and derivatives."""
+    """A law given by points; all its pieces share one formula, each with its own `start` and its own coefficients."""
 
     @property
     @abstractmethod
     def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Places (m or m/s), ascending, and the friction coefficients there."""
+        """Return the ascending slips (m) or slip rates (m/s) of the points, and the friction coefficients there."""
 
     @property
     @abstractmethod
     def shape(self) -> tuple[Formula, tuple[str, ...]]:
-        """The formula of every piece and the names of its parameters: `start`, then coefficients of rising order."""
+        """Return the formula of every piece and the names of its parameters: `start`, then coefficients in ascending order."""
 
     @abstractmethod
     def polynomials(self) -> NDArray[np.float64]:
-        """Coefficients of rising order for each stretch between two points, counted from the first of the two."""
+        """Return polynomial coefficients in ascending order, one row for each interval between neighbouring points.
+
+        The variable of the polynomial is the distance from the lower end of the interval.
+        """
 
     def check(self) -> None:
         places, values = self.points
@@ -61,12 +64,12 @@ class PiecewiseLaw(FrictionLaw):
 
     @property
     def _before(self) -> bool:
-        """Whether there is anything below the first point: net slip may be negative, path and rate may not."""
+        """Return True if a piece is needed below the first point: net slip may be negative, path and slip rate may not."""
         return self.points[0][0] > 0.0 or (self.counts == "net" and self.knot_variable == "slip")
 
     @cached_property
     def rows(self) -> NDArray[np.float64]:
-        """Values of the parameters, a row for each piece."""
+        """Return the values of the parameters, one row for each piece."""
         places, values = (np.array(one) for one in self.points)
         rows = np.zeros((len(places), len(self.parameters())))
         rows[:, 0], rows[:, 1] = places, values
@@ -100,5 +103,5 @@ class PiecewiseLaw(FrictionLaw):
 
 
 def lines(places: tuple[float, ...], values: tuple[float, ...]) -> NDArray[np.float64]:
-    """Value and slope of the straight stretch behind each point but the last."""
+    """Return the value at the lower end, and the slope, of the straight line between each two neighbouring points."""
     return np.column_stack((values[:-1], np.diff(values) / np.diff(places)))

@@ -1,4 +1,7 @@
-"""Every friction law, by its name in scenario files. Adding a law is one file in `laws` and one line here."""
+"""List every friction law by its name in scenario files.
+
+To add a law, add one file to `laws`, and its import and one line here.
+"""
 
 from __future__ import annotations
 

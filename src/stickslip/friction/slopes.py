@@ -1,4 +1,4 @@
-"""How friction changes with slip and with slip rate."""
+"""Compute the derivatives of friction with respect to slip and slip rate."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from stickslip.friction.law import FrictionLaw
 
 
 def slopes(law: FrictionLaw, slip: float, rate: float = 0.0) -> tuple[float, float]:
-    """Derivatives of mu with respect to slip (1/m) and slip rate (s/m) at a law slip (m) and a rate (m/s; 0 means 0+).
+    """Return the derivatives of mu with respect to slip (1/m) and slip rate (s/m).
 
-    By a complex step, which loses no digits: a law's formula is analytic.
+    `slip` (m) is the slip as the law counts it; `rate` (m/s) is not negative, and 0 means the limit 0+. The derivatives come from
+    a complex step, which loses no digits because the formula of a law is analytic.
     """
     piece = int(law.piece_at(slip, rate))
     step = 1e-100

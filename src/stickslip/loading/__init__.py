@@ -1,6 +1,6 @@
-"""Loading histories: a pull rate or a far stress that varies in time.
+"""Define loading histories: a pull rate or a far stress that varies in time.
 
-Adding one is one file beside these and one line in HISTORIES.
+To add one, add one file to this folder and its class to HISTORIES.
 """
 
 from stickslip.loading.contract import LoadingHistory, Segment, Tone
@@ -12,5 +12,6 @@ from stickslip.loading.steps import Steps
 HISTORIES: dict[str, type[LoadingHistory]] = {
     history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
 }
+"""Every built-in loading history by its name in scenario files."""
 
 __all__ = ["HISTORIES", "HoldAndSlide", "LoadingHistory", "PiecewiseLinear", "Segment", "Sinusoidal", "Steps", "Tone"]

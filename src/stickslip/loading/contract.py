@@ -1,4 +1,4 @@
-"""What every loading history has in common: a value that runs straight from break to break, and at most one tone on top of it."""
+"""Define the base class of loading histories: a piecewise linear function of time, plus at most one sinusoid."""
 
 from __future__ import annotations
 
@@ -16,23 +16,43 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction.parameters import check_fields
 
 VARYING = "m/s or Pa"
-"""Unit of what varies: m/s for a pull rate, Pa for a far stress."""
+"""Unit of the varying quantity: m/s for a pull rate, Pa for a far stress."""
 
 
 class Segment(NamedTuple):
-    """From a time (s) on: a value there and its slope (in a second), up to the next segment or for ever."""
+    """A straight part of a history, which lasts until the next segment or for ever.
+
+    Parameters
+    ----------
+    start
+        Time at which the segment begins (s since the start of the run).
+    value
+        Value at `start` (m/s or Pa).
+    slope
+        Change of the value per second (m/s^2 or Pa/s).
+    """
 
     start: float
     value: float
     slope: float
 
     def at(self, time: float) -> float:
-        """The value at a time (s)."""
+        """Return the value (m/s or Pa) at a time (s since the start of the run)."""
         return self.value + self.slope * (time - self.start)
 
 
 class Tone(NamedTuple):
-    """amplitude sin(frequency t + phase), with the frequency in rad/s."""
+    """A sinusoid amplitude sin(frequency t + phase) that is added to the segments.
+
+    Parameters
+    ----------
+    amplitude
+        Amplitude (m/s or Pa).
+    frequency
+        Angular frequency (rad/s), positive.
+    phase
+        Phase at the start of the run (rad).
+    """
 
     amplitude: float
     frequency: float
@@ -40,17 +60,26 @@ class Tone(NamedTuple):
 
 
 SILENT = Tone(0.0, 1.0, 0.0)
+"""The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive."""
 
 
 class LoadingHistory(ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
-    Before the start it was what it is there. Its breaking points are met exactly. A subclass is a frozen dataclass with a `kind`;
-    for scenario files and saved runs its fields are declared as those here are, it has an `example`, and it stands in HISTORIES.
+    Subclass this to add a history.
+
+    Notes
+    -----
+    Before the start of the run the value equals that at the start. A run meets the breaking points of the history exactly.
+
+    A subclass is a frozen dataclass with a `kind`. To be usable in scenario files and saved runs it also declares its fields with
+    `quantity` or `declare`, has an `example`, and is listed in HISTORIES.
     """
 
     kind: ClassVar[str]
+    """Name of the history in scenario files and in HISTORIES."""
     example: ClassVar[dict[str, Any]]
+    """Plausible values of the fields, in the form of a scenario file."""
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -58,15 +87,22 @@ class LoadingHistory(ABC):
     @property
     @abstractmethod
     def segments(self) -> tuple[Segment, ...]:
-        """The straight parts, the first from 0 s on."""
+        """Return the straight parts in ascending order of time; the first begins at 0 s."""
 
     @property
     def tone(self) -> Tone:
-        """What swings on top of them; silent by default."""
+        """Return the sinusoid that is added to the segments; by default its amplitude is 0."""
         return SILENT
 
     def check(self) -> None:
-        """Raises InputError where it cannot be followed: only one of your own can fail."""
+        """Raise InputError if a run cannot follow this history; only a subclass written by a user can fail.
+
+        Raises
+        ------
+        InputError
+            If the class is not a frozen dataclass with a `kind`, the segments do not begin at 0 s and ascend, a number is not
+            finite, or the frequency of the tone is not positive.
+        """
         name, starts = type(self).__name__, [one.start for one in self.segments]
         if not is_dataclass(self) or type(self).__hash__ is None or not hasattr(self, "kind"):
             raise InputError(f"{name}: a loading history must be a frozen dataclass with a kind")
@@ -81,11 +117,22 @@ class LoadingHistory(ABC):
 
     @property
     def first(self) -> float:
-        """The value at 0 s."""
+        """Return the value (m/s or Pa) at 0 s."""
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """The value at times t (s); behind a jump where t is at it, that of the start before 0 s."""
+        """Return the values of the history at given times.
+
+        Parameters
+        ----------
+        t
+            Times (s since the start of the run), of any shape.
+
+        Returns
+        -------
+        array
+            Values (m/s or Pa), with the shape of `t`. At a jump it is the value after the jump; before 0 s it is that at 0 s.
+        """
         time = np.maximum(np.asarray(t, float), 0.0)
         start, value, slope = self._table
         n = np.maximum(np.searchsorted(start, time, side="right") - 1, 0)

@@ -1,4 +1,4 @@
-"""Slides between holds, as in the laboratory's slide-hold-slide tests of how friction heals."""
+"""Define slides with holds between them, as in laboratory slide-hold-slide tests of how friction heals."""
 
 from __future__ import annotations
 
@@ -12,8 +12,21 @@ from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
 @dataclass(frozen=True)
 class HoldAndSlide(LoadingHistory):
-    """Slides of one length at one value, with holds of given lengths between them; the last slide goes on for ever.
+    """Slides of one duration at one value, with holds of given durations between them; the last slide lasts for ever.
 
+    Parameters
+    ----------
+    slide
+        Value during a slide (m/s or Pa).
+    slide_time
+        Duration of the slide before each hold (s).
+    hold_times
+        Durations of the holds (s), shape (n,) with n >= 1.
+    hold
+        Value during a hold (m/s or Pa).
+
+    Notes
+    -----
     Source: Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests).
     """
 

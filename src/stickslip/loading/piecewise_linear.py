@@ -1,4 +1,4 @@
-"""Straight from point to point: ramps, and whatever was measured."""
+"""Define a loading history that is linear between given points: ramps, and measured histories."""
 
 from __future__ import annotations
 
@@ -14,7 +14,20 @@ from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
 @dataclass(frozen=True)
 class PiecewiseLinear(LoadingHistory):
-    """Straight from point to point, constant before the first and after the last."""
+    """A straight line from point to point, constant before the first point and after the last.
+
+    Parameters
+    ----------
+    times
+        Times of the points (s since the start of the run), not negative, ascending, shape (n,) with n >= 2.
+    values
+        Values at these times (m/s or Pa), shape (n,).
+
+    Raises
+    ------
+    InputError
+        If the numbers of times and values differ, or the times do not ascend.
+    """
 
     kind: ClassVar[str] = "piecewise-linear"
     example: ClassVar[dict[str, Any]] = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}

@@ -1,4 +1,4 @@
-"""A tone: tides, pressure cycles, dynamic triggering."""
+"""Define a sinusoidal loading history, for tides, pressure cycles and dynamic triggering."""
 
 from __future__ import annotations
 
@@ -12,7 +12,19 @@ from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
 
 @dataclass(frozen=True)
 class Sinusoidal(LoadingHistory):
-    """mean + amplitude sin(2 pi t / period + phase)."""
+    """mean + amplitude sin(2 pi t / period + phase).
+
+    Parameters
+    ----------
+    mean
+        Mean value (m/s or Pa).
+    amplitude
+        Amplitude of the oscillation (m/s or Pa).
+    period
+        Period of the oscillation (s).
+    phase
+        Phase of the oscillation at the start of the run (rad).
+    """
 
     kind: ClassVar[str] = "sinusoidal"
     example: ClassVar[dict[str, Any]] = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}

@@ -1,4 +1,4 @@
-"""Jumps from value to value: velocity steps."""
+"""Define a loading history of jumps between constant values, such as velocity steps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,20 @@ from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
 @dataclass(frozen=True)
 class Steps(LoadingHistory):
-    """Jumps at each time to the next value, and stays there: a velocity step, or many."""
+    """Jumps to the next value at each given time, and constant values between them: one velocity step, or several.
+
+    Parameters
+    ----------
+    times
+        Times from which each value holds (s since the start of the run), ascending from 0, shape (n,) with n >= 2.
+    values
+        Values from these times on (m/s or Pa), shape (n,).
+
+    Raises
+    ------
+    InputError
+        If the numbers of times and values differ, or the times do not begin with 0 and ascend.
+    """
 
     kind: ClassVar[str] = "steps"
     example: ClassVar[dict[str, Any]] = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}

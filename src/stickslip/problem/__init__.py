@@ -1,1 +1,1 @@
-"""Problems: a body, a friction law, how they are loaded, and the rule that selects a slip rate."""
+"""Define problems: a body, a friction law, the loading, the initial state, and the rule that selects a slip rate."""

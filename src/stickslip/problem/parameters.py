@@ -1,6 +1,7 @@
-"""One number of a problem by its name: "friction.alpha", "friction.rate.alpha", "body.normal_stress", "initial.slip".
+"""Find a number of a problem by its name, such as "friction.alpha", "friction.rate.alpha", "body.normal_stress", "initial.slip".
 
-A name is the place of the number in a scenario file, with [i] for one of a series; its end is enough where it is clear: "alpha".
+A name is the place of the number in a scenario file, with [i] for the entry i of a series. The end of a name, such as "alpha", is
+enough if only one name ends with it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,17 @@ from stickslip.problem.problem import Problem
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of a problem: its place, its value in SI, and what it may be."""
+    """A number of a problem.
+
+    Parameters
+    ----------
+    name
+        Full name of the number, such as "friction.alpha".
+    value
+        Its value (SI).
+    declared
+        Its unit, its meaning and its allowed range.
+    """
 
     name: str
     value: float
@@ -26,16 +37,50 @@ class Parameter:
 
     @property
     def unit(self) -> str:
-        """Unit of the value (SI; "1" for a pure number)."""
+        """Return the SI unit of the value, "1" for a pure number."""
         return self.declared.unit
 
     def put(self, value: float) -> Problem:
-        """The problem with another value there. Raises InputError where the problem refuses it."""
+        """Return the problem with another value of this number.
+
+        Parameters
+        ----------
+        value
+            The new value (SI).
+
+        Returns
+        -------
+        Problem
+            A new problem; the old one is unchanged.
+
+        Raises
+        ------
+        InputError
+            If the problem does not allow the value.
+        """
         return self._put(value)
 
 
 def parameter(problem: Problem, name: str) -> Parameter:
-    """The number of that name. Raises InputError for a name that fits none, or several."""
+    """Return the number of a problem that has a given name.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+    name
+        The full name of the number, such as "friction.alpha", or the end of it, such as "alpha".
+
+    Returns
+    -------
+    Parameter
+        The number, with its value and unit.
+
+    Raises
+    ------
+    InputError
+        If the name fits no number, or several.
+    """
     found = {one.name: one for one in parameters(problem)}
     if name in found:
         return found[name]
@@ -50,7 +95,19 @@ def parameter(problem: Problem, name: str) -> Parameter:
 
 
 def parameters(problem: Problem) -> Iterator[Parameter]:
-    """Every number of the friction law, its parts included, then of the body, then the slip at the start."""
+    """Iterate over the numbers of a problem.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+
+    Yields
+    ------
+    Parameter
+        The numbers of the friction law and its parts, then those of the body, then the initial slip. Those that are None are left
+        out.
+    """
     yield from _of_law(problem.friction, "friction", lambda law: replace(problem, friction=law))
     for name, declared in quantities_of(type(problem.body)).items():
         value = getattr(problem.body, name)

@@ -1,4 +1,4 @@
-"""A problem: one body, one friction law, how they are loaded and where they start."""
+"""Define a problem: one body, one friction law, the loading and the initial state."""
 
 from __future__ import annotations
 
@@ -18,31 +18,56 @@ from stickslip.loading import LoadingHistory
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
-"""What may be a loading history instead of a number."""
+"""Fields of a problem that may be a loading history instead of a number."""
 
 
 def normal_load(body: Body) -> float:
-    """S: normal stress (Pa) of a slab, normal force (N) of a block."""
+    """Return S: the normal stress (Pa) of a slab, or the normal force (N) of a block."""
     return body.normal_stress if isinstance(body, ElasticSlab) else body.normal_force
 
 
 @dataclass(frozen=True)
 class Problem:
-    """Everything that a run needs but its duration and its tolerance.
+    """Everything that a run needs except its duration and its tolerance.
 
-    The slab's loads are stresses (Pa), the block's forces (N). Give either `initial_load` or `initial_excess`; the excess over
-    the static strength is kept exactly, and a load within 4 ulp of the strength counts as excess 0. With excess 0 the contact
-    stays stuck for pull_rate 0 and slips at 0+ for pull_rate > 0. The excess is measured from the strength against forward slip,
-    also where the load is negative. An initial load beyond the strength slips at once; the left
-    limit at t = 0 is then the initial state at rest.
+    Parameters
+    ----------
+    body
+        An `ElasticSlab`, whose loads are stresses (Pa), or a `SpringBlock`, whose loads are forces (N).
+    friction
+        The friction law of the contact.
+    pull_rate
+        Rate V at which the driver is pulled (m/s), or a loading history of it.
+    initial_slip
+        Slip u0 at the start (m).
+    initial_load
+        Shear load on the contact at the start (Pa or N). Give either `initial_load` or `initial_excess`.
+    initial_excess
+        Initial load minus static strength (Pa or N), stored without rounding. The strength is that against forward slip, also if
+        the load is negative. A law that never sticks has no strength to exceed: give its initial load.
+    initial_state
+        Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, which is
+        healed; for any other law with a state the value must be given.
+    far_stress
+        Shear stress (Pa) far beyond a driver of finite impedance, or a loading history of it. The default is the initial load.
+    far_stress_rate
+        Rate of change of the far stress (Pa/s).
+    selection
+        The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
 
-    A law that never sticks (rate-and-state) has strength 0: give its initial_load. initial_state is the state of a law that has
-    one, in the law's own unit; a law that sticks starts healed (0) by default.
+    Raises
+    ------
+    InputError
+        If a value is missing, out of range or not applicable to this body and law; the message is one line that says which.
 
-    far_stress (Pa; default: the initial load) and far_stress_rate (Pa/s) load a slab through a driver of finite impedance.
-    One of pull_rate and far_stress may vary in time (`stickslip.loading`). A slab begins sheared evenly by the pull rate at 0 s.
-    `selection` names the rule that picks one slip rate where several solve the contact equation, or is that rule
-    (`stickslip.selection`).
+    Notes
+    -----
+    An initial load within 4 ulp of the static strength counts as excess 0. With excess 0 the contact stays stuck if the pull rate
+    is 0 and slips at t = 0+ if the pull rate is positive. With an initial load above the strength the contact slips at once; the
+    left limit at t = 0 is then the initial state at rest.
+
+    At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
+    linear in x, from rest at the contact to the pull rate at 0 s at the driver.
     """
 
     body: Body
@@ -51,7 +76,7 @@ class Problem:
     initial_slip: float = quantity("m", "slip u0 at the start", default=0.0)
     initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
     initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
-    initial_state: float | None = field(default=None)  # its unit is the law's business
+    initial_state: float | None = field(default=None)  # not declared as a quantity, because the law determines its unit
     far_stress: float | LoadingHistory | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
     far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
     selection: str | SelectionRule = "perfect-delay"
@@ -108,17 +133,17 @@ class Problem:
 
     @property
     def varies(self) -> bool:
-        """Whether the loading varies in time, but for a far stress that grows steadily."""
+        """Return True if the pull rate or the far stress is a loading history; a constant far_stress_rate does not count."""
         return len(self._varying) > 0
 
     @property
     def first_pull_rate(self) -> float:
-        """V (m/s) at the start, and before: by it a slab is sheared then."""
+        """Return the pull rate V (m/s) at and before the start, which determines the initial velocity in a slab."""
         return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
 
     @property
     def loading_texts(self) -> dict[str, str]:
-        """How it is loaded, in a word or two each: pull rate, and far stress and its rate of change where there are such."""
+        """Return short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
         return {
             name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
             for name, value, unit in (
@@ -130,30 +155,42 @@ class Problem:
         }
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """V (m/s) at times t (s since the start of the run)."""
+        """Return the pull rate V at given times.
+
+        Parameters
+        ----------
+        t
+            Times (s since the start of the run), of any shape.
+
+        Returns
+        -------
+        array
+            V (m/s), with the shape of `t`.
+        """
         rate = self.pull_rate
         return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 
     @property
     def rule(self) -> str:
-        """Name of the selection rule."""
+        """Return the name of the selection rule."""
         return name_of(self.selection)
 
     @property
     def normal(self) -> float:
-        """S: normal stress (Pa) of the slab, normal force (N) of the block."""
+        """Return S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
         return normal_load(self.body)
 
     @property
     def load_unit(self) -> str:
-        """Unit of loads and tractions: Pa for the slab, N for the block."""
+        """Return the unit of loads and tractions: Pa for the slab, N for the block."""
         return "Pa" if isinstance(self.body, ElasticSlab) else "N"
 
     @property
     def law_slip(self) -> float:
-        """The slip (m) that the friction law sees at the start: u0, its magnitude where the law counts the path, 0 where it heals.
+        """Return the slip (m) that the friction law sees at the start.
 
-        The start is an arrest: a law that remembers slip since the last one knows nothing of u0.
+        It is the initial slip u0, or its magnitude if the law counts the path. It is 0 for a law that remembers slip only since
+        the last arrest, because the start counts as an arrest.
         """
         if self.friction.memory == "since-arrest":
             return 0.0
@@ -161,30 +198,34 @@ class Problem:
 
     @property
     def state(self) -> float:
-        """The state at the start as the law's formulas see it (`FrictionLaw.inner_state`); 0 for a law without one."""
+        """Return the initial state in the form that the formulas use (`FrictionLaw.inner_state`); 0 for a law without one."""
         return 0.0 if self.initial_state is None else self.friction.inner_state(self.initial_state)
 
     @cached_property
     def strength(self) -> float:
-        """Static strength S mu_static(u0) at the start (Pa or N): the reference from which loads are kept as differences.
+        """Return the static strength S mu_static(u0) at the start (Pa or N).
 
-        That of the state 0 (healed) for a law that sticks and has a state; 0 for a law that never sticks.
+        It is the reference from which loads are stored as differences. For a law that sticks and has a state it is the strength
+        in the healed state 0. For a law that never sticks it is 0.
         """
         return self.normal * float(self.friction.static_coefficient(self.law_slip))
 
     @cached_property
     def excess(self) -> float:
-        """Initial load minus static strength (Pa or N), exact where it was given as such."""
+        """Return the initial load minus the static strength (Pa or N), without rounding if it was given as `initial_excess`.
+
+        An initial load within 4 ulp of the strength, forward or backward, counts as equal to it.
+        """
         if self.initial_excess is not None:
             return self.initial_excess
         assert self.initial_load is not None
         rounding = 4 * np.spacing(self.strength)
-        for edge in (self.strength, -self.strength):  # forwards and backwards
+        for edge in (self.strength, -self.strength):  # strengths against forward and against backward slip
             if abs(self.initial_load - edge) <= rounding:
                 return edge - self.strength
         return self.initial_load - self.strength
 
     @property
     def load(self) -> float:
-        """Shear load on the contact at t = 0 (Pa or N)."""
+        """Return the shear load on the contact at t = 0 (Pa or N)."""
         return self.initial_load if self.initial_load is not None else self.strength + self.excess

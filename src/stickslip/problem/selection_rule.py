@@ -1,7 +1,7 @@
-"""What a selection rule is, and the names under which rules are known.
+"""Define selection rules and keep a register of their names.
 
-A rule decides which slip rate a contact takes where several solve its equation. It is a function of the resistance g and of its
-stable branches, slowest first, that returns a table of the loads at which each of them is kept:
+A rule decides which slip rate a contact takes if several solve its equation. It is a function of the resistance g and of the stable
+branches of g, slowest first, and returns a table of the loads between which each branch is kept:
 
     def lazy(g, stable):
         return ss.selection.SelectionTable(stick_to=0.0, keep_from=..., keep_to=...)
@@ -23,18 +23,35 @@ if TYPE_CHECKING:
     from stickslip.contact.equation import Resistance
 
 SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
-"""Rules that are always known (`stickslip.contact.rules.selection`)."""
+"""Names of the built-in rules (`stickslip.contact.rules.selection`)."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
+"""Allowed names of rules: scenario files and saved runs contain them."""
 
 
 @dataclass(frozen=True)
 class SelectionTable:
-    """Excess of the load over the static strength (Pa) at which stick is left, and between which each branch is kept.
+    """The loads at which a contact leaves stick, and between which it stays on each branch.
 
-    Read it so: stuck, stay while excess <= stick_to, else take the first branch i with excess <= keep_to[i]. On branch i stay
-    while keep_from[i] <= excess <= keep_to[i]; above, take the first j > i with excess <= keep_to[j]; below, the last j < i with
-    keep_from[j] <= excess, else stick. A branch that is never taken has keep_from > keep_to. Backwards everything is mirrored.
+    Parameters
+    ----------
+    stick_to
+        Largest excess of the load over the static strength (Pa) at which a stuck contact stays stuck.
+    keep_from
+        Smallest excess (Pa) at which each branch is kept; one number for each branch, slowest first.
+    keep_to
+        Largest excess (Pa) at which each branch is kept. A branch that is never taken has keep_from > keep_to.
+
+    Notes
+    -----
+    A stuck contact stays stuck while excess <= stick_to; otherwise it takes the first branch i that is ever taken with
+    excess <= keep_to[i].
+
+    A contact on branch i stays there while keep_from[i] <= excess <= keep_to[i]. Above that range it takes the first branch j > i
+    that is ever taken with excess <= keep_to[j]. Below that range it takes the last branch j < i that is ever taken with
+    keep_from[j] <= excess, and sticks if there is none.
+
+    For backward slip all signs are reversed.
     """
 
     stick_to: float
@@ -42,20 +59,29 @@ class SelectionTable:
     keep_to: tuple[float, ...]
 
     def is_taken(self, branch: int) -> bool:
-        """Whether the rule takes the branch at any load."""
+        """Return True if the rule takes the branch at some load."""
         return self.keep_from[branch] <= self.keep_to[branch]
 
     def climb(self, branch: int, excess: float) -> int:
-        """The branch taken when the load has risen past what `branch` (-1: stick) keeps."""
+        """Return the branch taken when the load has risen above the range in which `branch` is kept; -1 denotes stick.
+
+        `excess` is the load minus the static strength (Pa).
+        """
         return next(j for j in range(branch + 1, len(self.keep_to)) if self.is_taken(j) and excess <= self.keep_to[j])
 
     def descend(self, branch: int, excess: float) -> int:
-        """The branch taken when the load has fallen below what `branch` keeps; -1 is stick."""
+        """Return the branch taken when the load has fallen below the range in which `branch` is kept; -1 denotes stick.
+
+        `excess` is the load minus the static strength (Pa).
+        """
         return next((j for j in range(branch - 1, -1, -1) if self.keep_from[j] <= min(excess, self.keep_to[j])), -1)
 
 
 class SelectionRule(Protocol):
-    """A rule: from a resistance and its branches, slowest first, to a table. It must not depend on anything else."""
+    """A function that returns a selection table for a resistance and its stable branches, slowest first.
+
+    It must depend on nothing else, and must be hashable.
+    """
 
     def __call__(self, g: Resistance, stable: tuple[Branch, ...], /) -> SelectionTable: ...
 
@@ -67,10 +93,19 @@ registered: dict[str, SelectionRule] = {}
 
 
 def register(name: str, rule: SelectionRule) -> None:
-    """Make a rule known by a name, for problems, scenarios and saved runs. A name may be registered anew.
+    """Register a selection rule under a name, for problems, scenarios and saved runs.
 
-    Raises InputError for a name that is not made of letters, digits, - and _, for one of the built-in rules, and for a rule
-    that cannot be called.
+    Parameters
+    ----------
+    name
+        A letter, then up to 59 letters, digits, - or _. A name that is already registered gets the new rule.
+    rule
+        A function (g, stable) that returns a `SelectionTable`.
+
+    Raises
+    ------
+    InputError
+        If the name is not allowed or is that of a built-in rule, or the rule cannot be called.
     """
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(f"selection.register: a name is made of up to 60 letters, digits, - and _, got {ascii(name)[:60]}")
@@ -82,18 +117,18 @@ def register(name: str, rule: SelectionRule) -> None:
 
 
 def names() -> tuple[str, ...]:
-    """Every rule that can be named: the built-in ones, then the registered ones."""
+    """Return the names of all rules, first the built-in ones and then the registered ones."""
     return (*SELECTION_RULES, *registered)
 
 
 def unknown(name: str) -> str:
-    """The end of a sentence about a name that is no rule."""
+    """Return the end of an error message about a name that no rule has."""
     hint = nearest(name, names())
     return f"is unknown; {hint}" if hint.startswith("did") else f"is unknown; {hint} or a registered one"
 
 
 def name_of(rule: str | SelectionRule) -> str:
-    """The name of a rule: the registered one, else that of the function."""
+    """Return the name of a rule: its registered name, else the name of the function."""
     if isinstance(rule, str):
         return rule
     known = next((name for name, one in registered.items() if one is rule), None)
@@ -101,7 +136,11 @@ def name_of(rule: str | SelectionRule) -> str:
 
 
 def checked(rule: Any) -> str | SelectionRule:
-    """A rule as a problem keeps it: by its name where it has a registered one, else the function. Raises InputError."""
+    """Return a rule in the form in which a problem stores it: its name if it is built in or registered, else the function.
+
+    Raise InputError for an unknown name, for an object that is not a hashable function, and for a function whose own name cannot
+    identify it in a saved run.
+    """
     if isinstance(rule, str):
         if rule not in names():
             raise InputError(f"Problem: selection rule {ascii(rule)[:60]} {unknown(rule)}")

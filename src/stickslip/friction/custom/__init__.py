@@ -1,1 +1,1 @@
-"""Friction laws of what users bring: expressions, functions, measured points."""
+"""Make friction laws from what users supply: expressions, Python functions and measured points."""

@@ -1,4 +1,4 @@
-"""A friction law from an expression in u and v with named parameters."""
+"""Make a friction law from an expression in u and v with named parameters."""
 
 from __future__ import annotations
 
@@ -22,15 +22,38 @@ from stickslip.friction.memory import RemembersSlip
 from stickslip.friction.parameters import Choice, Named, NamedNumbers, Text, declare
 
 MOST_PARAMETERS = 50
+"""Largest number of parameters of an expression, which comes from an untrusted scenario file."""
 LONGEST_NAME = 40
+"""Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExpressionLaw(RemembersSlip):
     """mu(u, v) as the user writes it, u the slip (m) that `counts` names and v >= 0 the slip rate (m/s).
 
-    It must have all derivatives where slip begins, at v = 0, and must not be negative: checked on samples up to 10 m and 10 m/s.
-    `static` is the coefficient at rest where it exceeds the expression at v = 0+. With a unit on any value all units are checked.
+    Parameters
+    ----------
+    expression
+        Friction coefficient (no unit) as text in u (slip, m), v (slip rate, m/s) and named parameters.
+    values
+        Names, values (SI) and optional units of the parameters.
+    static
+        Friction coefficient at rest (no unit), if it exceeds the expression at v = 0+.
+    counts
+        Slip that u denotes: "net" for signed slip, "path" for its accumulated length in both directions.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Raises
+    ------
+    InputError
+        If the expression cannot be read, its units do not agree, its values are not finite or are negative, or a name, an
+        exponent or `static` is not allowed.
+
+    Notes
+    -----
+    The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
+    samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
     """
 
     kind: ClassVar[str] = "expression"
@@ -90,7 +113,7 @@ class ExpressionLaw(RemembersSlip):
 
     @property
     def tree(self) -> Expression:
-        """The formula as a tree."""
+        """Return the formula as an expression tree."""
         try:
             return parse(self.expression, tuple(value.name for value in self.values))
         except InputError as error:
@@ -115,14 +138,20 @@ class ExpressionLaw(RemembersSlip):
         return 0.0 if self.static is None else self.static - float(self.coefficient(0.0))
 
     def range(self) -> tuple[float, float]:
-        """Sure bounds: those of the expression for any slip and slip rate, and never below 0."""
+        """Return bounds of the expression over all slips and slip rates, the lower one raised to 0 if it is negative.
+
+        The upper bound includes the coefficient at rest.
+        """
         slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
         low, high = bounds(self.tree, self.numbers(), slip, (0.0, math.inf))
         return max(low, 0.0), max(high, self.static or 0.0)
 
     @property
     def variation(self) -> float:
-        """Of the values up to 10 m and 10 m/s, if the bounds are not finite."""
+        """Return the finite size by which friction changes (no unit).
+
+        If the bounds are not finite, it is the range of the values at slips up to 10 m and slip rates up to 10 m/s.
+        """
         low, high = self.range()
         if math.isfinite(high):
             return high - low
@@ -132,7 +161,10 @@ class ExpressionLaw(RemembersSlip):
 
     @property
     def rate_scales(self) -> tuple[float, ...]:
-        """Values in m/s, inverses of those in s/m; without units any number of the expression may be either."""
+        """Return the characteristic slip rates (m/s): values in m/s, and inverses of values in s/m.
+
+        If no value has a unit, any number of the expression may be a slip rate or the inverse of one: both are returned.
+        """
         units = {value.unit for value in self.values} - {""}
         scales = [
             abs(value.value) ** (1 if value.unit == "m s^-1" else -1)
@@ -147,6 +179,7 @@ class ExpressionLaw(RemembersSlip):
 
 
 _RATES = ("m s^-1", "m^-1 s")
+"""Units of slip rates and of their inverses, as `si_base` writes them."""
 
 
 def FromExpression(  # noqa: N802 - reads as the law it makes
@@ -156,16 +189,37 @@ def FromExpression(  # noqa: N802 - reads as the law it makes
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
 ) -> ExpressionLaw:
-    """A law from text such as "mu_d + (mu_s - mu_d) / (1 + alpha*v)", with the parameters' values: numbers in SI or "1 mm/s".
+    """Make a friction law from text such as "mu_d + (mu_s - mu_d) / (1 + alpha*v)".
 
-    Raises InputError: one line that says which part is wrong. Nothing is evaluated as Python.
+    Parameters
+    ----------
+    expression
+        Friction coefficient (no unit) in u (slip, m), v >= 0 (slip rate, m/s) and the parameters.
+    parameters
+        Values of the parameters by name: numbers in SI, or texts with a unit such as "1 mm/s".
+    static
+        Friction coefficient at rest (no unit), if it exceeds the expression at v = 0+.
+    counts
+        Slip that u denotes: "net" for signed slip, "path" for its accumulated length in both directions.
+    memory
+        Slip that friction remembers: "all", or "since-arrest" if the contact heals at each arrest.
+
+    Returns
+    -------
+    ExpressionLaw
+        The law. The text is never evaluated as Python.
+
+    Raises
+    ------
+    InputError
+        If a part of the input is wrong; the message is one line that names the part.
     """
     values = tuple(named_value(name, value, "ExpressionLaw:") for name, value in (parameters or {}).items())
     return ExpressionLaw(expression=expression, values=values, static=static, counts=counts, memory=memory)
 
 
 def named_value(name: str, value: float | str, where: str) -> Named:
-    """A parameter from a number or from a text with a unit. Raises InputError beginning with `where`."""
+    """Return a parameter from a number or from a text with a unit. Raise InputError with a message that begins with `where`."""
     if not isinstance(value, str):
         return Named(name, value)
     try:

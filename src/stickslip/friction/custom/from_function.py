@@ -1,4 +1,4 @@
-"""A friction law from a plain Python function: traced once with symbols, so that it has derivatives and compiles."""
+"""Make a friction law from a Python function, by calling it once with symbols: the recorded formula can be compiled."""
 
 from __future__ import annotations
 
@@ -12,20 +12,40 @@ from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parame
 from stickslip.friction.formula.text import to_text
 
 OPTIONS = ("static", "counts", "memory")
+"""Options of the law itself, given together with the values of the function's parameters."""
 
 
 def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
-    """A law from mu(u, v, **parameters): u slip (m), v >= 0 slip rate (m/s).
+    """Make a friction law from a Python function mu(u, v, **parameters).
 
         law = ss.friction.FromFunction(my_function, mu_s=0.8, mu_d=0.3)
 
         @ss.friction.FromFunction(mu_s=0.8, mu_d=0.3)
         def law(u, v, mu_s, mu_d): return mu_d + (mu_s - mu_d) * np.exp(-v / 0.1)
 
-    The function is called once, with symbols: ordinary operators and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh and what
-    they make up are recorded as an `ExpressionLaw`, which a scenario can hold. Branches on values cannot be. Values are numbers
-    in SI or texts with a unit; `static`, `counts` and `memory` go to the law where the function has no parameter of that name.
-    Raises InputError: one line that says what cannot be traced.
+    Parameters
+    ----------
+    function
+        A function of slip u (m), slip rate v >= 0 (m/s) and named parameters that returns the friction coefficient (no unit).
+        Leave it out to use `FromFunction` as a decorator.
+    **given
+        Values of the function's parameters: numbers in SI, or texts with a unit. `static`, `counts` and `memory` are options of
+        the law (see `FromExpression`), unless the function has a parameter of that name.
+
+    Returns
+    -------
+    ExpressionLaw or decorator
+        The law, which a scenario file can also hold; without `function`, a decorator that makes the law.
+
+    Raises
+    ------
+    InputError
+        If the function cannot be traced, or a value is missing or wrong; the message is one line that says what.
+
+    Notes
+    -----
+    The function is called once, with symbols for u, v and the parameters. Ordinary operators, numpy's sin, cos, exp, log, sqrt,
+    tanh and arcsinh, and numpy functions composed of these are recorded. Branches on values cannot be recorded.
     """
     if function is None:
         return lambda decorated: FromFunction(decorated, **given)
@@ -44,7 +64,7 @@ def _law(function: Callable[..., Any], tree: Expression, values: dict[str, Any],
 
 
 def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:
-    """Values of the function's parameters beyond u and v, from its defaults and what is given."""
+    """Return the values of the function's parameters other than u and v, from its defaults and the given values."""
     name = _name(function)
     try:
         signature = inspect.signature(function).parameters.values()
@@ -72,7 +92,7 @@ def _traced(function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
         return as_expression(result)
     except InputError as error:
         raise InputError(f"FromFunction: {name}: {str(error).removeprefix('formula: ')}") from None
-    except Exception as error:  # whatever a user's function raises when it meets symbols
+    except Exception as error:  # a user's function may raise anything when it is called with symbols
         said = " ".join(str(error).split())[:120]
         raise InputError(
             f"FromFunction: {name} cannot be traced ({type(error).__name__}: {said}); "

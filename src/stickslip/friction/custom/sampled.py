@@ -1,4 +1,4 @@
-"""A formula tried at many slips and slip rates: finite, not negative, and with derivatives where slip begins."""
+"""Check a formula at many slips and slip rates: it must be finite, not negative, and have derivatives."""
 
 from __future__ import annotations
 
@@ -13,12 +13,16 @@ from stickslip.friction.formula.expression import RATE, SLIP, Expression, depend
 from stickslip.friction.formula.text import to_text
 
 LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
-"""m and m/s: how far a formula is tried; no earthquake and no machine goes much farther."""
+"""Largest slip (m) and slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed them."""
 TOLERANCE = 1e-12
+"""Size of a negative friction coefficient that still counts as rounding of zero (no unit)."""
 
 
 def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool) -> None:
-    """Raise InputError, with the place, where the formula is negative, not a number, or has no derivative."""
+    """Raise InputError if the formula is negative, is not finite or has no derivative at a sample.
+
+    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip.
+    """
     slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
     if backwards:
         slip = np.concatenate((-slip[:0:-1], slip))
@@ -38,7 +42,7 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
 
 
 def samples(largest: float) -> NDArray[np.float64]:
-    """0 and numbers up to `largest`: evenly spaced, and in geometric progression below."""
+    """Return 0 and sample points up to `largest`: evenly spaced ones, and a geometric progression from 1e-9 `largest`."""
     return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 55), np.linspace(0.0, largest, 51))))
 
 
@@ -49,7 +53,7 @@ def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float6
 
 
 def _check_constants(found: Mapping[Expression, Any]) -> None:
-    """Refuse a part without u and v that has no value, such as 0/0 or a root of -1, also where nothing shows of it."""
+    """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite."""
     for node, value in found.items():
         if np.ndim(value) == 0 and not np.isfinite(value):
             raise InputError(f"the part '{_shown(node)}' is not a finite number: it is {value:g}")

@@ -1,4 +1,4 @@
-"""Friction from measured points, joined by a monotone cubic."""
+"""Make a friction law from measured points, joined by a monotone cubic."""
 
 from __future__ import annotations
 
@@ -21,8 +21,30 @@ from stickslip.friction.piecewise import PiecewiseLaw, along_rate, along_slip
 class TableLaw(RemembersSlip, PiecewiseLaw):
     """mu through measured points of slip or of slip rate: monotone cubic between them, constant outside (no extrapolation).
 
-    The cubic is exact at the points, has no overshoot and a continuous slope between the first and the last. A table of slip
-    counts the path walked, or net slip if `counts` says so.
+    Parameters
+    ----------
+    friction
+        Friction coefficients at the points (no unit), shape (n,) with n >= 2.
+    slip
+        Slips of the points (m), ascending, shape (n,). Give either `slip` or `rate`.
+    rate
+        Slip rates of the points (m/s), ascending, shape (n,).
+    counts
+        Slip that a table of slip sees: "path" for its accumulated length in both directions, "net" for signed slip.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Raises
+    ------
+    InputError
+        If neither or both of `slip` and `rate` are given, their number differs from that of `friction`, they do not ascend, or
+        slips are negative where the path is counted.
+
+    Notes
+    -----
+    The cubic passes through the points without overshoot. Its slope is continuous between the first and the last point.
+
+    Sources: Fritsch & Carlson 1980, SIAM J. Numer. Anal. 17, 238; for the slopes see `monotone_slopes`.
     """
 
     kind: ClassVar[str] = "table"
@@ -57,7 +79,7 @@ class TableLaw(RemembersSlip, PiecewiseLaw):
         return along_slip if self.rate is None else along_rate, ("start", "value", "first", "second", "third")
 
     def polynomials(self) -> NDArray[np.float64]:
-        """Hermite cubics with `monotone_slopes`."""
+        """Return the coefficients of Hermite cubics with the slopes of `monotone_slopes`, in ascending order."""
         places, values = (np.array(one) for one in self.points)
         width, slope = np.diff(places), monotone_slopes(places, values)
         secant, left, right = np.diff(values) / width, slope[:-1], slope[1:]
@@ -74,16 +96,41 @@ def FromTable(  # noqa: N802 - reads as the law it makes
     counts: Literal["net", "path"] = "path",
     memory: Literal["all", "since-arrest"] = "all",
 ) -> TableLaw:
-    """A law through points: friction coefficients at slips (m) or at slip rates (m/s). Raises InputError for bad points."""
+    """Make a friction law through measured points.
+
+    Parameters
+    ----------
+    friction
+        Friction coefficients at the points (no unit), shape (n,) with n >= 2.
+    slip
+        Slips of the points (m), ascending, shape (n,). Give either `slip` or `rate`.
+    rate
+        Slip rates of the points (m/s), ascending, shape (n,).
+    counts
+        Slip that a table of slip sees: "path" for its accumulated length in both directions, "net" for signed slip.
+    memory
+        Slip that friction remembers: "all", or "since-arrest" if the contact heals at each arrest.
+
+    Returns
+    -------
+    TableLaw
+        The law: a monotone cubic between the points, constant outside them.
+
+    Raises
+    ------
+    InputError
+        If the points cannot be used; the message is one line that says why.
+    """
     given: dict[str, Any] = {"slip": slip, "rate": rate}
     return TableLaw(friction=friction, counts=counts, memory=memory, **given)  # type: ignore[arg-type] # checked and made tuples there
 
 
 def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Slopes at the points with which Hermite cubics keep every rise, fall and extremum of the data.
+    """Return slopes at the points with which Hermite cubics preserve every rise, fall and extremum of the data.
 
-    Inside, the weighted harmonic mean of the two secants, or 0 where they differ in sign (Fritsch & Butland 1984, SIAM J. Sci.
-    Stat. Comput. 5, 300); at the ends a three-point formula, limited to keep the shape.
+    At an inner point the slope is the weighted harmonic mean of the two secants, or 0 if they differ in sign or one is 0 (Fritsch
+    & Butland 1984, SIAM J. Sci. Stat. Comput. 5, 300). At the two ends it comes from a three-point formula, limited to preserve
+    the shape.
     """
     width, secant = np.diff(places), np.diff(values) / np.diff(places)
     if len(secant) == 1:
@@ -100,7 +147,11 @@ def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) ->
 
 
 def _end_slope(near: float, far: float, first: float, second: float) -> float:
-    """Slope of the parabola through the three points at an end, 0 or thrice the first secant where it would overshoot."""
+    """Return the end slope of the parabola through the first three points, limited where the cubic would overshoot.
+
+    The limited slope is 0 if it would differ in sign from the first secant. Where the data turn, its size is at most three times
+    that of the first secant.
+    """
     slope = ((2.0 * near + far) * first - near * second) / (near + far)
     if slope * first <= 0.0:
         return 0.0

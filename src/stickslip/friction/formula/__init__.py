@@ -1,1 +1,1 @@
-"""Formulas of friction laws as expression trees: reading, units, differences, bounds, text."""
+"""Represent formulas of friction laws as expression trees: parsing, units, differences, bounds and text."""

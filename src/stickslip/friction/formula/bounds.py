@@ -1,4 +1,7 @@
-"""Bounds of a formula over all slips and slip rates, by interval arithmetic: sure, though not always sharp."""
+"""Bound a formula over intervals of slip and slip rate, by interval arithmetic.
+
+The bounds are guaranteed but for rounding, and need not be sharp. `enclosure` has bounds that include rounding.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,13 @@ import numpy as np
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, nodes_of
 
 Interval = tuple[float, float]
+"""Lower and upper end of an interval."""
 EVERYTHING: Interval = (-math.inf, math.inf)
+"""The interval of a value about which nothing is known."""
 
 
 def bounds(tree: Expression, numbers: Mapping[str, float], slip: Interval, rate: Interval) -> Interval:
-    """Between which numbers the formula stays while slip (m) and rate (m/s) stay in their intervals."""
+    """Return bounds of the formula while slip (m) and slip rate (m/s) stay in their intervals."""
     found: dict[Expression, Interval] = {SLIP: slip, RATE: rate}
     with np.errstate(all="ignore"):
         for node in nodes_of(tree):
@@ -52,7 +57,7 @@ def _hull(*ends: float) -> Interval:
 
 
 def _times(x: float, y: float) -> float:
-    """0 times infinity is 0 here: the infinite end is never reached."""
+    """Return x y, with 0 times infinity equal to 0: an infinite end of an interval is never reached."""
     return 0.0 if x == 0.0 or y == 0.0 else float(np.float64(x) * np.float64(y))
 
 

@@ -1,8 +1,8 @@
-"""Friction as a difference from rest: mu(u + du, v) - mu(u, 0) without losing digits where the two are nearly equal.
+"""Compute friction as a difference from rest, mu(u + du, v) - mu(u, 0), without cancellation where the two are nearly equal.
 
-The rules are those that `stickslip.engine.codegen.taylor_series` compiles, node by node (sin(r+e) - sin(r), expm1, log1p ...); here
-they are read by numpy, for what is worked out once per problem rather than once per step. Near the critical value of a rate law the
-whole structure of the contact lives in 3e-4 Pa out of 8e7: it is visible only in differences.
+The rules for each node (sin(r+e) - sin(r), expm1, log1p ...) are those that `stickslip.engine.codegen.taylor_series` compiles. Here
+numpy evaluates them, for quantities that are computed once per problem rather than once per step. Near the critical value of a
+rate law all folds of the contact equation lie within 3e-4 Pa at a load of 8e7 Pa: they are visible only in differences.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _Node:
-    """A node's value at the reference point, its difference from there, its value, and its derivative by the slip rate.
+    """A node's value at the reference point, its change to the end point, its value there, and its derivative by the slip rate.
 
-    The value is worked out by itself: reference + step would lose the digits of a value that has become small.
+    The value at the end point is computed independently: reference + step would lose the digits of a value that has become small.
     """
 
     reference: Any
@@ -35,11 +35,11 @@ class _Node:
 def difference(
     tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike, state: float = 0.0
 ) -> tuple[Array, Array]:
-    """mu(slip + slip_step, rate) - mu(slip, 0), and d mu / d rate at the end point (s/m).
+    """Return mu(slip + slip_step, rate) - mu(slip, 0), and dmu/drate (s/m) at the end point.
 
-    slip and slip_step in m, rate >= 0 in m/s; the last two broadcast. `tree` is one piece of a law's formula and `parameters`
-    holds the law's numbers by name; `state` is the law's own, the same at both ends. Raises KeyError for a parameter without a
-    value.
+    `slip` and `slip_step` are in m, `rate` >= 0 in m/s; `slip_step` and `rate` broadcast. `tree` is one piece of a law's formula
+    and `parameters` holds the law's numbers by name. `state` is the law's state variable, the same at both points. Raise KeyError
+    for a parameter without a value.
     """
     kept = _Node(state, 0.0, state, 0.0)
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
@@ -77,14 +77,14 @@ def _mul(a: _Node, b: _Node) -> _Node:
 
 def _div(a: _Node, b: _Node) -> _Node:
     start, end = np.divide(a.reference, b.reference), np.divide(a.value, b.value)
-    infinite = np.isinf(b.value)  # an exponential beyond all numbers: nothing is left of the quotient, nor of its slope
+    infinite = np.isinf(b.value)  # an exponential that overflows: the quotient and its slope are zero
     with np.errstate(invalid="ignore"):
         step = np.where(infinite, end - start, (a.step - start * b.step) / b.value)
         return _Node(start, step, end, np.where(infinite, 0.0, (a.slope - end * b.slope) / b.value))
 
 
 def _pow(a: _Node, b: _Node) -> _Node:
-    """The exponent is a number of the law: it does not vary."""
+    """Return the node of a power, whose exponent does not vary: it depends only on numbers of the law."""
     exponent, start, end = b.reference, np.power(a.reference, b.reference), np.power(a.value, b.reference)
     near = (np.asarray(a.reference) > 0) & (np.asarray(a.value) > 0)
     ratio = np.divide(a.step, a.reference, where=near, out=np.zeros(np.broadcast_shapes(near.shape, np.shape(a.step))))
@@ -107,7 +107,7 @@ def _cos(a: _Node) -> _Node:
 def _exp(a: _Node) -> _Node:
     with np.errstate(over="ignore"):
         start, end = np.exp(a.reference), np.exp(a.value)
-    near = np.abs(a.step) < 1.0  # farther off nothing is lost by subtracting, and expm1 may overflow where start underflows
+    near = np.abs(a.step) < 1.0  # for larger steps a subtraction loses nothing, and expm1 may overflow where start underflows
     with np.errstate(invalid="ignore"):
         step = np.where(near, start * np.expm1(np.where(near, a.step, 0.0)), end - start)
         return _Node(start, step, end, end * a.slope)
@@ -124,18 +124,25 @@ def _sqrt(a: _Node) -> _Node:
 
 
 def _tanh(a: _Node) -> _Node:
-    """tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference; farther off nothing is lost by subtracting."""
+    """Return the node of tanh, with tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference.
+
+    Farther from it a subtraction loses no digits.
+    """
     start, end = np.tanh(a.reference), np.tanh(a.value)
-    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)  # both may be 1 but for their last digits
+    # with the same sign, both may differ from 1 or -1 only in their last digits: subtraction would cancel even for large steps
+    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)
     near = (np.abs(a.step) < 1.0) | one_side
-    with np.errstate(over="ignore"):  # 1 / cosh is 0 there, and so is the slope
+    with np.errstate(over="ignore"):  # where cosh overflows, 1 / cosh is 0, and so is the slope
         across = np.cosh(a.value)
         step = np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
         return _Node(start, step, end, a.slope / across / across)
 
 
 def _arcsinh(a: _Node) -> _Node:
-    """arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)) with p, q = sqrt(1 + x^2), sqrt(1 + y^2)."""
+    """Return the node of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
+
+    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2).
+    """
     x, y = a.value, a.reference
     p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
     gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
@@ -143,7 +150,7 @@ def _arcsinh(a: _Node) -> _Node:
 
 
 def _chain(outer: Any, inner: Any) -> Any:
-    """outer * inner; where there is no dependence at all the product is 0, even of an infinite outer slope."""
+    """Return outer * inner, and 0 where inner is 0: without dependence the product is 0 even if the outer slope is infinite."""
     inner = np.asarray(inner, float)
     return np.multiply(outer, inner, where=inner != 0.0, out=np.zeros(np.broadcast_shapes(np.shape(outer), inner.shape)))
 

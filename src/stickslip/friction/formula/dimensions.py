@@ -1,4 +1,4 @@
-"""Units of a formula: whether it comes out as a pure number with u in m and v in m/s."""
+"""Check the units of a formula: it must be a pure number, with u in m and v in m/s."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from stickslip.friction.formula.expression import RATE, SLIP, Expression, nodes_
 from stickslip.friction.formula.text import to_text
 
 Dimension = dict[str, Fraction]
-"""Powers of m, kg and s; zeros are left out."""
+"""Exponents of m, kg and s in a unit; those that are zero are left out."""
 
 
 def dimension(unit: str) -> Dimension:
-    """Powers in a text such as "m s^-1"; an empty one is a pure number."""
+    """Return the dimension of a unit such as "m s^-1"; an empty text is that of a pure number."""
     powers: Dimension = {}
     for factor in unit.split():
         base, _, power = factor.partition("^")
@@ -23,12 +23,15 @@ def dimension(unit: str) -> Dimension:
 
 
 def unit_text(powers: Dimension) -> str:
-    """A dimension as text that `dimension` reads back: "m s^-1"."""
+    """Return a dimension as text such as "m s^-1", which `dimension` can read."""
     return " ".join(base if power == 1 else f"{base}^{power}" for base, power in powers.items() if power)
 
 
 def check_dimensions(tree: Expression, units: Mapping[str, str]) -> None:
-    """Raise InputError, naming the part, unless the formula is a pure number; a parameter without unit is one too."""
+    """Raise InputError that names the part with a wrong unit, unless the formula is a pure number.
+
+    A parameter without a unit is a pure number.
+    """
     found: dict[Expression, Dimension] = {SLIP: dimension("m"), RATE: dimension("m s^-1")}
     for node in nodes_of(tree):
         if node.operation == "parameter":

@@ -1,7 +1,8 @@
-"""Sure bounds of a friction law and of its derivatives by the slip rate, by interval arithmetic on its formula.
+"""Compute guaranteed bounds of a friction law and of its derivatives by the slip rate, by interval arithmetic on its formula.
 
-Each node of the tree carries the Taylor coefficients of its value in the slip rate: value, first derivative and half the second, as
-intervals that hold them at every rate of a cell. Coefficients that vanish for all rates are left out and stay exactly 0.
+Each node of the tree carries the Taylor coefficients of its value in the slip rate: value, first derivative and half the second
+derivative. They are intervals that contain the coefficients at every rate of a cell. Coefficients that vanish for all rates are
+left out and stay exactly 0.
 
 Sources: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis; Griewank & Walther 2008, Evaluating Derivatives, ch. 13.
 """
@@ -23,10 +24,11 @@ Jet = list[Array]
 """Taylor coefficients in the slip rate, at most three, each an array of intervals; missing ones are 0."""
 
 _ORDERS = 3
+"""Number of Taylor coefficients: folds need mu and its first two derivatives by the slip rate."""
 
 
 class NotEnclosedError(Exception):
-    """A formula has an operation or a variable for which there are no sure bounds."""
+    """A formula contains an operation or a variable for which there are no guaranteed bounds."""
 
 
 def enclose(
@@ -48,13 +50,14 @@ def enclose(
     Returns
     -------
     tuple of arrays
-        Bounds of mu (no unit), of dmu/dv (s/m) and of d2mu/dv2 (s2/m2), each of shape (2, n): lower and upper ones. They hold at
-        every slip rate of the cell at which the formula has derivatives, rounding included; (-inf, inf) where nothing is known.
+        Bounds of mu (no unit), of dmu/dv (s/m) and of d2mu/dv2 (s2/m2), each of shape (2, n): lower and upper bounds. They hold
+        at every slip rate of the cell at which the formula has derivatives, rounding included. They are (-inf, inf) where nothing
+        is known.
 
     Raises
     ------
     NotEnclosedError
-        If the formula has an operation or a variable for which there are no sure bounds.
+        If the formula contains an operation or a variable for which there are no guaranteed bounds.
     """
     tree = _bounded_form(tree)
     cells = iv.interval(np.asarray(low, float), np.asarray(high, float))
@@ -75,7 +78,7 @@ def enclose(
 
 @lru_cache(maxsize=256)
 def _nodes(tree: Expression) -> tuple[Expression, ...]:
-    """Return the nodes of a formula, arguments first. Raises NotEnclosedError."""
+    """Return the nodes of a formula, arguments first. Raise NotEnclosedError if one of them cannot be bounded."""
     nodes = nodes_of(tree)
     if STATE in nodes:
         raise NotEnclosedError("the formula has a state of its own")
@@ -89,7 +92,7 @@ def _nodes(tree: Expression) -> tuple[Expression, ...]:
 
 @lru_cache(maxsize=256)
 def _bounded_form(tree: Expression) -> Expression:
-    """Return the formula with y / (1 + exp(z)) as a product with the logistic function, which does not overflow with exp(z)."""
+    """Return the formula with y / (1 + exp(z)) written as y logistic(z), which does not overflow where exp(z) does."""
     made: dict[Expression, Expression] = {}
     for node in nodes_of(tree):
         arguments = tuple(made[argument] for argument in node.arguments)
@@ -100,7 +103,7 @@ def _bounded_form(tree: Expression) -> Expression:
 
 
 def _one_and_exp(node: Expression) -> Expression | None:
-    """Return z where a node is 1 + exp(z), else None."""
+    """Return z if the node is 1 + exp(z), else None."""
     if node.operation != "add":
         return None
     for one, other in (node.arguments, node.arguments[::-1]):
@@ -145,7 +148,7 @@ def _sum(terms: list[Array]) -> Array:
 
 
 def _square(a: Jet) -> Jet:
-    """Return a**2: without the looseness of two factors that vary independently."""
+    """Return a**2, with narrower bounds than a product of two factors that vary independently."""
     found = [iv.square(a[0])]
     if len(a) > 1:
         found.append(iv.scale(iv.multiply(a[0], a[1]), 2.0))
@@ -233,7 +236,7 @@ def _arcsinh(x: Array) -> tuple[Array, Array, Array]:
 
 
 def _positive(x: Array) -> Array:
-    """Return x where it is above 0 everywhere, else an interval that holds 0, so that nothing follows from it."""
+    """Return x where the whole interval is above 0, else (-inf, inf), whose reciprocal is unbounded too."""
     return np.where(x[..., :1, :] < 0.0, x, np.inf)
 
 

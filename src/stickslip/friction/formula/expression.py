@@ -1,8 +1,8 @@
-"""Formulas as trees: what a friction law is made of.
+"""Represent the formula of a friction law as an expression tree.
 
-A law writes its formula once, with ordinary operators and the functions of this module. Called with numbers or arrays the
-formula is a number or an array; called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter` it is an `Expression` tree, from
-which `stickslip.engine.codegen.taylor_series` writes compiled code. Nothing here is ever evaluated as Python text.
+A law states its formula once, with ordinary operators and the functions of this module. Called with numbers or arrays, the
+formula returns a number or an array. Called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter`, it returns an `Expression`
+tree, from which `stickslip.engine.codegen.taylor_series` generates compiled code. No text is ever evaluated as Python here.
 """
 
 from __future__ import annotations
@@ -17,15 +17,16 @@ import numpy as np
 from stickslip.foundation.errors import InputError
 
 FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh")
+"""Elementary functions that a formula may use; each has a compiled Taylor recurrence."""
 LARGEST_SIZE = 10_000
-"""Nodes of a formula written out in full: repeated multiplication doubles them."""
+"""Largest number of nodes of a formula, shared parts counted at each use: n repeated squarings make 2^n of them."""
 LARGEST_POWER = 16
-"""Whole exponents up to this size become products: they have series at 0 too."""
+"""Largest whole exponent whose power is written as a product, because a product has a Taylor series at base 0 too."""
 
 
 @dataclass(frozen=True)
 class Expression:
-    """A node: an operation on other nodes, a parameter, a constant, or one of the variables."""
+    """A node of a formula: an operation on other nodes, a parameter, a constant, or one of the variables."""
 
     operation: str
     arguments: tuple[Expression, ...] = ()
@@ -33,7 +34,7 @@ class Expression:
     value: float = 0.0
 
     def __post_init__(self) -> None:
-        """Work out hash and size from those of the arguments: a walk over a formula with shared parts may be exponential."""
+        """Compute hash and size from those of the arguments, because a walk over shared parts may take exponential time."""
         size = 1 + sum(argument.size for argument in self.arguments)
         if size > LARGEST_SIZE:
             raise InputError(f"formula: longer than {LARGEST_SIZE} operations")
@@ -44,7 +45,7 @@ class Expression:
         return int(self._hash)  # type: ignore[attr-defined] # set above
 
     def __eq__(self, other: object) -> bool:
-        """Whether two formulas are the same tree; a comparison with a number is a branch on a value."""
+        """Return True if two formulas are the same tree; refuse a comparison with a number, which is a branch on a value."""
         if isinstance(other, int | float | np.number):
             self._refuse()
         if not isinstance(other, Expression):
@@ -53,12 +54,12 @@ class Expression:
         return self is other or (hash(self) == hash(other) and ours == theirs and self.arguments == other.arguments)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Copies in other processes work out their own hash."""
+        """Rebuild a copy from its fields, so that another process computes its own hash: hashes of texts differ there."""
         return Expression, (self.operation, self.arguments, self.name, self.value)
 
     @property
     def size(self) -> int:
-        """Nodes of the formula written out in full."""
+        """Return the number of nodes of the formula, shared parts counted at each use."""
         return int(self._size)  # type: ignore[attr-defined] # set above
 
     def __add__(self, other: Any) -> Expression:
@@ -102,7 +103,7 @@ class Expression:
         return as_expression(base) ** self
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Expression:
-        """numpy's functions of an expression are expressions: np.exp(v) in a user's function."""
+        """Return an expression for a numpy function of expressions, such as np.exp(v) in a user's function."""
         rule = _UFUNCS.get(ufunc.__name__)
         if rule is None or method != "__call__" or options:
             allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *_EXTRA))
@@ -120,7 +121,7 @@ class Expression:
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
 
     def __abs__(self) -> Expression:
-        if self == RATE:  # a magnitude already
+        if self == RATE:  # the slip rate in a formula is never negative
             return self
         raise InputError("formula: abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth")
 
@@ -131,12 +132,15 @@ class Expression:
 
 
 SLIP = Expression("slip", name="u")
+"""Symbol of the slip u (m)."""
 RATE = Expression("rate", name="v")
+"""Symbol of the magnitude v of the slip rate (m/s)."""
 STATE = Expression("state", name="w")
+"""Symbol of the state variable w of a law that has one."""
 
 
 def _product(base: Expression, count: int) -> Expression:
-    """base**count by squaring."""
+    """Return base**count by repeated squaring."""
     if count == 0:
         return as_expression(1.0)
     half = _product(base, count // 2) if count > 1 else None
@@ -145,7 +149,7 @@ def _product(base: Expression, count: int) -> Expression:
 
 
 def Parameter(name: str) -> Expression:  # noqa: N802 - reads as the node it makes
-    """A named number of the law, known when the run starts."""
+    """Return the node of a named number of the law, whose value is known when the run starts."""
     return Expression("parameter", name=name)
 
 
@@ -180,7 +184,7 @@ _EXTRA: dict[str, Callable[..., Any]] = {
     "cosh": lambda x: 0.5 * (exp(x) + exp(-x)),
     "sinh": lambda x: 0.5 * (exp(x) - exp(-x)),
 }
-"""Other functions of numpy, by those that formulas have."""
+"""Further functions of numpy, expressed by those in FUNCTIONS."""
 
 OPERATIONS: dict[str, Callable[..., Any]] = {
     "add": lambda a, b: a + b,
@@ -189,7 +193,7 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
     "div": lambda a, b: a / b,
     "pow": lambda a, b: a**b,
 } | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh), strict=True))
-"""What the operations of nodes do, to numbers and to expressions."""
+"""Function of each operation, for numbers and for expressions."""
 
 _UFUNCS: dict[str, Callable[..., Any]] = (
     {name: OPERATIONS[name] for name in FUNCTIONS}
@@ -206,20 +210,25 @@ _UFUNCS: dict[str, Callable[..., Any]] = (
         "absolute": abs,
     }
 )
+"""Rules that turn numpy functions of expressions into expressions, by the name of the numpy function."""
 
 
 def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> Any:
-    """The formula at slip u (m) and slip rate v (m/s), with the parameters' values by name: numbers, arrays or expressions."""
+    """Return the formula at slip u (m) and slip rate v (m/s), with the parameters' values by name.
+
+    Numbers, arrays and expressions are allowed.
+    """
     return evaluate_nodes(tree, numbers, u, v)[tree]
 
 
 def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> dict[Expression, Any]:
-    """As `evaluate`, with the values of all parts of the formula."""
+    """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
     found: dict[Expression, Any] = {SLIP: u, RATE: v}
     for node in nodes_of(tree):
         if node.operation == "parameter":
             number = numbers[node.name]
-            found[node] = np.float64(number) if isinstance(number, int | float) else number  # as numpy divides by zero
+            # numpy's numbers give inf or nan on division by zero, where Python's raise an error
+            found[node] = np.float64(number) if isinstance(number, int | float) else number
         elif node.operation == "constant":
             found[node] = np.float64(node.value)
         elif node.arguments:
@@ -228,12 +237,12 @@ def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any)
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:
-    """Whether the formula contains the variable (SLIP, RATE or STATE)."""
+    """Return True if the formula contains the variable (SLIP, RATE or STATE)."""
     return variable in nodes_of(node)
 
 
 def nodes_of(root: Expression) -> list[Expression]:
-    """Every distinct node below `root`, arguments before the nodes that use them, `root` last."""
+    """Return every distinct node of the tree, arguments before the nodes that use them, and `root` last."""
     found: dict[Expression, None] = {}
 
     def visit(node: Expression) -> None:

@@ -1,9 +1,9 @@
-"""Interval arithmetic with outward rounding, on arrays of intervals at once.
+"""Provide interval arithmetic with outward rounding on whole arrays of intervals.
 
 An interval [low, high] is stored as the pair (-low, high) along the axis before the last: shape (..., 2, n). Both entries are then
 rounded the same way, upwards, and the sum of two intervals is one addition. A low end is never +inf and a high end never -inf,
-so that no sum is undefined. An infinite end is never reached: 0 times such an end is 0. Where nothing is known the interval is
-(-inf, inf).
+so that no sum is undefined. An infinite end is never reached: 0 times such an end is 0. The interval is (-inf, inf), called
+unbounded below, where nothing is known about a value.
 
 Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, SIAM.
 """
@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 LIBRARY_ERROR = 8.0 * float(np.finfo(float).eps)
-"""Relative error allowed to exp, log, tanh, arcsinh and powers: twice the 4 units in the last place that numpy states."""
+"""Relative error assumed for exp, log, tanh, arcsinh and powers: twice the 4 units in the last place that numpy states."""
 WAVE_ERROR = 8.0 * float(np.finfo(float).eps)
-"""Absolute error allowed to sin and cos, whose values are at most 1."""
+"""Absolute error assumed for sin and cos, whose values are at most 1."""
 _UNDERFLOW = float(np.finfo(float).tiny)
-"""Absolute error allowed to a library function: smaller results may be flushed to 0."""
+"""Absolute error assumed for a library function: smaller results may be flushed to 0."""
 _TURN = 2.0 * math.pi
+"""One period of sin and cos (rad)."""
 
 
 def interval(low: Array, high: Array) -> Array:
@@ -33,7 +34,7 @@ def interval(low: Array, high: Array) -> Array:
 
 
 def exact(value: float | Array) -> Array:
-    """Return the intervals that hold one number each."""
+    """Return intervals that contain only the given number each."""
     number = np.atleast_1d(np.asarray(value, float))
     return interval(number, number)
 
@@ -44,12 +45,12 @@ def ends(a: Array) -> tuple[Array, Array]:
 
 
 def everything(a: Array) -> Array:
-    """Return (-inf, inf) in the shape of `a`."""
+    """Return unbounded intervals in the shape of `a`."""
     return np.full(a.shape, np.inf)
 
 
 def outward(a: Array) -> Array:
-    """Move both ends to the next floating-point number outside."""
+    """Move both ends outwards to the next floating-point number."""
     return np.asarray(np.nextafter(a, np.inf))
 
 
@@ -70,7 +71,7 @@ def subtract(a: Array, b: Array) -> Array:
 
 def multiply(a: Array, b: Array) -> Array:
     """Return a * b: the hull of the four products of the ends."""
-    products = a[..., :, None, :] * b[..., None, :, :]  # of the stored ends: the mixed ones have the wrong sign
+    products = a[..., :, None, :] * b[..., None, :, :]  # low ends are stored negated: a low times a high end has the wrong sign
     odd = np.isnan(products)
     if odd.any():
         products[odd] = 0.0
@@ -93,7 +94,7 @@ def square(a: Array) -> Array:
 
 
 def reciprocal(a: Array) -> Array:
-    """Return 1 / a; nothing is known where a contains 0."""
+    """Return 1 / a, unbounded where a contains 0."""
     low, high = ends(a)
     inside = (low <= 0.0) & (high >= 0.0)
     with np.errstate(divide="ignore"):
@@ -108,12 +109,12 @@ def sizes(a: Array) -> tuple[Array, Array]:
 
 
 def _widened(a: Array, error: float = LIBRARY_ERROR) -> Array:
-    """Move both ends outwards by a relative error, and by what a library may lose where its result underflows."""
+    """Move both ends outwards by a relative error, and by the absolute error of a library function whose result underflows."""
     return outward(a * (1.0 + np.copysign(error, a)) + _UNDERFLOW)
 
 
 def _rising(function: Callable[[Array], Array], a: Array) -> Array:
-    """Return a function that rises, from its values at the ends."""
+    """Return the range of an increasing function, from its values at the ends."""
     low, high = ends(a)
     return _widened(interval(function(low), function(high)))
 
@@ -124,12 +125,12 @@ def exp(a: Array) -> Array:
 
 
 def log(a: Array) -> Array:
-    """Return the logarithm of what is above 0 in a; nothing is known where there is nothing above 0."""
+    """Return the logarithm of the positive part of a, unbounded where a has none."""
     return _above_zero(a, _rising(np.log, np.minimum(a, [[0.0], [np.inf]])))
 
 
 def sqrt(a: Array) -> Array:
-    """Return the root of what is not negative in a; nothing is known where there is nothing above 0."""
+    """Return the square root of the part of a that is not negative, unbounded where a has no positive part."""
     return _above_zero(a, np.minimum(_rising(np.sqrt, np.minimum(a, [[0.0], [np.inf]])), [[0.0], [np.inf]]))
 
 
@@ -143,7 +144,7 @@ def tanh(a: Array) -> Array:
 
 
 def sech_squared(a: Array) -> Array:
-    """Return 1 / cosh(a)**2, which falls with the size of a."""
+    """Return 1 / cosh(a)**2, which decreases with the magnitude of a."""
     least, most = sizes(a)
     with np.errstate(over="ignore"):
         found = _widened(interval(1.0 / np.cosh(most) ** 2, 1.0 / np.cosh(least) ** 2), 4.0 * LIBRARY_ERROR)
@@ -151,7 +152,7 @@ def sech_squared(a: Array) -> Array:
 
 
 def logistic(a: Array) -> Array:
-    """Return 1 / (1 + e**a), which falls from 1 to 0."""
+    """Return 1 / (1 + e**a), which decreases from 1 to 0."""
     low, high = ends(a)
     with np.errstate(over="ignore"):
         found = _widened(interval(1.0 / (1.0 + np.exp(high)), 1.0 / (1.0 + np.exp(low))), 2.0 * LIBRARY_ERROR)
@@ -164,7 +165,7 @@ def arcsinh(a: Array) -> Array:
 
 
 def arcsinh_slope(a: Array) -> Array:
-    """Return 1 / sqrt(1 + a**2), which falls with the size of a."""
+    """Return 1 / sqrt(1 + a**2), which decreases with the magnitude of a."""
     least, most = sizes(a)
     found = _widened(interval(1.0 / np.hypot(1.0, most), 1.0 / np.hypot(1.0, least)), 2.0 * LIBRARY_ERROR)
     return np.minimum(found, [[0.0], [1.0]])
@@ -181,7 +182,7 @@ def cos(a: Array) -> Array:
 
 
 def _wave(function: Callable[[Array], Array], a: Array, peak: float) -> Array:
-    """Return sin or cos, whose peaks lie at `peak` turns plus whole ones, and whose troughs lie half a turn later."""
+    """Return sin or cos, with maxima at `peak` plus any whole number of turns, and minima half a turn later."""
     low, high = ends(a)
     with np.errstate(invalid="ignore"):
         at_low, at_high = function(low), function(high)
@@ -192,7 +193,7 @@ def _wave(function: Callable[[Array], Array], a: Array, peak: float) -> Array:
 
 
 def _holds_a_whole_number(low: Array, high: Array, offset: float) -> NDArray[np.bool_]:
-    """Return True where one may lie between low and high, in turns less an offset: rounding counts as a yes."""
+    """Return True where `offset` plus a whole number of turns may lie between low and high (rad), rounding included."""
     first, last = low / _TURN - offset, high / _TURN - offset
     slack = LIBRARY_ERROR * (2.0 + np.maximum(np.abs(first), np.abs(last)))
     with np.errstate(invalid="ignore"):
@@ -200,7 +201,7 @@ def _holds_a_whole_number(low: Array, high: Array, offset: float) -> NDArray[np.
 
 
 def power(a: Array, exponent: Array) -> Array:
-    """Return a**exponent for a above 0; nothing is known elsewhere."""
+    """Return a**exponent, unbounded where a is not entirely above 0."""
     low, high = ends(a)
     bases = np.where(low > 0.0, np.stack((low, high)), 1.0)
     with np.errstate(over="ignore", under="ignore"):

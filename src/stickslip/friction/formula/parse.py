@@ -1,8 +1,8 @@
-"""Text to a formula tree, by a whitelist over Python's own syntax tree: nothing is ever evaluated.
+"""Read a formula tree from text, by a whitelist over Python's syntax tree; no text is ever evaluated.
 
 Allowed are numbers, the variables u (slip, m) and v (slip rate, m/s), pi, declared parameters, + - * /, ** with an exponent that
-does not vary, and the functions of `stickslip.friction.formula.expression`. Length, depth and size are limited: the text is
-untrusted.
+does not depend on u or v, and the functions of `stickslip.friction.formula.expression`. Length, depth and size are limited because
+the text is untrusted.
 """
 
 from __future__ import annotations
@@ -27,21 +27,28 @@ from stickslip.friction.formula.expression import (
 )
 
 LONGEST = 1000
-"""Characters of an expression."""
+"""Largest number of characters in an expression, which is untrusted."""
 DEEPEST = 100
-"""Levels of nesting; a sum of n terms has n."""
+"""Largest number of nested levels, within Python's limit of recursion; a sum of n terms has n levels."""
 MOST_OPERATIONS = 250
-"""Different nodes of the tree: each is compiled for every order of the series."""
+"""Largest number of distinct nodes in the tree: each is compiled for every order of the Taylor series."""
 LARGEST_EXPONENT = 100.0
+"""Largest size of an exponent: powers of slips and slip rates up to 10 (m or m/s) stay far from overflow."""
 RESERVED = ("u", "v", "pi", *FUNCTIONS)
+"""Names that a parameter cannot have because they mean something else in an expression."""
 ALLOWED = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
+"""End of a message about a part that is not allowed."""
 
 _BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div", ast.Pow: "pow"}
+"""Operations of nodes for the operators of Python's syntax tree."""
 
 
 @lru_cache(maxsize=256)
 def parse(text: str, names: tuple[str, ...]) -> Expression:
-    """The tree of an expression in u, v and parameters of these names. Raises InputError: one line that says which part."""
+    """Return the tree of an expression in u, v and the named parameters.
+
+    Raise InputError with one line that says which part is wrong.
+    """
     if len(text) > LONGEST:
         raise InputError(f"longer than {LONGEST} characters")
     if not text.isascii() or not text.isprintable():
@@ -56,7 +63,7 @@ def parse(text: str, names: tuple[str, ...]) -> Expression:
 def _syntax(text: str) -> ast.expr:
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # Python warns of odd code that is refused below
+            warnings.simplefilter("ignore")  # Python may warn about code such as 1(2), which `_Reader` refuses
             return ast.parse(text.strip(), mode="eval").body
     except (RecursionError, MemoryError):
         raise InputError("nested too deeply") from None
@@ -66,13 +73,13 @@ def _syntax(text: str) -> ast.expr:
 
 
 class _Reader:
-    """Reads one expression."""
+    """Translate the Python syntax tree of one expression to a formula tree."""
 
     def __init__(self, text: str, names: Collection[str]) -> None:
         self.text, self.names = text.strip(), names
 
     def read(self, node: ast.expr, depth: int) -> Expression:
-        """The tree of a part. Raises InputError for anything that is not allowed."""
+        """Return the formula tree of a part. Raise InputError for anything that is not allowed."""
         if depth > DEEPEST:
             raise InputError(f"nested more than {DEEPEST} deep, at {self.part(node)}")
         if isinstance(node, ast.Constant):
@@ -91,7 +98,7 @@ class _Reader:
         if type(node.value) not in (int, float):
             raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
         try:
-            value = float(node.value)  # type: ignore[arg-type] # a number, see above
+            value = float(node.value)  # type: ignore[arg-type] # checked above
         except OverflowError:
             value = math.inf
         if not math.isfinite(value):
@@ -148,7 +155,7 @@ class _Reader:
         return result
 
     def part(self, node: ast.expr) -> str:
-        """The part of the text that a message is about."""
+        """Return the part of the text that a message is about."""
         return _shown(ast.get_source_segment(self.text, node) or self.text)
 
 

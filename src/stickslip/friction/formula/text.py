@@ -1,4 +1,4 @@
-"""A formula tree as text that `stickslip.friction.formula.parse` reads back to the same tree."""
+"""Write a formula tree as text from which `stickslip.friction.formula.parse` reads the same tree."""
 
 from __future__ import annotations
 
@@ -6,16 +6,18 @@ from stickslip.friction.formula.expression import Expression
 
 _SIGNS = {"add": " + ", "sub": " - ", "mul": " * ", "div": " / ", "pow": "**"}
 _RANK = {"add": 1, "sub": 1, "mul": 2, "div": 2, "pow": 4}
+"""Precedence of the operators: a larger number binds more tightly."""
 _MINUS, _ATOM = 3, 5
+"""Precedence of a leading minus, between product and power, and of a part that never needs parentheses."""
 
 
 def to_text(node: Expression) -> str:
-    """The formula in ordinary notation, with as few parentheses as it needs."""
+    """Return the formula in ordinary notation, with few parentheses."""
     return _written(node)[0]
 
 
 def _written(node: Expression) -> tuple[str, int]:
-    """Text and how tightly it binds."""
+    """Return the text of a node and its precedence."""
     if node.operation not in _SIGNS:
         if node.arguments:
             return f"{node.operation}({to_text(node.arguments[0])})", _ATOM

@@ -1,1 +1,1 @@
-"""Friction laws, one a file; the registry beside this folder lists them."""
+"""Hold the built-in friction laws, one in each file; `stickslip.friction.registry` lists them."""

@@ -1,4 +1,4 @@
-"""Coulomb friction with a static and a dynamic coefficient."""
+"""Define Coulomb friction with a static and a dynamic coefficient."""
 
 from __future__ import annotations
 
@@ -12,7 +12,24 @@ from stickslip.friction.law import FrictionLaw
 
 @dataclass(frozen=True)
 class Coulomb(FrictionLaw):
-    """|tau| <= static S at rest, |tau| = dynamic S in slip: the limit alpha -> infinity of the hyperbolic rate law."""
+    """|tau| <= static S at rest, |tau| = dynamic S in slip: the limit alpha -> infinity of the hyperbolic rate law.
+
+    Parameters
+    ----------
+    static
+        Friction coefficient at rest (no unit), not less than `dynamic`.
+    dynamic
+        Friction coefficient in slip (no unit).
+
+    Raises
+    ------
+    InputError
+        If `static` is less than `dynamic`, or a coefficient is negative.
+
+    Notes
+    -----
+    Source: Campillo et al. 1996, section 4, the limit of eq. (15).
+    """
 
     kind: ClassVar[str] = "coulomb"
     source: ClassVar[str] = "Campillo et al. 1996, section 4 (limit of eq. 15)"
@@ -35,7 +52,7 @@ class Coulomb(FrictionLaw):
         return self.static - self.dynamic
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Any step down is too much: static_c = dynamic, under every normal stress."""
+        """Return static_c = dynamic: any step down in friction gives several solutions, under every normal stress."""
         return "static", self.dynamic
 
     def range(self) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Exponential cohesive zone: friction first rises with slip, then falls."""
+"""Define the exponential cohesive zone, in which friction first rises with slip and then falls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,27 @@ from stickslip.friction.memory import RemembersSlip
 class ExponentialCohesiveZone(RemembersSlip):
     """mu(d) = dynamic + (static - dynamic) y exp(1 - y), y = (d + offset) / distance (d2). d is the path walked, both ways.
 
-    Friction reaches `static` at y = 1; offset (d1) below distance leaves a stretch d < distance - offset on which it rises.
+    Friction equals `static` at y = 1. If the offset (d1) is less than the distance, friction rises while d < distance - offset.
+
+    Parameters
+    ----------
+    static
+        Largest friction coefficient (no unit), at y = 1.
+    dynamic
+        Friction coefficient after much slip (no unit).
+    distance
+        Slip d2 (m), counted from -offset, at which friction is largest.
+    offset
+        Slip d1 (m) by which the curve is shifted back.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Notes
+    -----
+    Friction is largest at y = 1 if `static` exceeds `dynamic`; otherwise it is smallest there.
+
+    Source: Bolotskaya 2023, doctoral thesis, Massachusetts Institute of Technology, exponential cohesive zone as in its code
+    PyLith_custom_friction, doi:10.5281/zenodo.14047393; shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397.
     """
 
     kind: ClassVar[str] = "exponential-cohesive-zone"

@@ -1,4 +1,4 @@
-"""Exponential slip weakening."""
+"""Define exponential slip weakening."""
 
 from __future__ import annotations
 
@@ -16,7 +16,21 @@ from stickslip.friction.memory import RemembersSlip
 class ExponentialSlipWeakening(RemembersSlip):
     """mu(d) = dynamic + (static - dynamic) exp(-d / distance). d is the path walked, in both directions.
 
-    The slip-weakening distance D_w of the source, at which 95 % of the fall is done, is distance times ln 20.
+    Parameters
+    ----------
+    static
+        Friction coefficient before slip (no unit).
+    dynamic
+        Friction coefficient after much slip (no unit).
+    distance
+        Slip (m) over which the excess of friction over `dynamic` falls by a factor e.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Notes
+    -----
+    The slip-weakening distance D_w of the source, at which 95 % of the decrease is complete, is `distance` times ln 20.
+    Source: Mizoguchi, Hirose, Shimamoto & Fukuyama 2007, Geophys. Res. Lett. 34, L01308.
     """
 
     kind: ClassVar[str] = "exponential-slip-weakening"

@@ -1,4 +1,4 @@
-"""Exponential Stribeck curve: friction falls with slip rate, and may rise again by a viscous term."""
+"""Define the exponential Stribeck curve: friction falls with slip rate, and a viscous term may make it rise again."""
 
 from __future__ import annotations
 
@@ -17,7 +17,25 @@ from stickslip.friction.law import FrictionLaw
 class ExponentialStribeck(FrictionLaw):
     """mu(v) = dynamic + (static - dynamic) exp(-(v / rate)^exponent) + viscosity v.
 
-    The exponent is whole: with any other the curve has no derivatives at v = 0, where every slip begins.
+    The exponent must be whole: with any other the curve has no derivatives at v = 0, where every slip begins.
+
+    Parameters
+    ----------
+    static
+        Friction coefficient at rest (no unit).
+    dynamic
+        Friction coefficient at high slip rate, without the viscous term (no unit).
+    rate
+        Slip rate v_s (m/s) over which friction falls.
+    exponent
+        Exponent of v / rate, a whole number: 1 is exponential, 2 is Gaussian.
+    viscosity
+        Increase of friction with slip rate (s/m).
+
+    Notes
+    -----
+    Sources: Tustin 1947, J. Inst. Electr. Eng. 94, 143 (exponent 1); Bo & Pavelescu 1982, Wear 82, 277; Armstrong-Helouvry,
+    Dupont & Canudas de Wit 1994, Automatica 30, 1083.
     """
 
     kind: ClassVar[str] = "exponential-stribeck"
@@ -39,9 +57,9 @@ class ExponentialStribeck(FrictionLaw):
         return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** law.exponent)) + law.viscosity * v
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """rate_c = k S (static - dynamic) / (Z + S viscosity), irregular below; k = n y^((n-1)/n) exp(-y), y = (n-1)/n, exponent n.
+        """Return rate_c = k S (static - dynamic) / (Z + S viscosity), with k = n y^((n-1)/n) exp(-y), y = (n-1)/n and exponent n.
 
-        Friction falls most steeply at (v / rate)^n = y: at rest for n = 1.
+        The problem is irregular for smaller rates. Friction falls most steeply at (v / rate)^n = y, which is at rest for n = 1.
         """
         n, y = self.exponent, (self.exponent - 1.0) / self.exponent
         fall = n * y**y * math.exp(-y) * normal * (self.static - self.dynamic)
@@ -52,7 +70,7 @@ class ExponentialStribeck(FrictionLaw):
         return np.minimum(self.static, self.dynamic), high
 
     def rate_at_slope(self, slope: Any) -> Any:
-        """The root of viscosity - (static - dynamic) exp(-v / rate) / rate = slope, for exponent 1."""
+        """Return the root v (m/s) of viscosity - (static - dynamic) exp(-v / rate) / rate = slope, if the exponent is 1."""
         if self.exponent != 1.0:
             return None
         return self.rate * np.log((self.static - self.dynamic) / (self.rate * (self.viscosity - slope)))

@@ -1,4 +1,4 @@
-"""Hyperbolic slip-rate law, paper eq. (15)."""
+"""Define the hyperbolic slip-rate law, paper eq. (15)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,21 @@ from stickslip.friction.law import FrictionLaw
 
 @dataclass(frozen=True)
 class HyperbolicRate(FrictionLaw):
-    """mu(v) = dynamic + (static - dynamic) / (1 + alpha v): the paper's muD + (muS - muD) / (1 + alpha v)."""
+    """mu(v) = dynamic + (static - dynamic) / (1 + alpha v): the paper's muD + (muS - muD) / (1 + alpha v).
+
+    Parameters
+    ----------
+    static
+        Friction coefficient muS at rest (no unit).
+    dynamic
+        Friction coefficient muD at high slip rate (no unit).
+    alpha
+        Inverse of the slip rate at which half of the change from muS to muD is complete (s/m).
+
+    Notes
+    -----
+    Source: Campillo et al. 1996, eq. (15).
+    """
 
     kind: ClassVar[str] = "hyperbolic-rate"
     source: ClassVar[str] = "Campillo et al. 1996, eq. (15)"
@@ -32,12 +46,12 @@ class HyperbolicRate(FrictionLaw):
         return np.minimum(self.static, self.dynamic), np.maximum(self.static, self.dynamic)
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """alpha_c = Z / (S (muS - muD)), paper section 3; a law that strengthens has none."""
+        """Return alpha_c = Z / (S (muS - muD)), paper section 3; None unless muS > muD."""
         fall = normal * (self.static - self.dynamic)
         return ("alpha", impedance / fall) if fall > 0.0 else None
 
     def rate_at_slope(self, slope: Any) -> Any:
-        """The root of -(muS - muD) alpha / (1 + alpha v)^2 = slope."""
+        """Return the root v (m/s) of -(muS - muD) alpha / (1 + alpha v)^2 = slope."""
         return (np.sqrt((self.dynamic - self.static) * self.alpha / slope) - 1.0) / self.alpha
 
     @property

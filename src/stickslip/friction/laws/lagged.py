@@ -1,4 +1,4 @@
-"""A rate law whose friction follows the slip rate with a lag, and may have a direct effect: a regularisation."""
+"""Define a rate law whose friction lags behind the slip rate, with an optional direct effect: a regularisation."""
 
 from __future__ import annotations
 
@@ -17,15 +17,39 @@ from stickslip.friction.law import Formula, FrictionLaw, StateVariable
 from stickslip.friction.parameters import Part, declare
 
 _PREFIX = PREFIXES[1]
+"""Prefix of the names of the rate law's parameters."""
 _OWN = ("time", "direct", "direct_rate")
+"""Parameters that belong to the lag and not to the rate law."""
 
 
 @dataclass(frozen=True)
 class LaggedFriction(FrictionLaw):
     """mu = law(w) + direct [arcsinh(v / (2 direct_rate)) - arcsinh(w / (2 direct_rate))], with time dw/dt = v - w.
 
-    In steady sliding, w = v, it is the law itself. On a massless slab without direct effect Z time dw/dt = load - g(w): the lag
-    does what a contact mass of Z time does. It heals at rest: w falls to 0 there.
+    Parameters
+    ----------
+    rate
+        A smooth friction law that depends on slip rate only.
+    time
+        Time (s) in which friction catches up with the slip rate.
+    direct
+        Increase of friction at once when the slip rate grows by a factor e (no unit).
+    direct_rate
+        Slip rate (m/s) below which the direct effect fades.
+
+    Raises
+    ------
+    InputError
+        If `rate` is not a friction law, depends on slip, does not depend on slip rate, has a state, kinks, or a step at rest.
+
+    Notes
+    -----
+    In steady sliding, w = v, friction is that of the law itself. On a slab without contact mass and without direct effect,
+    Z time dw/dt = load - g(w): the lag acts on w as a contact mass Z time acts on the slip rate. The contact heals at rest,
+    because w falls to 0 there.
+
+    Sources: Campillo et al. 1996, section 3 (why a solution must be selected); Hess & Soom 1990, J. Tribol. 112, 147 (a time
+    lag); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh).
     """
 
     kind: ClassVar[str] = "lagged"
@@ -71,7 +95,10 @@ class LaggedFriction(FrictionLaw):
         return {_PREFIX + name: value for name, value in self.rate.literals().items()}
 
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
-        """mu as in every law. A lag that a run's polynomials leave below zero, by their tolerance, is none."""
+        """Return mu as in `FrictionLaw.coefficient`, with negative values of w replaced by 0.
+
+        The polynomials of a run may fall below zero by their tolerance, where the formula need not hold.
+        """
         return super().coefficient(u, v, np.maximum(np.asarray(w, float), 0.0))
 
     def range(self) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Linear slip weakening."""
+"""Define linear slip weakening."""
 
 from __future__ import annotations
 
@@ -13,7 +13,23 @@ from stickslip.friction.memory import RemembersSlip
 
 @dataclass(frozen=True)
 class LinearSlipWeakening(RemembersSlip):
-    """mu falls linearly from static to dynamic over a slip `distance`, then stays. Counts the path walked, in both directions."""
+    """mu falls linearly from static to dynamic over a slip `distance`, then stays. Counts the path walked, in both directions.
+
+    Parameters
+    ----------
+    static
+        Friction coefficient before slip (no unit).
+    dynamic
+        Friction coefficient after `distance` of slip (no unit).
+    distance
+        Slip (m) over which friction falls, often called Dc.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Notes
+    -----
+    Sources: Ida 1972, J. Geophys. Res. 77, 3796; Andrews 1976, J. Geophys. Res. 81, 5679.
+    """
 
     kind: ClassVar[str] = "linear-slip-weakening"
     source: ClassVar[str] = "Ida 1972, J. Geophys. Res. 77, 3796; Andrews 1976, J. Geophys. Res. 81, 5679"
@@ -31,7 +47,7 @@ class LinearSlipWeakening(RemembersSlip):
 
     @staticmethod
     def weakened(law: Any, u: Any, v: Any) -> Any:
-        """mu once the distance is walked."""
+        """Return mu at slips beyond `distance`."""
         return law.dynamic + 0.0 * u
 
     @property

@@ -1,4 +1,4 @@
-"""Parabolic cohesive zone: friction follows a parabola that stands on its head, then stays."""
+"""Define the parabolic cohesive zone: friction follows a concave parabola and is constant after that."""
 
 from __future__ import annotations
 
@@ -17,8 +17,26 @@ from stickslip.friction.memory import RemembersSlip
 class ParabolicSlipWeakening(RemembersSlip):
     """mu = static - (static - dynamic) ((d - onset) / distance)^2 up to slip onset + distance (d1 + d2), then dynamic.
 
-    d is the path walked, in both directions. With an onset above 0 friction begins below static and rises to it; beyond the onset
-    it falls, ever faster.
+    Parameters
+    ----------
+    static
+        Friction coefficient at the onset (no unit).
+    dynamic
+        Friction coefficient after onset + distance of slip (no unit).
+    distance
+        Slip d2 (m) over which friction falls.
+    onset
+        Slip d1 (m) at which friction begins to fall.
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Notes
+    -----
+    d is the slip path: the accumulated length of slip in both directions. With an onset above 0 friction begins below `static`
+    and rises to it. Beyond the onset it falls at a growing rate.
+
+    Source: Bolotskaya 2023, doctoral thesis, Massachusetts Institute of Technology, parabolic cohesive zone as in its code
+    PyLith_custom_friction, doi:10.5281/zenodo.14047393.
     """
 
     kind: ClassVar[str] = "parabolic-slip-weakening"
@@ -41,7 +59,7 @@ class ParabolicSlipWeakening(RemembersSlip):
 
     @staticmethod
     def after(law: Any, u: Any, v: Any) -> Any:
-        """mu once onset + distance are walked."""
+        """Return mu at slips beyond onset + distance."""
         return law.dynamic + 0.0 * u
 
     @property

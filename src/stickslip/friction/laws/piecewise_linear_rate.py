@@ -1,4 +1,4 @@
-"""Piecewise linear in slip rate."""
+"""Define friction that is piecewise linear in slip rate."""
 
 from __future__ import annotations
 
@@ -16,7 +16,20 @@ from stickslip.friction.piecewise import PiecewiseLaw, line_along_rate, lines
 
 @dataclass(frozen=True)
 class PiecewiseLinearRate(PiecewiseLaw):
-    """mu(v) runs straight from point to point, and is constant below the first and beyond the last."""
+    """mu(v) runs straight from point to point, and is constant below the first and beyond the last.
+
+    Parameters
+    ----------
+    rates
+        Slip rates of the points (m/s), ascending, shape (n,) with n >= 2.
+    coefficients
+        Friction coefficients at the points (no unit), shape (n,).
+
+    Raises
+    ------
+    InputError
+        If the numbers of slip rates and coefficients differ, or the slip rates do not ascend.
+    """
 
     kind: ClassVar[str] = "piecewise-linear-rate"
     source: ClassVar[str] = "a polyline through the user's points"
@@ -36,7 +49,10 @@ class PiecewiseLinearRate(PiecewiseLaw):
         return line_along_rate, ("start", "value", "first")
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """S_c = Z / (steepest fall of mu): the law's own numbers have none each, the normal stress has one."""
+        """Return S_c = Z / (steepest decrease of mu with v), the critical normal stress (Pa).
+
+        No single parameter of the law has a critical value, hence the normal stress. None if mu never falls.
+        """
         steepest = -float(np.min(self.polynomials()[:, 1]))
         return ("normal_stress", impedance / steepest) if steepest > 0.0 else None
 

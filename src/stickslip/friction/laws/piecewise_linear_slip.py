@@ -1,4 +1,4 @@
-"""Piecewise linear in slip: initial strengthening, double weakening, anything that a polyline draws."""
+"""Define friction that is piecewise linear in slip, such as initial strengthening or double slip weakening."""
 
 from __future__ import annotations
 
@@ -17,7 +17,27 @@ from stickslip.friction.piecewise import PiecewiseLaw, line_along_slip, lines
 
 @dataclass(frozen=True)
 class PiecewiseLinearSlip(RemembersSlip, PiecewiseLaw):
-    """mu(d) runs straight from point to point, and is constant before the first and beyond the last. d is the path walked."""
+    """mu(d) runs straight from point to point, and is constant before the first and beyond the last. d is the path walked.
+
+    Parameters
+    ----------
+    slips
+        Slips of the points (m), ascending, shape (n,) with n >= 2.
+    coefficients
+        Friction coefficients at the points (no unit), shape (n,).
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Raises
+    ------
+    InputError
+        If the numbers of slips and coefficients differ, or the slips do not ascend.
+
+    Notes
+    -----
+    Source: Bolotskaya & Hager 2022, Bull. Seismol. Soc. Am., doi:10.1785/0120220052 (double slip weakening with initial
+    strengthening).
+    """
 
     kind: ClassVar[str] = "piecewise-linear-slip"
     source: ClassVar[str] = (

@@ -1,4 +1,4 @@
-"""Stribeck curve that falls with a power of slip rate, and may rise again by a viscous term."""
+"""Define the Stribeck curve that falls with a power of slip rate; a viscous term may make friction rise again."""
 
 from __future__ import annotations
 
@@ -16,8 +16,26 @@ from stickslip.friction.law import FrictionLaw
 class PowerStribeck(FrictionLaw):
     """mu(v) = dynamic + (static - dynamic) / (1 + (v / rate)^exponent) + viscosity v.
 
-    The exponent is whole: with any other the curve has no derivatives at v = 0, where every slip begins. Exponent 1 is the
-    hyperbolic law, paper eq. (15), with alpha = 1 / rate.
+    The exponent must be whole: with any other the curve has no derivatives at v = 0, where every slip begins. With exponent 1
+    and no viscosity this is the hyperbolic law, paper eq. (15), with alpha = 1 / rate.
+
+    Parameters
+    ----------
+    static
+        Friction coefficient at rest (no unit).
+    dynamic
+        Friction coefficient at high slip rate, without the viscous term (no unit).
+    rate
+        Slip rate v_s (m/s) at which half of the decrease from `static` to `dynamic` is complete.
+    exponent
+        Exponent of v / rate, a whole number.
+    viscosity
+        Increase of friction with slip rate (s/m).
+
+    Notes
+    -----
+    Sources: Hess & Soom 1990, J. Tribol. 112, 147 (exponent 2); Armstrong-Helouvry, Dupont & Canudas de Wit 1994, Automatica 30,
+    1083.
     """
 
     kind: ClassVar[str] = "power-stribeck"
@@ -38,9 +56,10 @@ class PowerStribeck(FrictionLaw):
         return law.dynamic + (law.static - law.dynamic) / (1.0 + (v / law.rate) ** law.exponent) + law.viscosity * v
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """rate_c = k S (static - dynamic) / (Z + S viscosity), irregular below; k = n y^((n-1)/n) / (1 + y)^2, y = (n-1)/(n+1).
+        """Return rate_c = k S (static - dynamic) / (Z + S viscosity), with k = n y^((n-1)/n) / (1 + y)^2 and y = (n-1)/(n+1).
 
-        n is the exponent; friction falls most steeply at (v / rate)^n = y: at rest for n = 1, which is paper eq. (15).
+        n is the exponent. The problem is irregular for smaller rates. Friction falls most steeply at (v / rate)^n = y, which is
+        at rest for n = 1, the law of paper eq. (15).
         """
         n, y = self.exponent, (self.exponent - 1.0) / (self.exponent + 1.0)
         fall = n * y ** ((n - 1.0) / n) / (1.0 + y) ** 2 * normal * (self.static - self.dynamic)

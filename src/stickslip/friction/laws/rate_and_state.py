@@ -1,4 +1,4 @@
-"""Rate-and-state friction, regularised at small slip rates."""
+"""Define rate-and-state friction, regularised at small slip rates."""
 
 from __future__ import annotations
 
@@ -16,18 +16,46 @@ from stickslip.friction.law import Formula, FrictionLaw, StateVariable
 from stickslip.friction.parameters import Choice, declare
 
 LARGEST_EXPONENT = 600.0
-"""Of e^((reference + b w) / a), which must stay a number for every w that a contact can reach."""
+"""Largest exponent (reference + b w) / a: the exponential, which overflows at 709, must be finite for every state w in reach."""
 FARTHEST_STATE = 60.0
-"""ln(rate theta / distance) of a contact healed for longer than the Earth is old."""
+"""Largest w = ln(rate theta / distance) allowed for: that of a contact that has healed for longer than the age of the Earth."""
 SLOWEST = 1e-24
-"""Square of the slip rate, in units of `rate`, below which the slip law's logarithm no longer falls: it has no value at rest."""
+"""Number added to (v / rate)^2 in the logarithm of the slip law, which would otherwise be infinite at rest."""
 
 
 @dataclass(frozen=True)
 class RateAndState(FrictionLaw):
     """mu(v, theta) = a arcsinh(v / (2 rate) exp((reference + b ln(rate theta / distance)) / a)), theta by `evolution`.
 
-    Ageing: d theta/dt = 1 - y; slip: -y ln y; PRZ: 1 - (y/2)^2, with y = v theta / distance. It never sticks.
+    With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
+    The contact never sticks: friction passes smoothly through v = 0.
+
+    Parameters
+    ----------
+    reference
+        Friction coefficient of steady sliding at the slip rate `rate` (no unit).
+    a
+        Direct effect: increase of friction at once when the slip rate grows by a factor e (no unit).
+    b
+        Evolution effect: decrease of friction as the state falls by a factor e (no unit).
+    distance
+        Slip Dc (m) over which the state renews itself.
+    rate
+        Reference slip rate (m/s).
+    evolution
+        Evolution law of the state: "ageing", "slip" or "prz".
+
+    Raises
+    ------
+    InputError
+        If `a` is so small that the exponential in the formula could overflow.
+
+    Notes
+    -----
+    The formulas use the state w = ln(rate theta / distance); users give and see theta (s).
+
+    Sources: Dieterich 1979, J. Geophys. Res. 84, 2161 (ageing); Ruina 1983, J. Geophys. Res. 88, 10359 (slip); Perrin, Rice &
+    Zheng 1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh).
     """
 
     kind: ClassVar[str] = "rate-and-state"
@@ -72,21 +100,44 @@ class RateAndState(FrictionLaw):
 
     @property
     def variation(self) -> float:
-        """The direct effect: what friction changes at once when the slip rate changes by a factor e."""
+        """Return a, the change of friction at once when the slip rate changes by a factor e (no unit)."""
         return self.a
 
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
-        """State theta (s) of steady sliding at slip rates v > 0 (m/s)."""
+        """Return the state of steady sliding.
+
+        Parameters
+        ----------
+        v
+            Slip rate (m/s), positive, of any shape.
+
+        Returns
+        -------
+        array
+            theta (s), with the shape of `v`: distance / v, and twice that for the PRZ law.
+        """
         return (2.0 if self.evolution == "prz" else 1.0) * self.distance / np.asarray(v, float)
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
-        """mu of steady sliding at slip rates v > 0 (m/s): reference + (a - b) ln(v / rate), and b ln 2 more for PRZ."""
+        """Return the friction coefficient of steady sliding.
+
+        Parameters
+        ----------
+        v
+            Slip rate (m/s), positive, of any shape.
+
+        Returns
+        -------
+        array
+            mu (no unit), with the shape of `v`: reference + (a - b) ln(v / rate), and b ln 2 more for the PRZ law, but for the
+            regularisation at small slip rates.
+        """
         rate = np.asarray(v, float)
         return self.coefficient(0.0, rate, np.log(self.rate * self.steady_state(rate) / self.distance))
 
 
 def _friction(law: Any, u: Any, v: Any, w: Any) -> Any:
-    """mu with w = ln(rate theta / distance)."""
+    """Return mu at slip rate v (m/s) and state w = ln(rate theta / distance)."""
     return law.a * arcsinh(v / (2.0 * law.rate) * exp((law.reference + law.b * w) / law.a))
 
 

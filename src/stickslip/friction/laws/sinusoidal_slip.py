@@ -1,4 +1,4 @@
-"""Sinusoidal slip law, paper eq. (14)."""
+"""Define the sinusoidal slip law, paper eq. (14)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,23 @@ from stickslip.friction.memory import RemembersSlip
 
 @dataclass(frozen=True)
 class SinusoidalSlip(RemembersSlip):
-    """mu(u) = mean + amplitude sin(wavenumber u): the paper's mu0 + a sin(omega u). Counts net slip."""
+    """mu(u) = mean + amplitude sin(wavenumber u): the paper's mu0 + a sin(omega u). Counts net slip.
+
+    Parameters
+    ----------
+    mean
+        Mean friction coefficient mu0 (no unit).
+    amplitude
+        Amplitude a of the oscillation (no unit), of either sign, in magnitude at most `mean`.
+    wavenumber
+        Wavenumber omega of the oscillation along slip (1/m).
+    memory
+        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+
+    Notes
+    -----
+    Source: Campillo et al. 1996, eq. (14).
+    """
 
     kind: ClassVar[str] = "sinusoidal-slip"
     source: ClassVar[str] = "Campillo et al. 1996, eq. (14)"

@@ -1,4 +1,4 @@
-"""Sum of a slip law and a rate law."""
+"""Define the sum of a slip law and a rate law."""
 
 from __future__ import annotations
 
@@ -10,7 +10,20 @@ from stickslip.friction.composite import CompositeLaw
 
 @dataclass(frozen=True)
 class SlipPlusRate(CompositeLaw):
-    """mu(u, v) = slip law + rate law, at rest too; slip is what the slip law counts."""
+    """mu(u, v) = slip law + rate law, at rest too; slip is what the slip law counts.
+
+    Parameters
+    ----------
+    slip
+        A friction law that depends on slip only.
+    rate
+        A friction law that depends on slip rate only.
+
+    Raises
+    ------
+    InputError
+        If a part has a state, depends on the variable of the other, or if both are piecewise.
+    """
 
     kind: ClassVar[str] = "sum"
     source: ClassVar[str] = "the sources of its parts"
@@ -28,7 +41,7 @@ class SlipPlusRate(CompositeLaw):
         return self.slip.static_excess + self.rate.static_excess
 
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """That of the rate law: what slip adds does not change with the slip rate."""
+        """Return the critical value of the rate law: the part that depends on slip does not change with the slip rate."""
         closed = self.rate.critical_value(impedance, normal)
         if closed is None or closed[0] == "normal_stress":
             return closed

@@ -1,4 +1,4 @@
-"""Product of a slip law and a rate law."""
+"""Define the product of a slip law and a rate law."""
 
 from __future__ import annotations
 
@@ -13,7 +13,20 @@ from stickslip.friction.composite import CompositeLaw
 class SlipTimesRate(CompositeLaw):
     """mu(u, v) = slip law * rate law: one is a friction coefficient, the other a factor; slip is what the slip law counts.
 
-    The rate law must be continuous at rest: a step there would be a different one at every slip.
+    Both parts must be continuous at rest: the height of a step there would change with slip.
+
+    Parameters
+    ----------
+    slip
+        A friction law, or a factor, that depends on slip only.
+    rate
+        A factor, or a friction law, that depends on slip rate only.
+
+    Raises
+    ------
+    InputError
+        If a part has a state, depends on the variable of the other or steps from static to sliding friction, or if both are
+        piecewise.
     """
 
     kind: ClassVar[str] = "product"

@@ -1,4 +1,4 @@
-"""Friction that grows with slip rate."""
+"""Define friction that grows with slip rate."""
 
 from __future__ import annotations
 
@@ -13,7 +13,23 @@ from stickslip.friction.law import FrictionLaw
 
 @dataclass(frozen=True)
 class VelocityStrengthening(FrictionLaw):
-    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. One slip rate at every load."""
+    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. One slip rate at every load.
+
+    Parameters
+    ----------
+    static
+        Friction coefficient at rest (no unit).
+    a
+        Increase of friction when the slip rate grows by a factor e beyond `rate` (no unit).
+    rate
+        Slip rate (m/s) at which the logarithm sets in.
+    viscosity
+        Increase of friction with slip rate (s/m).
+
+    Notes
+    -----
+    Source: Marone, Scholz & Bilham 1991, J. Geophys. Res. 96, 8441 (the logarithm, with v / rate in place of 1 + v / rate).
+    """
 
     kind: ClassVar[str] = "velocity-strengthening"
     source: ClassVar[str] = (
