@@ -19,7 +19,7 @@ from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, U
 from stickslip.trajectory.tables import default_event_rate
 
 MAX_PIECES = 1_000_000
-"""Largest number of pieces of a history unless `max_pieces` is given: 0.44 GB."""
+"""Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
 PIECE_SIZE = 8 * (6 + 8 + 2 * at.TERMS)
 """Bytes of a piece, in memory and in a file, without the polynomial of a law's state."""
 CHECKPOINT_EVERY = 30.0
