@@ -1,4 +1,8 @@
-"""A run in progress: the arrays on which the compiled engine works, and the operations on them between its calls."""
+"""A run in progress: the arrays on which the compiled engine works, and the operations on them between its calls.
+
+A piece of history is an interval on which load and slip rate are polynomials. A row is a round trip of a slab or a period of a
+block.
+"""
 
 from __future__ import annotations
 

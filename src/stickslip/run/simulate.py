@@ -56,7 +56,8 @@ def simulate(
     checkpoint_every : float
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
-        Largest number of pieces of history; by default a million, some 0.4 GB in memory and in a file.
+        Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
+        million, some 0.4 GB in memory and in a file.
 
     Returns
     -------
