@@ -1,4 +1,4 @@
-"""What `stickslip run` is asked for, and how it is done: from the start or from where a run stopped, with a history or without."""
+"""The work of `stickslip run`: run from the start or from a checkpoint, with the whole history or as a catalogue of slip events."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Request:
 
     @property
     def keeps_events_only(self) -> bool:
-        """Whether slip events are all that is kept."""
+        """Return True if only slip events are kept, and no history."""
         if self.resume is None:
             return self.catalog is not None
         from stickslip.io.netcdf import is_catalogue
@@ -70,25 +70,25 @@ class Request:
         return is_catalogue(self.resume)
 
     def writes(self, solution: Solution) -> bool:
-        """Return True if a solution goes into its file: no history that is full, unless its size was asked for."""
+        """Return True if a solution goes into its file: a full history only if --max-pieces was given."""
         return self.max_pieces is not None or solution.status.name != "too many pieces"
 
     @property
     def duration(self) -> float | None:
-        """The duration asked for, s. Raises InputError."""
+        """Return the duration that was typed, s, or None. Raises InputError."""
         from stickslip.scenarios.schema import read_duration
 
         return None if self.until is None else read_duration(self.until, "run", "--until")
 
     @property
     def wanted_events(self) -> int | None:
-        """The number of slip events asked for. Raises InputError."""
+        """Return the number of slip events that was typed, or None. Raises InputError."""
         from stickslip.scenarios.schema import check_events
 
         return None if self.events is None else check_events(self.events, "run", "--events")
 
     def scenario(self) -> Scenario:
-        """The scenario with what the options change. Raises InputError."""
+        """Return the scenario with the changes that the options ask for. Raises InputError."""
         from stickslip.engine_input.creep_limits import check_creep_rtol
         from stickslip.engine_input.lumping_limits import check_shortest_event
         from stickslip.problem.selection_rule import names, unknown
@@ -113,7 +113,7 @@ class Request:
 
 
 def solve(request: Request) -> tuple[Scenario, Solution]:
-    """Run with a history, from the start or from where it stopped. Raises InputError."""
+    """Run with the whole history, from the start or from a checkpoint. Raises InputError."""
     if request.resume is None:
         chosen = request.scenario()
         keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
@@ -131,7 +131,7 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
 
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
-    """Run without a history, from the start or from where it stopped. Raises InputError."""
+    """Run and keep only slip events, from the start or from a checkpoint. Raises InputError."""
     from stickslip.run.catalogue import Paused, begin, check_energies, leaps_with
     from stickslip.run.monitor import Orders
     from stickslip.run.session import RunInProgress
@@ -155,7 +155,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
 
 
 def check_same(request: Request, problem: Problem) -> None:
-    """Refuse to go on with a run of another problem than the scenario that is named too. Raises InputError."""
+    """Refuse to resume a run whose problem differs from that of the scenario that is named beside it. Raises InputError."""
     if request.name is None:
         return
     asked = request.scenario().problem
@@ -168,7 +168,7 @@ def check_same(request: Request, problem: Problem) -> None:
 
 @contextmanager
 def progress(name: str) -> Iterator[Progress]:
-    """Says on a terminal how far the run is."""
+    """Show the progress of a run on a terminal. Yields the callback that receives it."""
     from stickslip.cli.output.show import progress_to, so_far
 
     with progress_to(f"{name}:") as report:

@@ -1,4 +1,4 @@
-"""The command `stickslip`: one file a command; errors become one line and an exit code."""
+"""The command `stickslip`, with one file for each subcommand; errors become one line and an exit code."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def start(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Entry point. Exit codes: 0 done, 1 the run failed, 2 the input cannot be used, 130 interrupted."""
+    """Run the command line and exit with 0 (done), 1 (the run failed), 2 (the input cannot be used) or 130 (interrupted)."""
     sys.exit(_code(arguments))
 
 

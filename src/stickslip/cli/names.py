@@ -1,21 +1,22 @@
-"""Names that the shell completes."""
+"""Complete names for the shell."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from typer import Context  # typer looks the annotation up
+from typer import Context  # typer evaluates the annotation at run time
 
 STARTERS = ("slab", "block")
+"""Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
 
 
 def complete_scenario(incomplete: str) -> list[str]:
-    """Bundled scenarios, and the TOML files and folders that match what is typed."""
+    """Return the bundled scenarios, TOML files and folders that begin with what is typed."""
     return _complete_files(incomplete, (".toml",))
 
 
 def complete_source(incomplete: str) -> list[str]:
-    """The same, and files of runs."""
+    """Return the bundled scenarios, TOML files, files of runs (.nc) and folders that begin with what is typed."""
     return _complete_files(incomplete, (".toml", ".nc"))
 
 
@@ -36,42 +37,42 @@ def _listing(folder: Path) -> list[Path]:
 
 
 def complete_template(incomplete: str) -> list[str]:
-    """What `stickslip new` knows."""
+    """Return the starters and bundled scenarios that begin with what is typed."""
     from stickslip.scenarios import library
 
     return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
 
 
 def complete_law(incomplete: str) -> list[str]:
-    """Friction laws."""
+    """Return the kinds of friction laws that begin with what is typed."""
     from stickslip.friction import LAWS
 
     return [kind for kind in LAWS if kind.startswith(incomplete)]
 
 
 def complete_pull(incomplete: str) -> list[str]:
-    """Loading histories."""
+    """Return the kinds of loading histories that begin with what is typed."""
     from stickslip.loading import HISTORIES
 
     return [kind for kind in HISTORIES if kind.startswith(incomplete)]
 
 
 def complete_rule(incomplete: str) -> list[str]:
-    """Selection rules."""
+    """Return the built-in selection rules that begin with what is typed."""
     from stickslip.problem.selection_rule import SELECTION_RULES
 
     return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]
 
 
 def complete_regularisation(incomplete: str) -> list[str]:
-    """What `stickslip regularise --by` knows."""
+    """Return the kinds of regularisation that begin with what is typed."""
     from stickslip.studies.regularisations import KINDS
 
     return [kind for kind in KINDS if kind.startswith(incomplete)]
 
 
 def complete_vary(context: Context, incomplete: str) -> list[str]:
-    """Keys of the scenario on the command line that a sweep can vary."""
+    """Return the keys that a sweep can vary in the scenario on the command line, as far as they begin with what is typed."""
     from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
     from stickslip.sweeps.design.parameter_paths import keys_of
@@ -84,14 +85,14 @@ def complete_vary(context: Context, incomplete: str) -> list[str]:
 
 
 def complete_quantity(incomplete: str) -> list[str]:
-    """Quantities that a sweep keeps."""
+    """Return the quantities of a sweep that begin with what is typed."""
     from stickslip.sweeps.design.quantities import QUANTITIES
 
     return [name for name in QUANTITIES if name.startswith(incomplete)]
 
 
 def complete_design(incomplete: str) -> list[str]:
-    """Designs of a sweep."""
+    """Return the designs of a sweep that begin with what is typed."""
     from stickslip.sweeps.design.design import KINDS
 
     return [kind for kind in KINDS if kind.startswith(incomplete)]

@@ -1,1 +1,1 @@
-"""Files: solutions as netCDF, catalogues, and time series in the formats of seismologists and rupture modellers."""
+"""Read and write files: solutions as netCDF, catalogues, and time series in the formats of seismologists and rupture modellers."""

@@ -1,4 +1,4 @@
-"""Rows of a catalogue on disk: appended while a run goes on, cut back where it is taken up, given their form at its end."""
+"""The rows of a catalogue: append them during a run, cut them back when it resumes, and write their final format at its end."""
 
 from __future__ import annotations
 
@@ -22,16 +22,18 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SUFFIXES = (".csv", ".parquet", ".nc")
+"""File suffixes of the formats in which a catalogue can be stored."""
 AT_A_TIME = 50_000
-"""Rows that are in memory at a time where a file is turned into another one."""
+"""Number of rows converted from one format to another at a time, which bounds the memory."""
 
 CHUNK = 1024
-"""Rows in a block of a netCDF file."""
+"""Number of rows in a chunk of a netCDF file, whose dimension has no fixed size."""
 BYTES_AT_A_TIME = 2**20
+"""Number of bytes read at a time for a checksum, which bounds the memory."""
 
 
 def check_catalogue(path: Path, where: str = "catalogue") -> None:
-    """Refuse a name that says no format, or one whose library is missing. Raises InputError."""
+    """Refuse a file name whose suffix is unknown or whose format needs a library that is missing. Raises InputError."""
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(f"{where}: {path}: the name must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
     if path.suffix.lower() == ".parquet" and importlib.util.find_spec("pyarrow") is None:
@@ -40,26 +42,26 @@ def check_catalogue(path: Path, where: str = "catalogue") -> None:
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of a table in a CSV file, which gives every number back to the last digit.
+    """The rows of a table in a CSV file, which stores every number to the last digit.
 
-    `path` is where the table is wanted. One that is wanted as CSV grows there; another one grows beside it, as NAME.rows.csv, and
-    is put into its form by `publish`.
+    `path` is the file of the finished table. A CSV table grows in this file; a table of another format grows beside it, in
+    NAME.rows.csv, and `publish` converts it.
     """
 
     path: Path
 
     @property
     def growing(self) -> Path:
-        """Where the rows are while the run goes on."""
+        """Return the path of the growing file, to which rows are appended during the run."""
         return self.path if self.path.suffix.lower() == ".csv" else self.path.with_suffix(".rows.csv")
 
     @property
     def size(self) -> int:
-        """Bytes so far."""
+        """Return the size of the growing file in bytes, 0 if it does not exist."""
         return self.growing.stat().st_size if self.growing.exists() else 0
 
     def append(self, rows: pd.DataFrame) -> None:
-        """Add rows of numbers; the first ones bring the names of the columns. Raises InputError where there is no room."""
+        """Append rows of numbers, after a header line if they are the first. Raises InputError if they cannot be written."""
         try:
             with self.growing.open("a", encoding="utf-8", newline="") as file:
                 if file.tell() == 0:
@@ -70,13 +72,13 @@ class Rows:
             raise cannot_be_written(self.growing, error, kept) from None
 
     def sync(self) -> None:
-        """Have what was written on the disk, before anything that counts on it."""
+        """Force the rows onto the disk, before a checkpoint that relies on them."""
         if self.growing.exists():
             with self.growing.open("rb+") as file:
                 os.fsync(file.fileno())
 
     def digest(self, size: int) -> str:
-        """Return the SHA-256 of the first `size` bytes; of fewer if there are not so many."""
+        """Return the SHA-256 of the first `size` bytes of the growing file, or of all its bytes if it has fewer."""
         digest = hashlib.sha256()
         if self.growing.exists():
             with self.growing.open("rb") as file:
@@ -86,15 +88,15 @@ class Rows:
         return digest.hexdigest()
 
     def take_up(self, rows: int, size: int, digest: str) -> None:
-        """Go back to the first `rows` rows, which were so many bytes with this digest.
+        """Go back to the first `rows` rows, which filled `size` bytes with this digest.
 
-        They are in the growing file; of a run that had ended, they are made again from its table, as a whole: a process that dies
-        here leaves either no growing file or all of it. Raises InputError where they are not there, or are others.
+        The growing file holds them. If the run had ended, the file is written again from the finished table, atomically: a process
+        that dies here leaves either no growing file or a complete one. Raises InputError if rows are missing or differ.
         """
         if self._has(size, digest):
             self._cut(size)
             return
-        if self.growing != self.path and self.path.exists():  # the run had ended
+        if self.growing != self.path and self.path.exists():  # the run had ended, and `tidy` deleted the growing file
             ended = read_table(self.path).iloc[:rows]
             text = ",".join(ended.columns) + "\n" + "".join(lines_of(ended))
             write_atomically(self.growing, lambda draft: draft.write_text(text, encoding="utf-8", newline=""))
@@ -112,26 +114,29 @@ class Rows:
             os.truncate(self.growing, size)
 
     def clear(self) -> None:
-        """No rows, no table."""
+        """Delete the growing file and the table."""
         self.growing.unlink(missing_ok=True)
         self.path.unlink(missing_ok=True)
 
     def chunks(self) -> Iterator[pd.DataFrame]:
-        """The rows, some at a time."""
+        """Yield the rows as tables of at most AT_A_TIME rows."""
         return read_csv(self.growing)
 
     def columns(self, *names: str) -> pd.DataFrame:
-        """Some columns of the rows so far."""
+        """Return the named columns of all rows so far."""
         import pandas as pd
 
         return pd.concat([chunk[[*names]] for chunk in self.chunks()], ignore_index=True)
 
     def read(self) -> pd.DataFrame:
-        """The table, once it has its form."""
+        """Return the finished table."""
         return read_table(self.path)
 
     def publish(self, about: Mapping[str, Any], load_unit: str) -> None:
-        """Give the table its form, whole or not at all."""
+        """Write the finished table with the attributes `about`, whole or not at all. Raises InputError if it cannot be written.
+
+        A CSV table is finished as it is. `load_unit` is Pa or N.
+        """
         suffix = self.path.suffix.lower()
         if suffix == ".parquet":
             try:
@@ -142,34 +147,34 @@ class Rows:
             write_with(lambda file: _to_netcdf(self.chunks(), file, about, load_unit), self.path)
 
     def tidy(self) -> None:
-        """The table has its form: the growing file is no longer needed."""
+        """Delete the growing file, which is not needed once the table is finished."""
         if self.growing != self.path:
             self.growing.unlink(missing_ok=True)
 
 
 @dataclass(frozen=True)
 class RowsInMemory:
-    """The same for a table that goes to no file."""
+    """The rows of a table that goes to no file, with the interface of `Rows`."""
 
     tables: list[pd.DataFrame] = field(default_factory=list)
     size: int = 0
 
     def append(self, rows: pd.DataFrame) -> None:
-        """Add rows."""
+        """Append rows."""
         self.tables.append(rows)
 
     def publish(self, about: Mapping[str, Any], load_unit: str) -> None:
-        """A table in memory has its form."""
+        """Do nothing, because a table in memory has no other format."""
 
     def tidy(self) -> None:
-        """Nothing lies about."""
+        """Do nothing, because there is no growing file."""
 
     def columns(self, *names: str) -> pd.DataFrame:
-        """Some columns of the rows so far."""
+        """Return the named columns of all rows so far."""
         return self.read()[[*names]]
 
     def read(self) -> pd.DataFrame:
-        """The table."""
+        """Return the table of all rows."""
         import pandas as pd
 
         filled = [table for table in self.tables if len(table)]
@@ -177,13 +182,13 @@ class RowsInMemory:
 
 
 def lines_of(rows: pd.DataFrame) -> Iterator[str]:
-    """Yield the rows as lines of CSV that give every number back."""
+    """Yield the rows as lines of CSV, with numbers that read back to the last digit and with nothing for NaN."""
     texts = [["" if value != value else repr(value) for value in rows[name].tolist()] for name in rows.columns]
     yield from (",".join(row) + "\n" for row in zip(*texts, strict=True))
 
 
 def read_table(path: Path) -> pd.DataFrame:
-    """Read a catalogue in its final form. Raises InputError for a file that is not one, or is damaged so that it shows."""
+    """Read a finished catalogue. Raises InputError for a file that is missing, is not a catalogue, or is visibly damaged."""
     import pandas as pd
 
     suffix = path.suffix.lower()
@@ -197,14 +202,15 @@ def read_table(path: Path) -> pd.DataFrame:
         raise InputError(f"{path}: no such file") from None
     except InputError:
         raise
-    except Exception as error:  # whatever a library says of a damaged file
+    except Exception as error:  # the libraries raise errors of many kinds for a damaged file
         raise InputError(f"{path}: not a catalogue that can be read: {' '.join(str(error).split())[:200]}") from None
 
 
 def read_csv(path: Path) -> Iterator[pd.DataFrame]:
-    """Tables of some rows at a time, at least one. Every number to the last digit, which pandas' own reader does not promise.
+    """Yield a CSV catalogue as tables of at most AT_A_TIME rows, the first of which may be empty.
 
-    Raises InputError for a row that is none.
+    Numbers are exact to the last digit, which pandas' own reader does not promise. Raises InputError for an empty file, and for a
+    row with the wrong number of entries or with an entry that is not a number.
     """
     with path.open(encoding="utf-8", newline="") as file:
         lines = csv.reader(file)
@@ -229,7 +235,7 @@ def _table_of(names: list[str], rows: list[list[str]], path: Path) -> pd.DataFra
 
 
 def _typed(texts: list[str]) -> list[Any]:
-    """Numbers as what they were: a float is never written as an integer, and one that is not a number as nothing."""
+    """Return integers if every text is one, and floats otherwise: `lines_of` writes a float with a point and NaN as nothing."""
     try:
         return [int(text) for text in texts]
     except ValueError:

@@ -1,4 +1,4 @@
-"""Solutions as netCDF: everything needed to evaluate them again, a drawing of them for other tools, and where they come from."""
+"""Solutions as netCDF: all that is needed to evaluate and resume them, curves and tables for other tools, and provenance."""
 
 from __future__ import annotations
 
@@ -33,18 +33,20 @@ from stickslip.trajectory.status import Status
 from stickslip.trajectory.tables import EVENT_COLUMNS
 
 FORMAT = 1
-"""Version of the layout below; a file with another one is refused."""
+"""Version of the file layout below; a file with another version is refused."""
 CATALOGUE = "stickslip_catalogue"
+"""Attribute that holds the version in the checkpoint of a catalogue."""
 KINDS = {
     "stickslip_format": "a solution: take it up with stickslip.resume",
     CATALOGUE: "a catalogue's checkpoint: take it up with stickslip.resume_catalogue",
 }
-"""Attributes that hold the version, and what a file with one of them is."""
+"""Attributes that hold the version, each with a description of the files that have it, for messages."""
 
 DRAWN_POINTS = 2000
+"""Number of evenly spaced times of the stored curves, to which breaking points are added: enough for a figure."""
 
 AXES = (("numbers",), ("counts",), ("rows", "terms"), ("levels", "branches"), ("one",), ("times",))
-"""Names of the axes of a checkpoint's arrays."""
+"""Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
 
 LONG_NAMES = {
     "slip": "slip of the contact, u",
@@ -54,19 +56,24 @@ LONG_NAMES = {
     "load": "load on the contact, beta",
     "state": "state of the friction law",
 }
+"""Meaning of each curve, for the attribute long_name."""
 
 PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
+"""Source of the model, for the attribute references."""
 
 
 def units(solution: Readings) -> dict[str, str]:
-    """Unit of each curve of a solution."""
+    """Return the unit of each curve of a solution."""
     load, state = solution.problem.load_unit, solution.problem.friction.state
     known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
     return known | ({"state": state.unit} if state else {})
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
-    """Who made this, from what, under which rule and tolerance: attributes of every file and dataset."""
+    """Return the attributes of every file and dataset: the program, the scenario, the selection rule, the tolerance, the status.
+
+    They include what the selection rule decided and, for a slab whose echoes can amplify errors, the predictability of the run.
+    """
     chosen = choices(solution)
     return origin(solution) | {
         "selection_note": solution.selection_note,
@@ -77,7 +84,7 @@ def provenance(solution: Solution) -> dict[str, Any]:
 
 
 def origin(solution: Solution) -> dict[str, Any]:
-    """The same without what has to be worked out."""
+    """Return those attributes of `provenance` that take no computation."""
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
@@ -96,12 +103,20 @@ def origin(solution: Solution) -> dict[str, Any]:
 
 
 def solution_dataset(solution: Solution, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-    """Slip, slip rate, traction and load at times t (s), right limits, with units and provenance; with x (m) also the field."""
+    """Return the curves of a solution at times t (s), right limits, with units and provenance.
+
+    The curves are slip, slip rate, traction, load and, if the law has one, the state. With x (m from the contact) the dataset also
+    holds the field inside the slab.
+    """
     return _readings(solution, t, x).assign_attrs(provenance(solution))
 
 
 def window_dataset(window: Window, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-    """As `solution_dataset`, in local time; attributes say when the event begins: `epoch_row` whole rows and `epoch_offset` s."""
+    """Return the dataset of `solution_dataset` in local time t (s since the start of the event).
+
+    The event begins `epoch_row` whole rows of `row_time` seconds and `epoch_offset` seconds after the start of the run: these three
+    are attributes.
+    """
     dataset = _readings(window, t, x)
     dataset.time.attrs["long_name"] = "time since the start of the event"
     about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
@@ -115,7 +130,7 @@ def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Datas
 
 
 def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -> xr.Dataset:
-    """Displacement, velocity and stress over time and x."""
+    """Return displacement (m), velocity (m/s) and shear stress (Pa) over times t (s) and distances x (m) from the contact."""
     found = readings.field(x, t[:, None])._asdict()
     since = "since the event began, from where the contact stood then" if "event_slip" in readings.curves else "u"
     about = {
@@ -135,11 +150,28 @@ def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, N
 
 
 def save(solution: Solution, path: str | Path) -> Path:
-    """Write a solution to a netCDF file (atomically); `load` gives it back bit for bit.
+    """Write a solution to a netCDF file, from which `load` gives it back bit for bit.
 
-    Besides the history, the file holds curves for drawing (both limits at shocks), the tables of events and shocks, and as
-    attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError where the folder cannot
-    be written; where the disk is full, it is a FullDiskError, whose attribute `solution` can be saved elsewhere.
+    Besides the history, the file holds curves for drawing (with both limits at shocks), the tables of events and shocks, and as
+    attributes the version, the full scenario, the selection rule and the tolerance.
+
+    Parameters
+    ----------
+    solution : Solution
+        The solution to write.
+    path : str or Path
+        Name of the file, which is written as a whole or not at all.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be
+        saved elsewhere; if a loading history is not registered, the file could not be read back.
     """
     dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
     try:
@@ -150,9 +182,9 @@ def save(solution: Solution, path: str | Path) -> Path:
 
 
 def save_checkpoint(solution: Solution, path: Path) -> Path:
-    """Write what `load` and `resume` need of a run that is still under way, quickly: no curves, no tables.
+    """Write only what `load` and `resume` need of a run under way, without curves and tables, to save time.
 
-    A full disk does not end the run: the checkpoint before stays, and a warning says so.
+    A full disk does not end the run: the previous checkpoint stays in the file, and a warning says so.
     """
     try:
         return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
@@ -162,7 +194,10 @@ def save_checkpoint(solution: Solution, path: Path) -> Path:
 
 
 def history_dataset(solution: Solution) -> xr.Dataset:
-    """The history, and where the engine stands behind it. Raises InputError for a loading that no file could be read back with."""
+    """Return the history, and the state of the engine at its end if it is known.
+
+    Raises InputError for a loading history that is not registered, because the file could not be read back.
+    """
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
             name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
@@ -199,7 +234,7 @@ def _history(solution: Solution) -> xr.Dataset:
 
 
 def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
-    """Where the engine stands, with the code that made it: what `resume` goes on from."""
+    """Return the state of the engine from which `resume` continues, with the hash of the engine's code."""
     axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
     variables = {f"engine_{name}": (axes[name], getattr(checkpoint, name)) for name in ARRAYS}
     return xr.Dataset(variables, attrs={"engine": checkpoint.engine})
@@ -226,19 +261,36 @@ def _tables(solution: Solution) -> xr.Dataset:
 
 
 def column_unit(name: str, load_unit: str) -> str:
-    """Unit of a column of the table of events."""
+    """Return the unit of a column of the table of events."""
     unit, _ = EVENT_COLUMNS[name]
     return load_unit if unit == "load" else unit
 
 
 def load(path: str | Path) -> Solution:
-    """Read a solution that `save` wrote. Raises InputError for a file that is not one."""
+    """Read a solution from a netCDF file that `save` or a run wrote.
+
+    Parameters
+    ----------
+    path : str or Path
+        Name of the file.
+
+    Returns
+    -------
+    Solution
+        The solution, bit for bit as it was.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if
+        its selection rule is not registered.
+    """
     path = Path(path)
     return to_solution(read(path), path)
 
 
 def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:
-    """Read a file of ours, of the kind whose format has this attribute. Raises InputError for any other one."""
+    """Read a file of stickslip whose version is stored in the attribute `kind`. Raises InputError for any other file."""
     what = KINDS[kind].partition(":")[0]
     dataset = netcdf_file.read(path, what)
     if dataset.attrs.get(kind) != FORMAT:
@@ -254,7 +306,10 @@ def is_catalogue(path: Path) -> bool:
 
 
 def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
-    """Return the solution in a file. Raises InputError for a rule that is not known here, and where something is out of range."""
+    """Return the solution in a dataset that was read from `path`.
+
+    Raises InputError if a part is missing, a number is out of range, or the selection rule is not registered.
+    """
     try:
         found = _solution(dataset, path)
     except (KeyError, TypeError, AttributeError) as error:

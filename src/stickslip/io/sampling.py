@@ -1,4 +1,4 @@
-"""A run at evenly spaced times: exact values there, or, if wanted, what is left of them below half the sampling rate."""
+"""Sample a run at evenly spaced times: exact values or, on request, values low-passed to half the sampling rate."""
 
 from __future__ import annotations
 
@@ -16,20 +16,30 @@ from stickslip.solution.window import Window
 Floats = NDArray[np.float64]
 
 MOST = 20_000_000
-"""Values that are computed for the longest series: one a sample, with the filter some hundred."""
+"""Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(NODES) = 64."""
 FINER = 8
-"""With a filter there are so many averages to a sample."""
+"""Number of averages for each sample, from which the filter keeps one."""
 _GAUSS = np.polynomial.legendre.leggauss(8)
 NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
-"""For averages between breaking points, a cell or less apart: there the run is a polynomial."""
+"""Gauss's rule on [0, 1] with eight nodes: between breaking points the curves of a slipping contact are smooth."""
 BLOCK = 1 << 17
-"""Times that are looked up together: keeps the memory bounded."""
+"""Number of times that are looked up together, which bounds the memory."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """Slip (m) since the start of what is sampled, slip rate (m/s) and traction (Pa; block: N), `rate` samples a second from
-    the time `start` (s) on. Away from the contact: displacement since then, velocity and shear stress."""
+    """A run at evenly spaced times.
+
+    Attributes
+    ----------
+    start : float
+        Time of the first sample, s.
+    rate : float
+        Number of samples per second, Hz.
+    slip, slip_rate, traction : ndarray, shape (n,)
+        Slip since t = 0 of the run or window (m), slip rate (m/s) and traction (Pa; block: N). Away from the contact they are
+        displacement since then, velocity and shear stress.
+    """
 
     start: float
     rate: float
@@ -39,7 +49,7 @@ class Series:
 
     @property
     def time(self) -> Floats:
-        """Times of the samples, s: start + k/rate."""
+        """Return the times of the samples, s: start + k/rate."""
         return self.start + np.arange(len(self.slip)) / self.rate
 
 
@@ -52,13 +62,34 @@ def sample(
     antialias: bool = False,
     x: float = 0.0,
 ) -> Series:
-    """A run, or a window on it, `sampling_rate` times a second (Hz) from `start` to `end` (s; default: all that is shown).
+    """Sample a run, or a window on it, at evenly spaced times.
 
-    x is the distance (m) from the contact, in a slab (`Readings.field`). Values are those of the solution at the times of the
-    samples, from the right where one falls on a shock. A shock has no highest frequency: with `antialias` the run is averaged over
-    an eighth of the distance of the samples (exactly, where the contact slips) and low-passed to half the sampling rate (linear
-    phase, Kaiser window, no delay), which spreads each shock over some samples before and after it. Needs scipy.
-    Raises InputError for a rate that is not positive, times outside the run or more than 2e7 samples.
+    Without the filter, the values are those of the solution at the times of the samples, right limits at shocks.
+
+    Parameters
+    ----------
+    run : Readings
+        A solution, or a window on one slip event, which is sampled in local time.
+    sampling_rate : float
+        Number of samples per second, Hz.
+    start, end : float, optional
+        First and last time, s; by default the interval that a figure of the run shows.
+    antialias : bool
+        Low-pass the run to half the sampling rate, because a shock has no highest frequency. The run is averaged over an eighth of
+        the sampling interval, by Gauss's rule between breaking points, then filtered (linear phase, Kaiser window, no delay). This
+        spreads each shock over some samples before and after it. The filter needs scipy.
+    x : float
+        Distance from the contact, m; other than 0 for a slab only (see `Readings.field`).
+
+    Returns
+    -------
+    Series
+        The samples.
+
+    Raises
+    ------
+    InputError
+        If the rate is not positive, a time lies outside the run, or there are more than 2e7 samples (with the filter 3.1e5).
     """
     first, last = (own if given is None else given for own, given in zip(run.shown, (start, end), strict=True))
     if not (0.0 < sampling_rate < math.inf):
@@ -74,14 +105,14 @@ def sample(
 
 
 def _count(wanted: float, most: int) -> int:
-    """Samples in a time of so many distances."""
+    """Return the number of samples in `wanted` sampling intervals, the first included. Raises InputError if it exceeds `most`."""
     if not wanted < most:
         raise InputError(f"{wanted:.3g} samples are too many: take a lower rate, or an event of it (at most {most})")
     return math.floor(wanted * (1.0 + 1e-12)) + 1
 
 
 def _values(run: Readings, time: Floats, x: float) -> list[Floats]:
-    """Slip since the start, slip rate and traction, right limits."""
+    """Return slip since the start, slip rate and traction, right limits; away from the contact displacement, velocity, stress."""
 
     def slip(t: Floats) -> Floats:
         return run.event_slip(t) if isinstance(run, Window) else run.slip(t) - run.problem.initial_slip
@@ -94,7 +125,7 @@ def _values(run: Readings, time: Floats, x: float) -> list[Floats]:
 
 
 def _means(run: Readings, time: Floats, width: float, x: float) -> Iterator[Floats]:
-    """Averages of the same over `width` (s) around each time, by Gauss's rule between the breaking points of the run."""
+    """Yield averages of the same quantities over `width` (s) around each time, by Gauss's rule between breaking points."""
     low, high = run.history.span
     bounds = np.clip(np.append(time - 0.5 * width, time[-1] + 0.5 * width), low, high)
     breaks = run.breaks[(run.breaks > bounds[0]) & (run.breaks < bounds[-1])]
@@ -106,7 +137,7 @@ def _means(run: Readings, time: Floats, width: float, x: float) -> Iterator[Floa
 
 
 def _thinned(values: Floats) -> Floats:
-    """Every eighth value of the low-passed series; both ends go on as they are."""
+    """Low-pass a series and keep every eighth value; beyond its ends the series is continued by its end values."""
     from scipy import signal
 
     return np.asarray(signal.resample_poly(values, 1, FINER, padtype="edge"))

@@ -1,7 +1,8 @@
-"""On-fault time series as text, in the layout of the SCEC/USGS spontaneous rupture benchmarks.
+"""Write on-fault time series as text, in the layout of the SCEC/USGS spontaneous rupture benchmarks.
 
-Comment lines begin with # and say what was run and what the columns are; one line names the fields; then a line a sample. Stress
-is in MPa, as in the benchmarks. Source: R.A. Harris et al. 2009, Seismol. Res. Lett. 80, 119; scecdata.usc.edu/cvws.
+Comment lines begin with # and say what was run and what the columns are. Then one line names the fields, and one line follows for
+each sample. Stress is in MPa, as in the benchmarks. Source: R.A. Harris et al. 2009, Seismol. Res. Lett. 80, 119;
+scecdata.usc.edu/cvws.
 """
 
 from __future__ import annotations
@@ -25,12 +26,15 @@ FIELDS = (
     ("slip-rate", "slip rate (m/s)"),
     ("shear-stress", "shear stress (MPa)"),
 )
+"""Name and meaning of each column."""
 VERTICAL = (
     ("v-slip", "vertical slip (m)"),
     ("v-slip-rate", "vertical slip rate (m/s)"),
     ("v-shear-stress", "vertical shear stress (MPa)"),
 )
+"""Columns of the three-dimensional benchmarks that are zero here, because slip has one direction."""
 NORMAL = ("n-stress", "normal stress (MPa)")
+"""Last column of the three-dimensional benchmarks."""
 
 
 def write_scec(
@@ -45,12 +49,38 @@ def write_scec(
     station: str = "contact",
     components: bool = False,
 ) -> Path:
-    """Write t, slip, slip rate and shear stress of a run or a window on it (see `sample` for rate, times and filter).
+    """Write time, slip, slip rate and shear stress of a run, or of a window on it, as text.
 
-    Slip counts from the start of the run (of the event, in a window). `problem` and `station` go into the header. With
-    `components` the columns are the eight of the three-dimensional benchmarks: h- for our slip, v- zero, and the normal stress
-    (tension positive, as in TPV29 to TPV37: here it is negative). A block's forces are written over 1 m^2.
-    Raises InputError like `sample`, and for a header text of several lines.
+    Slip is counted from the start of the run or, in a window, of the event.
+
+    Parameters
+    ----------
+    run : Readings
+        A solution, or a window on one slip event.
+    path : str or Path
+        Name of the file.
+    sampling_rate, start, end, antialias
+        See `sample`.
+    problem, station : str
+        Texts of one line for the header.
+    components : bool
+        Write the eight columns of the three-dimensional benchmarks: those that begin with h- hold the slip of this model, those
+        with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to TPV37, so that the
+        normal stress is negative.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        As from `sample`, and for a header text with line breaks or control characters.
+
+    Notes
+    -----
+    The forces of a block are written as stresses on an area of 1 m^2.
     """
     for name, text in (("problem", problem), ("station", station)):
         if not text.isprintable():

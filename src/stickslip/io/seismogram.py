@@ -1,4 +1,4 @@
-"""Seismograms of the contact as miniSEED or SAC, written by ObsPy (`pip install 'stickslip[seismology]'`)."""
+"""Write seismograms of the contact as miniSEED or SAC, by means of ObsPy (`pip install 'stickslip[seismology]'`)."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from stickslip.solution.evaluation import Readings
 
 Quantity = Literal["slip", "slip_rate", "traction"]
 CODES: dict[Quantity, str] = {"slip": "U", "slip_rate": "V", "traction": "T"}
-"""Last letter of the channel."""
+"""Last letter of the channel of each quantity."""
 FORMATS = {".mseed": "MSEED", ".sac": "SAC"}
+"""ObsPy's name of the format that belongs to each suffix."""
 BANDS = ((1000.0, "F"), (250.0, "C"), (80.0, "H"), (10.0, "B"), (1.5, "M"), (0.5, "L"), (0.05, "V"))
-"""Letters of the SEED manual, appendix A, for sampling rates (Hz) from so many on; below them "U"."""
+"""Lowest sampling rate (Hz) of each band, and its letter in the SEED manual, appendix A; the letter is U below all of them."""
 KINDS: dict[Quantity, tuple[int, str]] = {"slip": (6, "m"), "slip_rate": (7, "m/s"), "traction": (5, "Pa")}
-"""SAC's idep (displacement, velocity, unknown), and the unit."""
+"""SAC's code idep (displacement, velocity, unknown) and the unit of each quantity."""
 
 
 def write_seismogram(
@@ -35,13 +36,38 @@ def write_seismogram(
     station: str = "SLIDE",
     origin: str = "1970-01-01T00:00:00",
 ) -> list[Path]:
-    """Write quantities of the contact in SI as miniSEED (.mseed: one file, 64-bit numbers) or SAC (.sac: 32-bit numbers, a file for
-    each quantity, NAME.slip_rate.sac, or just NAME.sac for a single one). Returns the paths.
+    """Write quantities of a run, or of a window on it, in SI as miniSEED or SAC.
 
-    For rate, times, filter and x, the distance (m) from the contact, see `sample`; inside the slab displacement, velocity and
-    shear stress stand for slip, slip rate and traction. `origin` (ISO 8601, UTC) is the date of t = 0 (of the start of the event,
-    in a window). Channels are the band's letter, X for computed, and U, V or T for slip, slip rate, traction; slip counts from
-    the start of the run. Raises InputError without ObsPy, for another suffix, a quantity or a date that is none, and like `sample`.
+    Channels are named by the letter of the band, X for computed data, and U, V or T for slip, slip rate and traction. Slip is
+    counted from the start of the run or, in a window, of the event.
+
+    Parameters
+    ----------
+    run : Readings
+        A solution, or a window on one slip event.
+    path : str or Path
+        NAME.mseed for one file of 64-bit numbers, or NAME.sac for 32-bit numbers in one file for each quantity, NAME.slip_rate.sac
+        and so on; a single quantity goes to NAME.sac.
+    sampling_rate, start, end, antialias
+        See `sample`.
+    quantities : sequence of {"slip", "slip_rate", "traction"}
+        Quantities to write. Inside the slab they are displacement, velocity and shear stress.
+    x : float
+        Distance from the contact, m.
+    network, station : str
+        Codes for the header.
+    origin : str
+        Date (ISO 8601, UTC) of t = 0, which in a window is the start of the event.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    InputError
+        As from `sample`; also if ObsPy is missing, or for an unknown suffix or quantity or an invalid date.
     """
     path = Path(path)
     if path.suffix.lower() not in FORMATS:
@@ -61,7 +87,7 @@ def write_seismogram(
 
 
 def import_obspy() -> Any:
-    """ObsPy. Raises InputError, one line, where it is missing."""
+    """Import ObsPy and return it. Raises InputError, with a message of one line, if it is missing."""
     try:
         import obspy
     except ImportError:
@@ -77,7 +103,7 @@ def _date(obspy: Any, text: str) -> Any:
 
 
 def band(sampling_rate: float) -> str:
-    """First letter of the channel."""
+    """Return the letter of the band to which a sampling rate (Hz) belongs: the first letter of the channel."""
     return next((letter for least, letter in BANDS if sampling_rate >= least), "U")
 
 

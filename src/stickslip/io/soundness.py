@@ -1,7 +1,7 @@
-"""Check what was read from a file before compiled code, which trusts it, works on it.
+"""Check what was read from a file before it reaches compiled code, which does not check it.
 
-A file whose checksum fits may still have been made by hand, or by a program with an error. Every array has its shape and type, and
-every number that the engine uses as an index or as a code lies in its range; anything else is one line.
+A file with a valid checksum may still have been made by hand, or by a faulty program. The checks cover the shape and type of every
+array, and the range of every number that the engine uses as an index or as a code. A fault is reported in one line.
 """
 
 from __future__ import annotations
@@ -27,21 +27,25 @@ from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
 
 ROUNDING = 1e-9
-"""Of the length of a row: offsets lie in it, but for rounding."""
+"""Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = at.HEALING
+"""Largest code for the cause of a shock."""
 SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
-"""Counts that follow from the problem alone."""
+"""Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "leaving", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+"""Counts that are 0 or 1."""
 SIGNS = ("mode", "edge")
+"""Counts that are a direction: -1, 0 or 1."""
 NOT_NEGATIVE = ("row", "source", "steps", "slip_row", "tiny", "pause_at", "pause_for", "stalled", "lumped_since", "rough")
+"""Counts of rows or steps, from 0 to NEVER."""
 FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
-"""Numbers of the state that may be infinite or no number."""
+"""Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
-"""Name of what is wrong, and whether it is."""
+"""The name of what is checked, and whether it is wrong."""
 
 
 def number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float = 0.0) -> float:
-    """Return an attribute that is a finite number, at least `lowest`. Raises InputError."""
+    """Return an attribute that must be a finite number, at least `lowest`. Raises InputError if it is not."""
     value = attributes[name]
     if np.ndim(value) or isinstance(value, str | bytes) or not (math.isfinite(value) and value >= lowest):
         raise InputError(f"{path}: not a file that stickslip has written: {name} is {value!r}")
@@ -49,7 +53,7 @@ def number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float =
 
 
 def whole_number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float = 0.0, highest: float = 2.0**62) -> int:
-    """Return an attribute that is a whole number between two others. Raises InputError."""
+    """Return an attribute that must be a whole number from `lowest` to `highest`. Raises InputError if it is not."""
     value = number(attributes, name, path, lowest)
     if value != int(value) or value > highest:
         raise InputError(f"{path}: not a file that stickslip has written: {name} is {value!r}")
@@ -57,8 +61,10 @@ def whole_number(attributes: Mapping[str, Any], name: str, path: Path, lowest: f
 
 
 def check_place(about: Mapping[str, Any], path: Path) -> dict[str, Any]:
-    """Return where a checkpoint says that its catalogue stood. Raises InputError for a number out of range, or a name that leads
-    elsewhere."""
+    """Return what a catalogue's checkpoint says of its rows and of the stream of events.
+
+    Raises InputError for a number out of range, and for a file name that leads to another folder.
+    """
     name = about["catalogue"]
     if not isinstance(name, str) or name != Path(name).name or set(name) & set("/\\\0") or name in ("", ".", ".."):
         raise InputError(f"{path}: not a file that stickslip has written: its catalogue is named {name!r}, which is no bare name")
@@ -74,7 +80,7 @@ def check_place(about: Mapping[str, Any], path: Path) -> dict[str, Any]:
 
 
 def check_history(history: History, path: Path) -> None:
-    """Refuse a history that no run leaves. Raises InputError."""
+    """Refuse a history that no run can leave. Raises InputError."""
     _refuse(_shapes_of_history(history), path)
     _refuse(_faults_of_history(history), path)
 
@@ -103,7 +109,7 @@ def _faults_of_history(history: History) -> Iterator[Fault]:
     yield "jump of a piece", _outside(store.whole[:, at.S_JUMP], 0, 1)
     yield "cause of a piece", _outside(store.cause, 0, LAST_CAUSE)
     yield "echo of a piece", (store.echo_of < -1).any() or (store.echo_of >= np.arange(pieces)).any()
-    yield "times of a piece", _no_interval(store.theta_from, store.theta_to, math.inf)  # a leap over creep spans many rows
+    yield "times of a piece", _no_interval(store.theta_from, store.theta_to, math.inf)  # a leap over creep may span many rows
     numbers = (store.real[:, : at.S_AMPLIFIED], store.load, store.rate, store.state, history.creep)
     yield "numbers of a piece, which are not finite,", not all(np.isfinite(table).all() for table in numbers)
 
@@ -113,12 +119,12 @@ def _outside(values: NDArray[Any], low: float, high: float) -> bool:
 
 
 def _no_interval(begin: Any, end: Any, row: float) -> bool:
-    """Return True unless offsets lie in a row, and follow each other."""
+    """Return True unless each interval of offsets (s) lies in a row of length `row` and does not end before it begins."""
     return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= row * (1.0 + ROUNDING))))
 
 
 def check_checkpoint(solution: Solution, path: Path) -> None:
-    """Refuse a checkpoint with which the engine would read or write beyond its tables, or not return. Raises InputError."""
+    """Refuse a checkpoint from which the engine would read or write outside its tables, or never return. Raises InputError."""
     checkpoint, history = solution.checkpoint, solution.history
     assert checkpoint is not None
     setup, _, count = prepare(solution.problem, solution.rtol, solution.shortest_event)
@@ -145,11 +151,11 @@ def _places(record: Record, *names: str) -> Any:
 
 
 def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
-    """What the engine uses as an index."""
+    """Yield a check of each number that the engine uses as an index."""
     length = int(count.length)
     begins = count.row == 0 and (count.source == 0 or count.ready != 0)
     yield "number of pieces", not 0 <= length <= pieces or (length == 0 and not begins)
-    if count.sparse == 0:  # else these are not used, and a catalogue counts them down below zero
+    if count.sparse == 0:  # otherwise they are not used, and a catalogue that discards history makes them negative
         for name in ("row_from", "previous_from", "previous_to"):
             yield f"engine_count {name}", not 0 <= getattr(count, name) <= length
         yield "engine_count previous_from", count.previous_from > count.previous_to
@@ -165,7 +171,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
 
 
 def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
-    """What the engine takes as a code, a flag or a number of rows."""
+    """Yield a check of each number that the engine uses as a code, a flag or a number of rows."""
     yield "engine_count: what follows from the problem", (_places(count, *SAME) != _places(fresh, *SAME)).any()
     yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
     yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
@@ -191,7 +197,7 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
-    """Branches follow from the problem, and where folds move, from the slip at which they were worked out."""
+    """Yield checks of the branches, which follow from the problem and, if folds move, from the slip for which they hold."""
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
     yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < branch.shape[1]
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
@@ -200,7 +206,7 @@ def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) 
         return
     rows, level = branch_rows(problem, float(State(checkpoint.state).table_slip))
     compared = [*range(6)]
-    if has_levels_to_set(problem):  # by compiled code, to rounding
+    if has_levels_to_set(problem):  # compiled code sets the rule's levels, which agree to rounding only
         compared = [at.RATE_FROM, at.RATE_TO, at.EXCESS_FROM, at.EXCESS_TO]
     same = branch.shape == rows.shape and np.array_equal(branch[compared], rows[compared])
     yield "engine_branch", not same

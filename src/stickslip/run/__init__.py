@@ -1,1 +1,1 @@
-"""Running a problem: at once, taken up again after a stop, or told event by event."""
+"""Run a problem: with its whole history, resumed after a stop, or as a table of slip events alone."""

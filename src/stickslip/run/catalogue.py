@@ -1,4 +1,4 @@
-"""The catalogue of a run whose history is too long to be kept: one row an event, told as they become known."""
+"""Run a problem without keeping its whole history, and write one row for each slip event as soon as it is known."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 CAPACITY = 16_384
-"""Pieces of history that are kept at a time, if no single event needs more."""
+"""Pieces of history for which a catalogue has room at first, about 7 MB; it grows only where what must be kept fills half of it."""
 
 
 def catalogue(
@@ -53,14 +53,45 @@ def catalogue(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> pd.DataFrame:
-    """The slip events of a run up to `duration` (s), or until so many `events` are over, in bounded memory.
+    """Run a problem in bounded memory and return the table of its slip events.
 
-    The table is that of `Solution.catalogue(event_rate, energies=energies)`, with a last row for an event that the end leaves
-    open; its `attrs` say what ended the run. With a `path` (.csv, .parquet, .nc) the rows go to this file, and beside it
-    NAME.checkpoint.nc is renewed every `checkpoint_every` seconds of wall clock: `stickslip.resume_catalogue` takes it up. The
-    history is forgotten up to the last event but one, but for what stands in the body; an event, with what precedes it, of more
-    than `max_pieces` pieces ends the run with a status.
-    For the other arguments, and errors, see `stickslip.simulate`; InputError also for a path that says no format.
+    History before the previous event is discarded, except waves that are still travelling in the slab.
+
+    Parameters
+    ----------
+    problem : Problem
+        The body, its friction law, its loading and its initial state.
+    duration : float
+        Latest end of the run, s.
+    path : str or Path, optional
+        File for the table (.csv, .parquet or .nc). NAME.checkpoint.nc beside it is renewed while the run continues, and
+        `stickslip.resume_catalogue` resumes from it. Without a path the rows are kept in memory.
+    rtol, creep_rtol, shortest_event, progress
+        See `stickslip.simulate`.
+    events : int, optional
+        Number of slip events after which the run stops.
+    event_rate : float, optional
+        Slip rate (m/s) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a block sqrt(K m)
+        replaces Z.
+    energies : bool
+        Add the energies of each event (slab: J/m^2, block: J). Automatic leaps over creep are then switched off.
+    checkpoint_every : float
+        Interval between two checkpoints, s of wall clock.
+    max_pieces : int, optional
+        Largest number of pieces of history kept at a time, a million by default. An event that needs more, together with what
+        precedes it, ends the run with the status "too many pieces".
+
+    Returns
+    -------
+    pandas.DataFrame
+        The table of `Solution.catalogue(event_rate, energies=energies)`, with a last row for an event that the end of the run
+        leaves open. Its `attrs` hold what ended the run, and notes.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
+        pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
     check_run("catalogue", duration, rtol, events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "catalogue")
@@ -79,23 +110,23 @@ def catalogue(
 
 
 def leaps_with(energies: bool, creep_rtol: float | None) -> float | None:
-    """Return the tolerance of leaps over creep: automatic ones are left out where energies are wanted."""
+    """Return the tolerance of leaps over creep, which is 0 (no leaps) if energies are wanted and no tolerance is given."""
     return 0.0 if energies and creep_rtol is None else creep_rtol
 
 
 def check_energies(creep_rtol: float | None, energies: bool, where: str, options: str = "energies and creep_rtol") -> None:
-    """Refuse energies of a run that leaps over creep. Raises InputError."""
+    """Refuse energies for a run that leaps over creep. Raises InputError."""
     if energies and creep_rtol is not None and creep_rtol > 0.0:
         raise InputError(f"{where}: {options} exclude each other: what leaps over creep send into the slab is not known")
 
 
 def stream_of(run: RunInProgress, event_rate: float, energies: bool) -> EventStream:
-    """The events of a run from its start."""
+    """Return a stream of all events of a run, from its start."""
     return EventStream(run.problem, event_rate, float(run.setup.par.ramp), energies=energies)
 
 
 def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None, energies: bool = False) -> Catalogue:
-    """Follow a run from its start, into a file; what was there under these names is gone."""
+    """Run from the start into a file. An earlier table and checkpoint of the same names are deleted first."""
     rows = Rows(path)
     rate = default_event_rate(run.problem) if event_rate is None else event_rate
     with alone_with(rows):
@@ -105,7 +136,7 @@ def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | No
 
 
 def alone_with(rows: Rows) -> AbstractContextManager[None]:
-    """Hold the files of a catalogue against other processes. Raises InputError where another catalogue is written into them."""
+    """Lock the files of a catalogue against other processes. Raises InputError if another run is writing to them."""
     return held(checkpoint_of(rows), f"{rows.path}: another run is writing its catalogue there: choose another name")
 
 
@@ -118,10 +149,31 @@ def resume_catalogue(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> pd.DataFrame:
-    """Go on with a `catalogue` from its checkpoint, up to `duration` (s from the start; default: as before).
+    """Continue a `catalogue` from its checkpoint.
 
-    Rows that were written after the checkpoint are cut off and made again: the table is the same, bit for bit, as if the run had
-    never stopped. Raises InputError as `stickslip.resume` does, and where rows are missing.
+    Rows that were written after the checkpoint are cut off and computed again: the table is the same, bit for bit, as if the run
+    had never stopped.
+
+    Parameters
+    ----------
+    checkpoint : str or Path
+        The file NAME.checkpoint.nc, with the rows in the same folder.
+    duration : float, optional
+        New latest end of the run, s from its start; the previous one by default.
+    events : int, optional
+        Number of slip events, counted from the start of the run, after which it stops.
+    progress, checkpoint_every, max_pieces
+        See `catalogue`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The whole table, as from `catalogue`.
+
+    Raises
+    ------
+    InputError
+        As from `stickslip.resume`, and if rows are missing, have been changed, or are behind a symbolic link.
     """
     paused = Paused.read(Path(checkpoint))
     return paused.go_on(duration, events, progress, checkpoint_every, max_pieces).read()
@@ -129,7 +181,7 @@ def resume_catalogue(
 
 @dataclass(frozen=True)
 class Paused:
-    """A catalogue in the making, read from its checkpoint."""
+    """The state of a catalogue's run, as read from its checkpoint."""
 
     path: Path
     stopped: Solution
@@ -137,7 +189,7 @@ class Paused:
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """Raises InputError for a file that is no such checkpoint."""
+        """Read a checkpoint. Raises InputError for a file that is not the checkpoint of a catalogue."""
         dataset = read(path, CATALOGUE)
         stopped = to_solution(dataset, path)
         try:
@@ -147,7 +199,7 @@ class Paused:
 
     @property
     def rows(self) -> Rows:
-        """Where the rows are: beside the checkpoint. Raises InputError where there is a link."""
+        """Return the rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
         found = Rows(self.path.parent / self.about["catalogue"])
         for path in {found.path, found.growing}:
             if path.is_symlink():
@@ -162,7 +214,7 @@ class Paused:
         checkpoint_every: float = CHECKPOINT_EVERY,
         max_pieces: int | None = None,
     ) -> Catalogue:
-        """Follow the run to its end."""
+        """Continue the run to its end. Raises InputError as `resume_catalogue` does."""
         stopped, about = self.stopped, self.about
         wanted, rows = events_wanted(stopped, events), self.rows
         run = taken_up(stopped, self.path, duration)
@@ -182,8 +234,10 @@ class Paused:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """What came of a run: its rows, how many events are over, what ended it; and `notes`, lines on what is predictable, on the
-    energy that is trapped in waves, and on leaps over creep and lumped events, where there is something to say.
+    """The result of a run without a history: its rows, the number of events that are over, and what ended it.
+
+    `notes` holds one line each on predictability, energy trapped in waves, leaps over creep, lumped events and rounding, where
+    there is something to report.
     """
 
     rows: Rows | RowsInMemory
@@ -193,11 +247,11 @@ class Catalogue:
 
     @property
     def files(self) -> list[Path]:
-        """Table and checkpoint."""
+        """Return the paths of the table and the checkpoint, or an empty list if the rows are in memory."""
         return [self.rows.path, checkpoint_of(self.rows)] if isinstance(self.rows, Rows) else []
 
     def read(self) -> pd.DataFrame:
-        """The table."""
+        """Return the table, whose `attrs` hold the status and the notes."""
         table = self.rows.read()
         table.attrs = {"status": self.status.name, "status_message": self.status.message}
         table.attrs.update(self.notes)
@@ -205,7 +259,7 @@ class Catalogue:
 
 
 def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows | RowsInMemory) -> Catalogue:
-    """Follow a run to its end, and give its table its form. Raises InputError where it ends where it starts."""
+    """Run to the end and write the table in its final format. Raises InputError if the run ends where it starts."""
     run.reserve(CAPACITY)
     keeper = CatalogueKeeper.of(run, orders, stream)
     keeper.rows = rows
@@ -216,7 +270,7 @@ def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows |
 
 @dataclass(frozen=True)
 class Told:
-    """What has been told at a moment: rows on the disk, and the stream."""
+    """The output of a run at some moment: the size (bytes) of its growing file, and its stream of events."""
 
     size: int
     stream: EventStream
@@ -224,9 +278,9 @@ class Told:
 
 @dataclass(kw_only=True)
 class CatalogueKeeper(Keeper):
-    """Writes rows as events become known, and forgets the history behind them.
+    """A monitor that writes rows as events become known, and discards the history that they no longer need.
 
-    `told` is what had been told where the run, or a longer one, would go on.
+    `told` is the output at the point from which this run, or a longer one, would continue.
     """
 
     rows: Rows | RowsInMemory = field(default_factory=lambda: RowsInMemory())
@@ -234,18 +288,22 @@ class CatalogueKeeper(Keeper):
 
     @property
     def counts(self) -> bool:
-        """Always."""
+        """Return True, because a catalogue always counts its events."""
         return True
 
     def note(self, run: RunInProgress, look: Look) -> None:
-        """Their rows are written."""
+        """Write the rows of new events and count the events as reported."""
         if len(look.known_by):
             self.rows.append(look.table())
         super().note(run, look)
         self._remember(run)
 
     def make_room(self, run: RunInProgress) -> bool:
-        """Forget what neither events nor the engine need; more room only if that is most of what there is."""
+        """Discard history that neither events nor the engine need, and enlarge the store if at least half of it remains full.
+
+        Returns False if the store may not grow. Nothing is discarded after the checkpoint for a longer run has been stored, which
+        refers to pieces by their number.
+        """
         dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
         if dropped > 0:
             self.stream.forget(dropped)
@@ -254,7 +312,7 @@ class CatalogueKeeper(Keeper):
         return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
 
     def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
-        """Renew the checkpoint, whose rows are on the disk before."""
+        """Renew the checkpoint once the rows that it relies on are on the disk."""
         if isinstance(self.rows, RowsInMemory) or self.told is None:
             return
         self.rows.sync()
@@ -262,11 +320,14 @@ class CatalogueKeeper(Keeper):
         about = self._about(run, self.told, self.rows)
         try:
             write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
-        except FullDiskError as error:  # the checkpoint before is still there
+        except FullDiskError as error:  # the previous checkpoint is still in the file
             warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
 
     def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
-        """Tell the rest, the event that the end leaves open too; the rows get their form. Returns the notes of a `Catalogue`."""
+        """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format.
+
+        Returns the notes of a `Catalogue`.
+        """
         if code != ENOUGH_EVENTS:
             self.count(run)
         self.rows.append(self.stream.look(run.store, run.length).table(unknown=True))
@@ -290,7 +351,7 @@ class CatalogueKeeper(Keeper):
             self.told = Told(self.rows.size, replace(self.stream))
 
     def _about(self, run: RunInProgress, told: Told, rows: Rows) -> dict[str, Any]:
-        """Attributes of the checkpoint."""
+        """Return the attributes of the checkpoint."""
         stream = told.stream
         return {
             CATALOGUE: FORMAT,
@@ -308,5 +369,5 @@ class CatalogueKeeper(Keeper):
 
 
 def checkpoint_of(rows: Rows) -> Path:
-    """The checkpoint beside a catalogue."""
+    """Return the path of the checkpoint beside a catalogue."""
     return rows.path.with_name(f"{rows.path.stem}.checkpoint.nc")

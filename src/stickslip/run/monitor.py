@@ -1,4 +1,4 @@
-"""Looks after a run between two calls of the engine: counts events, says how far it is, keeps checkpoints."""
+"""Monitor a run between two calls of the engine: count its events, report its progress, write checkpoints."""
 
 from __future__ import annotations
 
@@ -19,15 +19,16 @@ from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, U
 from stickslip.trajectory.tables import default_event_rate
 
 MAX_PIECES = 1_000_000
-"""Pieces of a history, if nothing is said."""
+"""Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
 PIECE_SIZE = 8 * (6 + 8 + 2 * at.TERMS)
-"""Bytes of a piece, in memory and in a file."""
+"""Bytes of a piece, in memory and in a file, without the polynomial of a law's state."""
 CHECKPOINT_EVERY = 30.0
+"""Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
 
 
 @dataclass(frozen=True)
 class Orders:
-    """How far to run, and what to keep on the way (see `simulate`)."""
+    """The options of a run: when it ends, and what to report and store on the way (see `simulate`)."""
 
     duration: float
     events: int | None = None
@@ -35,20 +36,20 @@ class Orders:
     checkpoint: Path | None = None
     checkpoint_every: float = CHECKPOINT_EVERY
     max_pieces: int | None = None
-    """None: MAX_PIECES, and a history that reaches them is not written."""
+    """None stands for MAX_PIECES; a history that reaches this limit is then not written to the file."""
 
     @property
     def most_pieces(self) -> int:
-        """Pieces that the history may have."""
+        """Return the largest number of pieces that the history may have."""
         return MAX_PIECES if self.max_pieces is None else self.max_pieces
 
     def keeps(self, code: int) -> bool:
-        """Return True if a run with this end is to be written to its file: no giant for which nobody has asked."""
+        """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
         return code != FULL_HISTORY or self.max_pieces is not None
 
 
 def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
-    """What there is of a run, and what ended it."""
+    """Return the solution computed so far, with the status that belongs to this code."""
     kept = at.trimmed(run.store, run.length)
     whole = code in (at.FINISHED, at.LOCKED)
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
@@ -60,7 +61,10 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
 
 @dataclass(kw_only=True)
 class Keeper:
-    """Keeps the whole history. `looked` is where the run stood when events were last counted, if that is going to be needed."""
+    """A monitor that keeps the whole history.
+
+    `looked` is a checkpoint of the moment when events were last counted; it is None if the run never has to return there.
+    """
 
     orders: Orders
     stream: EventStream
@@ -71,7 +75,7 @@ class Keeper:
 
     @classmethod
     def of(cls, run: RunInProgress, orders: Orders, stream: EventStream | None = None) -> Self:
-        """For a run and what is wanted of it; a stream that is given has told the events before."""
+        """Return a monitor for a run with these options. A stream that is given has already reported the earlier events."""
         stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
         reporter = Reporter.of(orders.progress, orders.duration, orders.events, stream.threshold)
         keeper = cls(orders=orders, stream=stream, reporter=reporter, saving=NowAndThen.from_now(orders.checkpoint_every))
@@ -80,11 +84,11 @@ class Keeper:
 
     @property
     def counts(self) -> bool:
-        """Whether events have to be counted."""
+        """Return True if events must be counted."""
         return self.reporter is not None or self.orders.events is not None
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
-        """See `run_loop.Watch`."""
+        """Count events, report progress and write a checkpoint where each is due: see `run_loop.Watch`."""
         enough = False
         if self.counts and run.length > 0 and (now or self.counting.is_due):
             with self.counting.done():
@@ -97,7 +101,7 @@ class Keeper:
         return ENOUGH_EVENTS if enough else None
 
     def count(self, run: RunInProgress) -> bool:
-        """Note new events. Where they are enough, the run goes back to the piece by which the last of them is known."""
+        """Count new events. Returns True if they are enough; the run then goes back to the piece by which the last one is known."""
         look, wanted = self.stream.look(run.store, run.length), self.orders.events
         missing = None if wanted is None else wanted - self.stream.told
         if missing is None or len(look.known_by) < missing:
@@ -109,21 +113,21 @@ class Keeper:
         return True
 
     def note(self, run: RunInProgress, look: Look) -> None:
-        """These events are over."""
+        """Count these events as reported, and remember the present state of the run."""
         look.tell()
         self.looked = self.stands(run)
 
     def stands(self, run: RunInProgress) -> Checkpoint | None:
-        """Where the run stands, if it may have to come back."""
+        """Return a checkpoint if the run may have to return here, which is so only if it stops after a number of events."""
         return None if self.orders.events is None else run.stands()
 
     def save(self, run: RunInProgress) -> None:
-        """Renew the checkpoint, if there is to be one."""
+        """Renew the checkpoint if a file for it was given."""
         if self.orders.checkpoint is not None:
             from stickslip.io.netcdf import save_checkpoint
 
             save_checkpoint(as_solution(run, self.orders, UNDER_WAY), self.orders.checkpoint)
 
     def make_room(self, run: RunInProgress) -> bool:
-        """See `run_loop.Watch`: the history grows."""
+        """Enlarge the store of the history, up to the largest number of pieces allowed: see `run_loop.Watch`."""
         return run.grow(self.orders.most_pieces)

@@ -1,4 +1,4 @@
-"""How far a run is, for whoever waits for it."""
+"""Report the progress of a run to a callback."""
 
 from __future__ import annotations
 
@@ -13,10 +13,24 @@ Doing = Literal["stuck", "creeping", "slipping"]
 
 
 class Report(NamedTuple):
-    """State of a run: simulated time and its end (s), slip events over and wanted, pieces of history, what the contact does.
+    """The progress of a run.
 
-    `pace` is simulated time per wall clock since the run was taken up, `left` the wall clock (s) that is left if it goes on like
-    this; NaN where that is not known yet.
+    Attributes
+    ----------
+    time, duration : float
+        Simulated time so far and at the end of the run, s.
+    events : int
+        Number of slip events that are over.
+    events_wanted : int or None
+        Number of slip events after which the run stops, if there is one.
+    pieces : int
+        Number of pieces of history computed so far, including those that have been discarded.
+    doing : {"stuck", "creeping", "slipping"}
+        Present motion of the contact; it creeps while |v| does not exceed the slip rate that defines events.
+    pace : float
+        Simulated time per wall-clock time since the run was started or resumed; NaN while it is not known.
+    left : float
+        Wall-clock time left at this pace, s; NaN while it is not known.
     """
 
     time: float
@@ -30,12 +44,16 @@ class Report(NamedTuple):
 
 
 Progress = Callable[[Report], object]
-"""Called now and then with a `Report`."""
+"""A function that is called with a `Report` between two calls of the engine, some ten times a second."""
 
 
 @dataclass
 class Reporter:
-    """Makes reports of a run and hands them on."""
+    """Make reports on a run and pass them to a callback.
+
+    `started` is the wall-clock time (s) at which the run was started or resumed; `from_share` and `from_time` (s) are the share
+    of the run that was done, and the simulated time, at the first report.
+    """
 
     tell: Progress
     duration: float
@@ -47,11 +65,11 @@ class Reporter:
 
     @classmethod
     def of(cls, tell: Progress | None, duration: float, events_wanted: int | None, event_rate: float) -> Self | None:
-        """None where nobody is to be told."""
+        """Return a reporter, or None if there is no callback."""
         return None if tell is None else cls(tell, duration, events_wanted, event_rate)
 
     def report(self, run: RunInProgress, events: int) -> None:
-        """Say how far the run is."""
+        """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
         share = max(now / self.duration, events / self.events_wanted if self.events_wanted else 0.0)
         if self.from_share is None:

@@ -1,4 +1,4 @@
-"""Take up a run where it stopped: nobody can tell from the result that it did."""
+"""Resume a run where it stopped: the result is the same, bit for bit, as without the stop."""
 
 from __future__ import annotations
 
@@ -28,13 +28,34 @@ def resume(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> Solution:
-    """Go on with the run in a file that `simulate`, `save` or Ctrl-C left, up to `duration` (s from the start; default: as before).
+    """Continue the run in a file that `simulate`, `save` or Ctrl-C left.
 
-    The result is the same, bit for bit, as if the run had never stopped, and as if it had had this duration from the start. The
-    file stays the run's checkpoint, and holds the solution at the end; `checkpoint` names another one. For the other arguments
-    see `simulate`; `events` count from the start of the run.
-    Raises InputError for a file that is no solution, one that another version of the code has made, and a duration before the
-    time to which the run has come.
+    The result is the same, bit for bit, as if the run had never stopped, and as if it had had this duration from the start.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of the run (.nc).
+    duration : float, optional
+        New end of the run, s from its start; the previous one by default.
+    events : int, optional
+        Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
+        run has already reached it.
+    progress, checkpoint_every, max_pieces
+        See `simulate`.
+    checkpoint : str or Path, optional
+        File for checkpoints and, at the end, the solution; `path` by default.
+
+    Returns
+    -------
+    Solution
+        The whole run, from t = 0.
+
+    Raises
+    ------
+    InputError
+        If the file holds no solution or no state of the engine, if another version of the engine's code has made it, if
+        `duration` lies before the time that the run has reached, or if the run has already had the wanted number of events.
     """
     path = Path(path)
     stopped = load(path)
@@ -55,7 +76,7 @@ def resume(
 
 
 def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProgress:
-    """The run in a file, ready to go on. Raises InputError where it could not go on as it was."""
+    """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit up to `duration` (s)."""
     checkpoint = stopped.checkpoint
     if checkpoint is None:
         raise InputError(f"{path}: cannot be taken up: it does not hold where the engine stood; run it again from the start")
@@ -73,18 +94,18 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
 
 
 def events_wanted(stopped: Solution, events: int | None) -> int | None:
-    """Events after which to stop: as before if nothing is said, but if the run has had them it goes on without."""
+    """Return the number of events after which to stop: if none is given, the previous one, unless the run has reached it."""
     had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
     return events if events is not None or had_them else stopped.events_wanted
 
 
 def events_in(run: RunInProgress) -> int:
-    """Events that are over in the history of a run."""
+    """Return the number of events that are over in the history of a run."""
     stream = EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
     return len(stream.look(run.store, run.length).known_by)
 
 
 def check_events(path: Path, wanted: int, had: int) -> None:
-    """Refuse to stop after events that are long over. Raises InputError."""
+    """Refuse to stop after a number of events that the run has already had. Raises InputError."""
     if wanted <= had:
         raise InputError(f"{path}: the run has had {had} events already: it cannot stop after {wanted}")

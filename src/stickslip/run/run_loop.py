@@ -1,4 +1,4 @@
-"""Drives a run: calls the engine for a moment at a time, and sees to everything else in between."""
+"""Drive a run: call the engine for a fraction of a second at a time, and do everything else between these calls."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED
 
 MOMENT = 0.1
-"""Wall clock (s) that a call of the engine is meant to take."""
+"""Wall-clock time that one call of the engine should take, s: short enough for Ctrl-C and for reports of progress."""
 FIRST_BUDGET, SMALLEST_BUDGET, LARGEST_BUDGET = 5_000, 100, 20_000
-"""Steps in a call: at most so many that they do not take seconds when they suddenly cost more."""
+"""Number of steps in the first call, and its bounds in later ones: no call should take seconds when steps suddenly cost more."""
 MOST_ROUND_TRIPS = 2**53
-"""Round trips of a slab, or periods of a block, that a float counts one by one."""
+"""Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
 SHARE = 0.1
-"""Largest share of the time that goes into anything done now and then."""
+"""Largest share of the wall-clock time that any periodic task may take."""
 
 
 @dataclass
 class NowAndThen:
-    """Says when something is due: every so many seconds of wall clock, but never so often that it takes too much of the time."""
+    """A timer for a periodic task: due after `every` seconds of wall clock, but never so often that it takes more than SHARE."""
 
     every: float
     due_at: float = field(default_factory=time.monotonic)
 
     @classmethod
     def from_now(cls, every: float) -> Self:
-        """For the first time after the first interval."""
+        """Return a timer that is due for the first time after one interval."""
         return cls(every, time.monotonic() + every)
 
     @property
     def is_due(self) -> bool:
-        """Whether it is time."""
+        """Return True if the task is due."""
         return time.monotonic() >= self.due_at
 
     @contextmanager
     def done(self) -> Iterator[None]:
-        """Around what is due."""
+        """Measure how long the task inside this context takes, and schedule the next one."""
         start = time.monotonic()
         yield
         end = time.monotonic()
@@ -57,20 +57,20 @@ class NowAndThen:
 
 
 class Watch(Protocol):
-    """Looks after a run between two calls of the engine, when everything in it fits together."""
+    """The interface of a monitor, which is called between two calls of the engine, when the state of the run is consistent."""
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
-        """Called after every call; `now` where what is done now and then is due: at an end, or when the history is full.
+        """Monitor the run after a call of the engine. Returns a code to end the run, or None to continue.
 
-        A code ends the run.
+        `now` is True if the call did more than use up its steps (an end, a full history): counting events must not wait then.
         """
 
     def make_room(self, run: RunInProgress) -> bool:
-        """The history is full: make room; False where that must not be."""
+        """Make room in a full history. Returns False if that is not allowed."""
 
 
 def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
-    """Go on up to `duration` (s from the start of the run). Returns the code of what ended the run (see `status`)."""
+    """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
     last, budget = split_time(duration, row_time(run.problem)), FIRST_BUDGET
     with interrupts() as is_interrupted:
         try:
@@ -91,14 +91,14 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
                     return code
                 if is_interrupted():
                     return INTERRUPTED
-        except KeyboardInterrupt:  # raised by `look`, or by a handler that is not ours
+        except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
             if is_interrupted():
                 raise
             return INTERRUPTED
 
 
 def repeat(run: RunInProgress, since: Checkpoint, duration: float, length: int) -> None:
-    """Go back to where the run has been, and from there step by step to the moment when the history has so many pieces."""
+    """Go back to an earlier state of a run up to `duration` (s), and step from there until the history has `length` pieces."""
     last = split_time(duration, row_time(run.problem))
     run.restore(since)
     while run.length < length:
@@ -107,16 +107,17 @@ def repeat(run: RunInProgress, since: Checkpoint, duration: float, length: int) 
 
 
 def next_budget(budget: int, took: float) -> int:
-    """Steps in the next call, from how long (s) those of the last one took."""
+    """Return the number of steps for the next call from the number in the last one and the time (s) that they took."""
     wanted = budget * min(MOMENT / max(took, 1e-9), 4.0)
     return int(min(max(wanted, SMALLEST_BUDGET), LARGEST_BUDGET))
 
 
 @contextmanager
 def interrupts() -> Iterator[Callable[[], bool]]:
-    """Ctrl-C does not break in, it is noted: the run ends between two calls of the engine. A second one breaks in.
+    """Note the first Ctrl-C instead of raising KeyboardInterrupt, so that the run ends between two calls of the engine.
 
-    Handlers that are not Python's own stay as they are; so they do outside the main thread, where none can be set.
+    Yields a function that returns True after Ctrl-C. A second Ctrl-C raises KeyboardInterrupt at once. A handler that is not
+    Python's default stays in place; so does every handler outside the main thread, where none can be set.
     """
     noted = False
 
@@ -136,7 +137,7 @@ def interrupts() -> Iterator[Callable[[], bool]]:
 
 
 def check_round_trips(duration: float, row: float, where: str) -> None:
-    """Refuse a run of so many round trips that times in the last one cannot be told apart. Raises InputError."""
+    """Refuse a run of more than 2^53 round trips of `row` seconds, which cannot be counted exactly. Raises InputError."""
     if not duration <= MOST_ROUND_TRIPS * row:
         raise InputError(
             f"{where}: duration must be at most {MOST_ROUND_TRIPS * row:.3g} s, 2^53 round trips of {row:.3g} s, got {duration:g} s"
@@ -144,7 +145,10 @@ def check_round_trips(duration: float, row: float, where: str) -> None:
 
 
 def split_time(time: float, row: float) -> tuple[int, float]:
-    """Return a time as (whole rows, offset in the row), the offset in (0, row]. Raises InputError for too many rows."""
+    """Return a positive time (s) as (whole rows, offset in (0, row]). Raises InputError for too many rows.
+
+    A row is a round trip of a slab or a period of a block; `row` is its length, s.
+    """
     check_round_trips(time, row, "run")
     rows = math.floor(time / row)
     offset = time - rows * row

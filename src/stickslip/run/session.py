@@ -1,4 +1,8 @@
-"""A run in progress: the arrays that the engine works on, and what must be done for it between its calls."""
+"""A run in progress: the arrays on which the compiled engine works, and the operations on them between its calls.
+
+A piece of history is an interval on which load and slip rate are polynomials. A row is a round trip of a slab or a period of a
+block.
+"""
 
 from __future__ import annotations
 
@@ -25,27 +29,32 @@ from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.status import rounding_note
 
 FIRST_CAPACITY = 512
+"""Pieces of history for which a run has room at first, 0.2 MB; the room grows fourfold when it is full."""
 SPARE = 16
+"""Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
 
 @dataclass(eq=False)
 class RunInProgress:
-    """Setup, state and history of a run, and where it stood before its end cut anything; pieces of history that it forgot."""
+    """The setup, the state and the history of a run between two calls of the engine."""
 
     problem: Problem
     rtol: float
     setup: Setup
     memory: Integers
-    """Where the engine works: see `workspace.Run`."""
+    """State, scratch space and addresses of the tables, in one array: see `workspace.Run`."""
     store: Store
     echoes: Echoes
     follower: RuleFollower
     leaps: CreepLeaps | None = None
     creep_rtol: float | None = None
-    """As it was asked for, None where it is automatic; so is shortest_event (s)."""
+    """Tolerance of leaps over creep as the user gave it; None stands for automatic."""
     shortest_event: float | None = None
+    """Duration (s) below which events are lumped, as the user gave it; None stands for automatic."""
     before_end: Checkpoint | None = None
+    """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
     forgotten: int = 0
+    """Number of pieces of history that have been discarded."""
 
     def __post_init__(self) -> None:
         self.par, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
@@ -76,7 +85,7 @@ class RunInProgress:
         creep_rtol: float | None = None,
         shortest_event: float | None = None,
     ) -> Self:
-        """Return a run where another one stood; in its history nothing is changed."""
+        """Return a run that continues from a checkpoint, on a copy of the history."""
         run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
@@ -90,32 +99,35 @@ class RunInProgress:
 
     @property
     def length(self) -> int:
-        """Pieces of the history so far."""
+        """Return the number of pieces that the history has."""
         return int(self.count.length)
 
     @property
     def time(self) -> float:
-        """Simulated time, s."""
+        """Return the simulated time, s."""
         xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
         return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
-        """Return one line on automatic lumping; empty where it did not begin."""
+        """Return one line on automatic lumping, or an empty string if it has not begun."""
         return lumping_note(self.count, self.par, self.shortest_event)
 
     @property
     def rounding_note(self) -> str:
-        """Return one line on steps in which rounding hides the law; empty where there are none."""
+        """Return one line on steps in which rounding hides the law, or an empty string if there are none."""
         return rounding_note(int(self.count.rough), float(self.state.roughest))
 
     @property
     def creep(self) -> Floats:
-        """Leaps over creep so far, as in `History.creep`."""
+        """Return the leaps over creep so far, as in `History.creep`."""
         return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
 
     def advance(self, last: tuple[int, float], budget: int) -> int:
-        """Go on by one call of the engine, or by one leap over creep. Returns the code of `loop.advance`."""
+        """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
+
+        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as OUT_OF_BUDGET.
+        """
         if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
             self.leaps.at_row_end(self, last)
             return OUT_OF_BUDGET
@@ -123,7 +135,7 @@ class RunInProgress:
         return OUT_OF_BUDGET if code == at.PAUSED else code
 
     def step(self, last: tuple[int, float], budget: int) -> int:
-        """As `loop.advance`; the branches of a law of slip and slip rate are renewed where they are due."""
+        """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
         code = self.follower.advance(self.memory, self.store, last, budget)
         if code != at.NEED_BRANCHES:
             return code
@@ -133,20 +145,23 @@ class RunInProgress:
         return OUT_OF_BUDGET
 
     def grow(self, max_pieces: int) -> bool:
-        """Make room for more pieces; False where there are as many as there may be."""
+        """Make room for more pieces. Returns False if the history already has `max_pieces` of them."""
         if self.length >= max_pieces:
             return False
         self.reserve(min(4 * len(self.store.whole), max_pieces + SPARE))
         return True
 
     def reserve(self, pieces: int) -> None:
-        """Have room for at least so many pieces."""
+        """Make sure that there is room for at least the given number of pieces."""
         if pieces > len(self.store.whole):
             self.store, self.echoes = at.resized(self.store, self.length, pieces), with_room(self.echoes, self.length, pieces)
             self._lend()
 
     def forget_before(self, piece: int) -> int:
-        """Drop what stands nowhere in the body any more when a piece begins; returns how many pieces that were."""
+        """Discard history before a piece, except waves that are still in the body. Returns the number of pieces discarded.
+
+        Pieces from the first one on that the engine itself needs are kept, too.
+        """
         piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
         if piece == 0:
             return 0
@@ -162,7 +177,7 @@ class RunInProgress:
         return dropped
 
     def _replant(self) -> None:
-        """Have the trees of echoes as the history says."""
+        """Build the trees of echoes again from the history."""
         self._lend()
         if self.count.sparse == 0:
             return
@@ -172,22 +187,22 @@ class RunInProgress:
         replant(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
-        """From here on the end of the run decides what comes: keep where a longer run would go on."""
+        """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
         self.before_end = self.stands()
         self.count.to_the_end = 1
 
     def stands(self) -> Checkpoint:
-        """Where the engine stands."""
+        """Return a checkpoint of the present state."""
         stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
         return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
 
     def checkpoint(self) -> Checkpoint:
-        """From where this run, or a longer one, goes on."""
+        """Return the checkpoint from which this run, or a longer one, would continue."""
         return self.before_end or self.stands()
 
     def restore(self, checkpoint: Checkpoint) -> None:
-        """Go back to where the engine stood, on the same history or a copy of it."""
+        """Go back to a checkpoint, on the same history or a copy of it."""
         self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
         self.scratch[:] = checkpoint.scratch
         self.setup = self.setup._replace(branch=checkpoint.branch.copy())

@@ -1,4 +1,4 @@
-"""Run a problem."""
+"""Run a problem from t = 0 with its whole history."""
 
 from __future__ import annotations
 
@@ -30,27 +30,60 @@ def simulate(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> Solution:
-    """Run a problem from t = 0 to `duration` (s), or until so many slip `events` are over, with relative tolerance `rtol`.
+    """Run a problem from t = 0.
 
-    Returns a Solution; what ended the run is its `status`. Ctrl-C ends the run with a valid solution up to that time. A run of
-    which a `checkpoint` file (.nc) is kept, renewed every `checkpoint_every` seconds of wall clock, can be taken up again by
-    `stickslip.resume`, also after it has been killed; at the end the file holds the solution. rtol lies between 1e-15 and 1e-2.
+    Parameters
+    ----------
+    problem : Problem
+        The body, its friction law, its loading and its initial state.
+    duration : float
+        Latest end of the run, s.
+    rtol : float
+        Relative tolerance of the run, between 1e-15 and 1e-2.
+    creep_rtol : float, optional
+        Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
+        Automatic by default (see Notes).
+    shortest_event : float, optional
+        Duration (s) below which slip events are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
+        default (see Notes).
+    events : int, optional
+        Number of slip events after which the run stops.
+    progress : callable, optional
+        A function that is called with a `stickslip.run.progress.Report` while the run continues.
+    checkpoint : str or Path, optional
+        File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
+        solution.
+    checkpoint_every : float
+        Interval between two checkpoints, s of wall clock.
+    max_pieces : int, optional
+        Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
+        million, some 0.4 GB in memory and in a file.
 
-    Under a law of slip a slab may creep for days between pulses, slipping a little in each round trip. The run leaps over creep
-    after it has had 200 round trips with slip, with an error of slip of at most 0.1 sqrt(rtol) (1e-6 to 1e-3) times the slip since
-    the start, and is exact before and after; `solution.creep` lists the leaps. creep_rtol (up to 1e-2) is another error, and
-    leaps from the start; with 0 every round trip is run.
+    Returns
+    -------
+    Solution
+        The run; its `status` says what ended it. Ctrl-C ends the run with a valid solution up to that time.
 
-    A slab under rate weakening may end in ever shorter events. From the round trip on that has more than 4096 pieces, the run lumps
-    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.lumping_limits`): what comes before
-    stays as it is, and of the rest the statistics of what is longer; `solution.lumping_note` says so. shortest_event (s) is another
-    length, and lumps from the start; with 0 nothing is lumped.
+    Raises
+    ------
+    InputError
+        If an argument is out of range, if the contact cannot even start, or if creep_rtol or shortest_event is positive for a
+        problem in which there are no such leaps or no lumping.
 
-    A history has at most a million pieces, 0.44 GB in memory and in a file. A run that needs more ends with the status "too many
-    pieces", and its file is left as it was; with max_pieces it may have so many, and is written whatever ended it.
+    Notes
+    -----
+    Under a law of slip a slab may creep for days between pulses, slipping a little in each round trip. After 200 round trips with
+    slip the run leaps over creep, with an error of slip of at most 0.1 sqrt(rtol), but no less than 1e-6 and no more than 1e-3,
+    times the slip since the start; before and after a leap it is exact. `solution.creep` lists the leaps. A positive creep_rtol
+    sets another error and allows leaps from the start.
 
-    Raises InputError for an argument out of range, a contact that cannot even start, or creep_rtol in a problem that has no
-    such leaps.
+    A slab under rate weakening may end in ever shorter events. As soon as a round trip has more than 4096 pieces, the run lumps
+    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.lumping_limits`). The run up to
+    there does not change; after it only the statistics of longer events are meaningful, and `solution.lumping_note` says so. A
+    positive shortest_event sets another length and lumps from the start.
+
+    A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
+    it was. With max_pieces the file is written whatever ended the run.
     """
     check_run("simulate", duration, rtol, events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "simulate")
@@ -61,7 +94,7 @@ def simulate(
 
 
 def check_run(who: str, duration: float, rtol: float, events: int | None, checkpoint_every: float) -> None:
-    """Refuse what cannot be run. Raises InputError."""
+    """Refuse options with which nothing can be run. Raises InputError."""
     if not 0 < as_float(duration) <= LARGEST:
         raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {as_float(duration)!r}")
     if not 1e-15 <= rtol <= 1e-2:
@@ -73,7 +106,7 @@ def check_run(who: str, duration: float, rtol: float, events: int | None, checkp
 
 
 def check_started(run: RunInProgress, code: int, who: str) -> None:
-    """Refuse a run of no length: KeyboardInterrupt where Ctrl-C came before its first piece, else InputError."""
+    """Refuse a run without a single piece. Raises KeyboardInterrupt if Ctrl-C stopped it, and InputError otherwise."""
     if run.length > 0:
         return
     if code == INTERRUPTED:
@@ -82,7 +115,7 @@ def check_started(run: RunInProgress, code: int, who: str) -> None:
 
 
 def go_on(run: RunInProgress, orders: Orders) -> Solution:
-    """Follow a run to its end, and write its file if there is to be one. Raises InputError where it ends where it starts."""
+    """Run to the end, and write the solution if a file for it was given. Raises InputError if the run ends where it starts."""
     code = drive(run, orders.duration, Keeper.of(run, orders))
     check_started(run, code, "simulate")
     solution = as_solution(run, orders, code)

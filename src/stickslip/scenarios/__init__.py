@@ -1,4 +1,4 @@
-"""Scenarios: one TOML file that says what to simulate, and the bundled ones."""
+"""Scenarios: TOML files that say what to simulate, and those that come with the package."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Scenario", "load_scenario", "read_scenario", "template", "template_n
 
 
 def __getattr__(name: str) -> Any:
-    """Import on first use: pydantic is not needed to complete a name in the shell."""
+    """Import a name when it is first used, because completion in the shell must not wait for pydantic."""
     if name in __all__:
         from stickslip.scenarios import scenario, templates
 

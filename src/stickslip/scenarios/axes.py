@@ -1,4 +1,4 @@
-"""Axes typed by hand: "friction.alpha=0.01..10:200:log"."""
+"""Read the axis of a map from the text that a user typed, such as "friction.alpha=0.01..10:200:log"."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ _AXIS = re.compile(r"(?P<name>[^=]+)=(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<poin
 
 
 def read_axis(problem: Problem, text: str, where: str) -> Axis:
-    """NAME=LOW..HIGH, then :POINTS and :log if wanted; numbers in SI or with a unit. Raises InputError beginning with `where`."""
+    """Read an axis of the form NAME=LOW..HIGH[:POINTS][:log], with numbers in SI or with a unit.
+
+    The axis has 40 points if no number is given. Raises InputError with a message that begins with `where`.
+    """
     parts = _AXIS.fullmatch(text)
     if parts is None:
         raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {show(text)}')

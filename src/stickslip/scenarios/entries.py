@@ -1,4 +1,4 @@
-"""How each kind of field of a friction law is read from a scenario, described, and written back."""
+"""Read each kind of field of a body, a friction law or a loading history from a scenario, describe it, and write it back."""
 
 from __future__ import annotations
 
@@ -15,19 +15,22 @@ from stickslip.scenarios.values import read_quantity, show
 
 
 class Source(NamedTuple):
-    """Where a document comes from: what messages call it, and the folder of its files if it has one."""
+    """The origin of a document: its name in messages and, for a document in a file, the folder of its data files."""
 
     file: str
     folder: Path | None = None
 
 
 def key_of(name: str, entry: Quantity | Field) -> str:
-    """What a scenario calls a field."""
+    """Return the key of a field in a scenario."""
     return entry.key if isinstance(entry, NamedNumbers) else name
 
 
 def read_entry(value: Any, entry: Quantity | Field, source: Source, table: str, key: str, law: Callable[..., Any]) -> Any:
-    """A value of a scenario as its field wants it; `law` reads a nested law. Raises InputError with the place."""
+    """Return a value of a scenario, converted and checked for its field.
+
+    `law` is the function that reads a law inside a law. Raises InputError with the place in the document.
+    """
     place = f"[{table}] {key}"
     if isinstance(entry, Quantity):
         return read_quantity(value, entry, source.file, place)
@@ -64,7 +67,7 @@ def _named(value: Any, file: str, owner: str, key: str) -> tuple[Named, ...]:
 
 
 def describe(entry: Quantity | Field) -> str:
-    """Meaning, unit and range of a field, for people."""
+    """Return the meaning, the unit and the range of a field as text for users."""
     if isinstance(entry, Quantity):
         return describe_quantity(entry)
     if isinstance(entry, Series):
@@ -77,7 +80,7 @@ def describe(entry: Quantity | Field) -> str:
 
 
 def to_table(owner: Any) -> dict[str, Any]:
-    """A body or a law as a table of a scenario, in SI, read back to the last digit."""
+    """Return a body, a law or a loading history as a table of a scenario, in SI, with numbers that read back to the last digit."""
     table: dict[str, Any] = {"kind": owner.kind}
     for name, (entry, _) in fields_of(type(owner)).items():
         value = getattr(owner, name)

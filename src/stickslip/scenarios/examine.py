@@ -1,4 +1,4 @@
-"""What a user should know about a scenario before trusting a run: its numbers, its start, its stability, its uniqueness."""
+"""Find what a user should know before trusting a run of a scenario: its numbers, its start, its stability, its uniqueness."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from stickslip.scenarios.schema import in_unit, quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
 LARGE_STRAIN = 0.01
-"""Shear strain beyond which linear elasticity is doubtful."""
+"""Shear strain (no unit) beyond which linear elasticity is doubtful, and a warning is due."""
 
 
 @dataclass(frozen=True)
 class Fact:
-    """A number with its unit, or a word, and what it is."""
+    """A number with its unit, or a word, with its name and its meaning."""
 
     name: str
     value: float | str
@@ -40,7 +40,7 @@ class Fact:
 
 @dataclass(frozen=True)
 class Examination:
-    """What `examine` found: numbers as given, numbers that follow, sentences, warnings."""
+    """The findings of `examine`: given numbers (by table of the scenario), derived numbers, sentences for users, and warnings."""
 
     given: dict[str, list[Fact]]
     derived: list[Fact]
@@ -48,13 +48,13 @@ class Examination:
     stability: str
     uniqueness: Uniqueness
     critical: list[Fact]
-    """Numbers at which the regime changes, one at a time, all else kept."""
+    """Values of single parameters at which the regime changes while all others stay as they are."""
     along_slip: str
     warnings: list[str]
 
 
 def examine(scenario: Scenario) -> Examination:
-    """Examine a scenario without running it. Raises InputError like `contact.uniqueness`."""
+    """Examine a scenario without running it. Raises InputError as `contact.uniqueness` does."""
     problem = scenario.problem
     contact = uniqueness(problem)
     return Examination(
@@ -94,7 +94,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
 
 
 def _automatic(scenario: Scenario) -> list[Fact]:
-    """Return what a run of this scenario does on its own where it creeps for long, or where its events get ever shorter."""
+    """Return the automatic creep_rtol and shortest_event (s) of a run, where they apply and are not given."""
     problem, facts = scenario.problem, list[Fact]()
     tolerance = creep_tolerance(problem, None, scenario.rtol)
     if scenario.creep_rtol is None and tolerance > 0.0:
@@ -108,16 +108,16 @@ def _automatic(scenario: Scenario) -> list[Fact]:
 
 
 def _facts(name: str, value: Any, declared: Quantity) -> list[Fact]:
-    """What was given for a quantity: a number, or all that a loading history is made of."""
+    """Return what was given for a quantity: a number, or the kind of a loading history and its fields."""
     if not isinstance(value, LoadingHistory):
         return [Fact(name, value, declared.unit, declared.meaning)]
     return [Fact(name, value.kind, "", declared.meaning), *_of_law(value, f"{name}.", declared.unit)]
 
 
 def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = "") -> list[Fact]:
-    """Everything that a law was given, or a history of something in a unit.
+    """Return all fields of a law, or of a loading history of a quantity whose unit is `varying`.
 
-    Of a series of points how many there are, and between which ends.
+    A series of points is summarised by their number and the two ends of its range.
     """
     facts: list[Fact] = []
     for name, (entry, _) in fields_of(type(law)).items():
@@ -166,7 +166,7 @@ def _derived(problem: Problem) -> list[Fact]:
 
 
 def _steady(problem: Problem) -> list[Fact]:
-    """Steady sliding at the pull rate under rate-and-state friction."""
+    """Return friction and state of steady sliding at the pull rate, for a rate-and-state law."""
     law, rate = problem.friction, problem.first_pull_rate
     if not isinstance(law, RateAndState) or rate <= 0.0:
         return []
@@ -180,7 +180,10 @@ def _steady(problem: Problem) -> list[Fact]:
 
 
 def _pulses(problem: Problem) -> list[Fact]:
-    """The period of pulses of a slab whose friction oscillates along slip: 2 pi Z / (omega sqrt((load - mu0 S)^2 - (a S)^2))."""
+    """Return the period of pulses of a slab whose friction oscillates along slip, if its load carries it over the maxima.
+
+    The period is 2 pi Z / (omega sqrt((load - mu0 S)^2 - (a S)^2)).
+    """
     law, body = problem.friction, problem.body
     if not isinstance(law, SinusoidalSlip) or not isinstance(body, ElasticSlab):
         return []
@@ -192,7 +195,7 @@ def _pulses(problem: Problem) -> list[Fact]:
 
 
 def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
-    """The law's own critical value where it has one, and that of the normal stress."""
+    """Return the critical value of the law's own parameter, if it has one, and that of the normal stress."""
     if contact.resistance is None:
         return []
     stress = critical_normal_stress(contact.resistance)
@@ -207,13 +210,13 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
 
 
 def _proof(contact: Uniqueness) -> str:
-    """How closely the critical normal stress is proven."""
+    """Return how closely the critical normal stress is proven, as the end of a sentence."""
     between = contact.critical_stress_between
     return "" if between is None else f"; proven to within {between[1] - between[0]:.1g} Pa"
 
 
 def _along_slip(problem: Problem, contact: Uniqueness) -> str:
-    """For a law of slip and slip rate, where the regime changes as it slips; "" for others."""
+    """Return a sentence on the slip (m) at which the regime changes, for a law of slip and slip rate; "" for other laws."""
     law = problem.friction
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
@@ -258,7 +261,7 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
 
 
 def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
-    """An echo multiplies a disturbance of a slipping branch by |r (1 - 2 Z/g'(v))|."""
+    """Return a warning if echoes amplify disturbances: on a slipping branch each multiplies them by |r (1 - 2 Z/g'(v))|."""
     if contact.resistance is None:
         return []
     rates = [jump.rate_after for jump in contact.jumps if jump.rate_after > 0]

@@ -1,4 +1,4 @@
-"""The scenarios that come with the package: their names and their text."""
+"""Names and texts of the scenarios that come with the package."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ def _folder() -> Traversable:
 
 
 def names() -> list[str]:
-    """Names of the bundled scenarios, sorted."""
+    """Return the sorted names of the bundled scenarios."""
     return sorted(file.name.removesuffix(".toml") for file in _folder().iterdir() if file.name.endswith(".toml"))
 
 
 def text(name: str) -> str:
-    """The TOML text of a bundled scenario. Raises InputError for a name that is not among `names()`."""
+    """Return the TOML text of a bundled scenario. Raises InputError for a name that is not among `names()`."""
     if name not in names():
         raise InputError(f"no bundled scenario '{name}'; {nearest(name, names())}")
     return (_folder() / f"{name}.toml").read_text(encoding="utf-8")

@@ -1,7 +1,8 @@
-"""A data file of a friction law or a loading history: CSV with a header, read line by line, so that a mistake has a place.
+"""Read a data file of a friction law or a loading history: CSV with a header, line by line, so that messages can name the line.
 
-A scenario of somebody else must not read files of its reader: its data files are in its own folder, and no message shows what
-one holds. A reader who trusts a scenario can lift that with an environment variable, which no scenario can set.
+A scenario from somebody else must not read private files of the user who runs it. Therefore its data files must lie in its own
+folder, and no message quotes a text that one holds. A user who trusts a scenario can lift the first restriction by an environment
+variable, which no scenario can set.
 """
 
 from __future__ import annotations
@@ -19,19 +20,19 @@ from stickslip.problem.problem import MAY_VARY
 from stickslip.scenarios.values import show
 
 LARGEST = 5_000_000
-"""Bytes of the largest data file that is read."""
+"""Size (bytes) of the largest data file that is read: scenarios are untrusted."""
 ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
-"""Environment variable which says, as 1, that data files may lie outside the folder of the scenario."""
+"""Environment variable whose value 1 allows data files outside the folder of the scenario."""
 SIGNED = ("slip", *MAY_VARY)
-"""Columns whose numbers may be negative."""
+"""Columns whose numbers may be negative; all others must not be."""
 
 
 def read_points(name: str, folder: Path | None, columns: Mapping[str, str], value: str, where: str) -> dict[str, list[float]]:
-    """Numbers (SI) of fields from the CSV file `name` in the scenario's folder; `columns` maps headings to fields, and
-    `value` is the heading of what another one says the places of.
+    """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
 
-    Blank lines and lines that begin with # are left out; other columns are ignored. Raises InputError: one line with file and
-    line.
+    `columns` maps headings to fields. `value` is the heading of the dependent variable; exactly one other column must be there, and
+    holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that begin with # and unknown
+    columns are ignored. Raises InputError with a message of one line that names the file and the line.
     """
     lines = _rows(_text(name, folder, where), f"{where}: {show(name)}")
     number, header = next(lines, (1, []))
@@ -82,7 +83,7 @@ def _rows(text: str, place: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _wanted(header: list[str], columns: Mapping[str, str], value: str, place: str) -> dict[str, int]:
-    """Index of each wanted column. There must be the value and exactly one other."""
+    """Return the index of each wanted column. Raises InputError unless these are the value and exactly one other."""
     heading = {column: header.index(column) for column in columns if column in header}
     others = [column for column in columns if column != value]
     if value not in heading:

@@ -27,18 +27,36 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 LARGEST = 1_000_000
-"""Bytes of the largest scenario file that is read: they are untrusted."""
+"""Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 DEEPEST = 20
-"""Parts of the longest dotted key: tomllib takes a time that grows with their square."""
+"""Largest number of parts in a dotted key: tomllib takes a time that grows with the square of this number."""
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """A problem, how long to run it (s) and how accurately, or until how many slip events are over.
+    """A problem, and how long and how accurately to run it.
 
-    creep_rtol and shortest_event (s) are those of `stickslip.simulate`: None is automatic.
-    Where it came from does not count when two are compared.
+    Two scenarios are equal if they differ in `name` and `source` only.
+
+    Attributes
+    ----------
+    problem : Problem
+        The body, its friction law, its loading and its initial state.
+    duration : float
+        Latest end of the run, s.
+    rtol : float
+        Relative tolerance.
+    title, description : str
+        Texts for users.
+    events : int or None
+        Number of slip events after which the run stops.
+    creep_rtol, shortest_event : float or None
+        Options of `stickslip.simulate` (shortest_event in s); None stands for automatic.
+    name : str
+        Name for messages and figures.
+    source : str
+        The TOML text from which the scenario was read.
     """
 
     problem: Problem
@@ -54,7 +72,7 @@ class Scenario:
 
     @classmethod
     def of(cls, solution: Solution, name: str = "scenario") -> Self:
-        """What a solution is a run of."""
+        """Return the scenario of which a solution is a run."""
         return cls(
             problem=solution.problem,
             duration=solution.duration,
@@ -66,14 +84,27 @@ class Scenario:
         )
 
     def run(self, progress: Progress | None = None, **keep: Any) -> Solution:
-        """Simulate. `progress` and what else is given is handed to `stickslip.simulate`."""
-        from stickslip.run.simulate import simulate  # the compiler behind it takes a second to import
+        """Simulate the scenario.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            A function that is called with the progress of the run (see `stickslip.simulate`).
+        **keep
+            Further arguments of `stickslip.simulate`, such as `checkpoint`.
+
+        Returns
+        -------
+        Solution
+            The run.
+        """
+        from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
         how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "events": self.events}
         return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
 
     def to_toml(self) -> str:
-        """The scenario as TOML: every value written out, in SI, and read back to the last digit."""
+        """Return the scenario as TOML text, with every value in SI and to the last digit."""
         tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
         problem = self.problem
         for table, owner in (("body", problem.body), ("friction", problem.friction)):
@@ -96,7 +127,21 @@ def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
 def load_scenario(path_or_name: str | Path) -> Scenario:
     """Read a scenario file, or a bundled scenario by its name.
 
-    Raises InputError with one line: the file, the place in it, what was found and what is allowed.
+    Parameters
+    ----------
+    path_or_name : str or Path
+        Path of a TOML file, or the name of a bundled scenario.
+
+    Returns
+    -------
+    Scenario
+        The scenario.
+
+    Raises
+    ------
+    InputError
+        If the scenario cannot be read or is not valid. The message is one line with the file, the place in it, what was found and
+        what is allowed.
     """
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
@@ -106,9 +151,28 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
 
 
 def read_scenario(text: str, file: str, name: str | None = None, folder: Path | None = None) -> Scenario:
-    """A scenario from TOML text; `file` is what messages call it, `folder` is where its data files are.
+    """Read a scenario from TOML text.
 
-    Raises InputError like `load_scenario`.
+    Parameters
+    ----------
+    text : str
+        The TOML text.
+    file : str
+        Name of the text in messages.
+    name : str, optional
+        Name of the scenario; `file` by default.
+    folder : Path, optional
+        Folder of its data files. Without one the scenario cannot name data files.
+
+    Returns
+    -------
+    Scenario
+        The scenario.
+
+    Raises
+    ------
+    InputError
+        As from `load_scenario`.
     """
     if _LONG_KEY.search(text):
         raise InputError(f"{file}: a key has more than {DEEPEST} parts: not a scenario")
@@ -122,7 +186,7 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
 
 
 def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
-    """A scenario from a parsed TOML document. Raises InputError like `load_scenario`."""
+    """Return a scenario from a parsed TOML document. Raises InputError as `load_scenario` does."""
     file = source.file
     content = read_document(raw, source)
     problem = _problem(content, file)
@@ -149,7 +213,7 @@ def _problem(content: dict[str, Any], file: str) -> Problem:
 
 
 def _in_tables(message: str) -> str:
-    """A message of `Problem` with its names as they stand in the file."""
+    """Return a message of `Problem` with the names that a scenario file uses."""
     return (
         f"[loading] {message}"
         if message.startswith(("far_stress", "only one of pull_rate"))
@@ -171,7 +235,7 @@ def _read_file(path: Path, file: str) -> str:
 
 
 def _shown(path: Path) -> str:
-    """A path as it can be shown in one line."""
+    """Return a path as text that can be shown in one line."""
     return str(path) if str(path).isprintable() else show(str(path))
 
 

@@ -1,6 +1,6 @@
-"""What a scenario file may hold, read from what bodies, laws and `Problem` declare about themselves.
+"""The schema of a scenario file, derived from what bodies, laws, loading histories and `Problem` declare about their fields.
 
-A new law or body appears here by being registered. pydantic checks names and types, `Quantity` checks values.
+A new law or body enters the schema by being registered. pydantic checks names and types, and `Quantity` checks values.
 """
 
 from __future__ import annotations
@@ -28,15 +28,19 @@ from stickslip.scenarios.points import read_points
 from stickslip.scenarios.values import read_quantity, show
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
+"""Tables that must have a key `kind`, each with the classes that it may name."""
 REGISTERED = KINDS | {"loading": HISTORIES}
-"""What a `kind` may name, by the table it stands in, or in a table of which it stands: [loading.pull_rate]."""
+"""Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 TABLES = ("body", "friction", "loading", "initial", "run")
+"""The tables of a scenario."""
 DURATION = Quantity("s", "how long to simulate", above=0)
 RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
 CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
 SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
 LARGEST_RTOL = 1e-2
+"""Largest relative tolerance of a run, as in `stickslip.simulate`."""
 STATE = Quantity("1", "state variable of the friction law, if it has one")
+"""Declaration of the initial state for a law that has no state, and for which none may be given."""
 
 
 class _Strict(BaseModel):
@@ -54,10 +58,10 @@ class _Document(_Strict):
 
 
 def quantities_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity, Any]]:
-    """Each quantity of a table with its default (MISSING where there is none).
+    """Return each quantity of a table with its default (MISSING if there is none).
 
-    `kind` is the law for [friction] and the body for every other table: loads are stresses for a slab, forces for a block.
-    `state` is what the friction law remembers, for [initial].
+    `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
+    forces for a block. `state` is the state variable of the friction law, which [initial] needs.
     """
     if table in KINDS:
         return _declared(kind)
@@ -71,7 +75,7 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
 
 
 def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity | LawField, Any]]:
-    """Everything of a table by its key, with its default: the quantities, and what else a law or a loading history is made of."""
+    """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history."""
     if not has_kind(table):
         return dict(quantities_in(table, kind, state))
     of = table.partition(".")[2]
@@ -80,12 +84,12 @@ def entries_in(table: str, kind: type, state: StateVariable | None = None) -> di
 
 
 def has_kind(table: str) -> bool:
-    """Whether a table says by its `kind` what it is of."""
+    """Return True if a table has a key `kind`, which names a class."""
     return table in KINDS or "." in table
 
 
 def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
-    """A value of a loading history in the unit of what varies."""
+    """Return the declaration of a field with the unit of the quantity that varies, if it is a value of a loading history."""
     if isinstance(entry, Series) and entry.item.unit == VARYING:
         return replace(entry, item=replace(entry.item, unit=unit))
     return replace(entry, unit=unit) if isinstance(entry, Quantity) and entry.unit == VARYING else entry
@@ -96,7 +100,7 @@ def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
 
 
 def _of_body(declared: Quantity, body: type) -> Quantity:
-    """A load in the body's own unit: that of its normal stress (Pa) or normal force (N)."""
+    """Return the declaration of a load with the body's own unit: that of its normal stress (Pa) or normal force (N)."""
     if declared.unit != "Pa or N":
         return declared
     return replace(declared, unit=next(q.unit for name, q in quantities_of(body).items() if name.startswith("normal_")))
@@ -104,7 +108,7 @@ def _of_body(declared: Quantity, body: type) -> Quantity:
 
 @cache
 def table_model(table: str, kind: type, state: StateVariable | None = None) -> type[BaseModel]:
-    """The pydantic model of one table."""
+    """Return the pydantic model of one table."""
     entries: dict[str, Any] = {"kind": (str, ...)} if has_kind(table) else {}
     for name, (declared, default) in entries_in(table, kind, state).items():
         read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
@@ -130,7 +134,7 @@ def _reader(table: str, name: str, declared: Quantity | LawField) -> Any:
 
 
 def _as_history(table: str, name: str, value: Any) -> str:
-    """A hint where something that varies in time was meant, and not given as a table."""
+    """Return a hint if a value looks like a loading history that is misplaced or not written as a table; "" otherwise."""
     if table != "loading" or not (isinstance(value, list | dict) or value in HISTORIES):
         return ""
     if name in MAY_VARY:
@@ -139,7 +143,7 @@ def _as_history(table: str, name: str, value: Any) -> str:
 
 
 def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
-    """The law in a table such as [friction.slip]."""
+    """Return the law in a table such as [friction.slip]. Raises InputError for a law that is made of laws itself."""
     kind = kind_of(table, raw, source.file)
     if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
         raise InputError(
@@ -149,12 +153,12 @@ def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
 
 
 def _history(raw: dict[str, Any], source: Source, table: str) -> Any:
-    """The loading history in a table such as [loading.pull_rate]."""
+    """Return the loading history in a table such as [loading.pull_rate]."""
     return build(table, read_table(table, kind_of(table, raw, source.file), raw, source), source.file)
 
 
 def build(table: str, content: dict[str, Any], file: str) -> Any:
-    """The body or law of a table that was read. Raises InputError where its numbers do not go together."""
+    """Return the body, law or loading history of a table that was read. Raises InputError if its numbers are inconsistent."""
     kind = kind_of(table, content, file)
     names = {key_of(name, entry): name for name, (entry, _) in fields_of(kind).items()}
     try:
@@ -164,14 +168,14 @@ def build(table: str, content: dict[str, Any], file: str) -> Any:
 
 
 def without_owner(error: InputError) -> str:
-    """The message behind "ElasticSlab: ": a reader of a file knows tables, not classes."""
+    """Return a message without its first words, such as "ElasticSlab: ": the author of a file knows tables, not classes."""
     return str(error).partition(": ")[2]
 
 
 def read_duration(text: str, where: str, name: str = "duration", declared: Quantity = DURATION) -> float:
-    """A time (s; if not `declared` otherwise a run's) typed by hand: a number of seconds, or a text with a unit.
+    """Read a time that a user typed, as a number of seconds or with a unit, and return it in s.
 
-    Raises InputError beginning with `where`.
+    `declared` gives its range, by default that of a run's duration. Raises InputError with a message that begins with `where`.
     """
     try:
         value: float | str = float(text)
@@ -181,14 +185,14 @@ def read_duration(text: str, where: str, name: str = "duration", declared: Quant
 
 
 def check_rtol(value: float, where: str, name: str = "rtol") -> float:
-    """A relative tolerance that `simulate` takes. Raises InputError."""
+    """Return a relative tolerance if `simulate` accepts it. Raises InputError otherwise."""
     if RTOL.check(where, name, value) > LARGEST_RTOL:
         raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {value:g}")
     return value
 
 
 def check_events(value: Any, where: str, name: str = "events") -> int:
-    """A number of slip events after which a run stops. Raises InputError."""
+    """Return a number of slip events if a run can stop after it. Raises InputError otherwise."""
     if isinstance(value, bool) or not isinstance(value, int) or not 0 < value < 10**12:
         raise InputError(f"{where}: {name} must be a whole number above 0, got {show(value)}")
     return value
@@ -205,9 +209,9 @@ def _selection(value: Any, info: ValidationInfo) -> str:
 
 
 def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
-    """Check a parsed TOML document; return title, description and the five tables, every quantity a float in SI.
+    """Check a parsed TOML document, and return its title, its description and its five tables, with quantities as floats in SI.
 
-    Raises InputError: one line that begins with the file and says the place, what was found and what is allowed.
+    Raises InputError with a message of one line: the file, the place in it, what was found and what is allowed.
     """
     document = _validate(_Document, dict(raw), source)
     kinds = {table: kind_of(table, document[table], source.file) for table in KINDS}
@@ -217,7 +221,7 @@ def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
 
 
 def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
-    """One table, checked; the points of a law come from the file that it names, if it does. Raises InputError."""
+    """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
     columns = columns_of(table, kind)
     if columns and "file" in raw:
         name = raw["file"]
@@ -231,19 +235,19 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, stat
 
 
 def columns_of(table: str, kind: type) -> dict[str, str]:
-    """Columns of a data file that may stand instead of lists, each with the list it is for."""
+    """Return the columns of a data file that may replace lists in a table, each with the key of its list."""
     columns: dict[str, str] = getattr(kind, "columns", {}) if has_kind(table) else {}
     varies = table.partition(".")[2]
     return {varies if column == "value" else column: of for column, of in columns.items()}
 
 
 def value_column(columns: Mapping[str, str]) -> str:
-    """The column that the others say where to find: the last one."""
+    """Return the column of the dependent variable, which is the last one."""
     return list(columns)[-1]
 
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
-    """The class that `kind` names in a table."""
+    """Return the class that `kind` names in a table. Raises InputError if it is missing or unknown."""
     kind, registered = content.get("kind"), REGISTERED[table.partition(".")[0]]
     if "kind" not in content:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
@@ -260,7 +264,7 @@ def _validate(model: type[BaseModel], raw: dict[str, Any], source: Source, table
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}
-"""Which of several errors is told: a misspelt key makes the right one missing too, and the misspelling is the news."""
+"""Order in which one of several errors is reported: a misspelt key makes the right one missing, too, but is the cause."""
 
 
 def _one_line(error: ValidationError, model: type[BaseModel], file: str, table: str) -> str:
@@ -280,7 +284,7 @@ def _one_line(error: ValidationError, model: type[BaseModel], file: str, table: 
 
 
 def _belongs(name: str, table: str) -> str:
-    """A hint where the key is right but stands in another table."""
+    """Return a hint if a key is known but belongs in another table; "" otherwise."""
     for body in KINDS["body"].values():
         for other in TABLES:
             if (

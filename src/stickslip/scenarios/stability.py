@@ -1,4 +1,4 @@
-"""What a contact does at the start, and whether it is stable there: sentences for people."""
+"""Sentences for users on what a contact does at the start, and on whether it is stable there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from stickslip.reference.slab.growth_rate import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:
-    """How fast the load of a stuck contact grows at first (Pa/s or N/s): exact for a block, a mean over round trips for a slab."""
+    """Return the initial rate at which the load of a stuck contact grows, Pa/s (block: N/s).
+
+    It is exact for a block, and a mean over round trips for a slab.
+    """
     body = problem.body
     if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
         return problem.far_stress_rate
@@ -23,7 +26,7 @@ def loading_rate(problem: Problem) -> float:
 
 
 def start_of(problem: Problem) -> str:
-    """What the contact does at t = 0+, and when it will slip if it does not."""
+    """Return a sentence on what the contact does at t = 0+ and, if it sticks, on when it will slip."""
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
@@ -46,7 +49,10 @@ def start_of(problem: Problem) -> str:
 
 
 def wait_of(problem: Problem) -> float:
-    """Time (s) in which steady loading makes up for what the load lacks: an estimate for a slab; inf where the loading varies."""
+    """Return the time (s) that steady loading takes to reach the static strength, an estimate for a slab.
+
+    It is inf if the loading varies in time or never reaches the strength.
+    """
     if problem.varies:
         return math.inf
     rate = loading_rate(problem)
@@ -54,7 +60,7 @@ def wait_of(problem: Problem) -> float:
 
 
 def stability_of(problem: Problem) -> str:
-    """Static stability at the start and how fast a small disturbance grows."""
+    """Return a sentence on static stability at the start, and on the rate (1/s) at which a small disturbance grows."""
     body, law = problem.body, problem.friction
     if isinstance(law, RateAndState):
         return _steady_sliding(problem, law)
@@ -85,7 +91,7 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 
 def _steady_sliding(problem: Problem, law: RateAndState) -> str:
-    """Whether sliding at the pull rate is stable: the stiffness against the critical one, and how a disturbance grows."""
+    """Return a sentence on the stability of sliding at the pull rate: the stiffness, the critical one, and the growth rate."""
     body, rate, pull = problem.body, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
     if rate <= 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"

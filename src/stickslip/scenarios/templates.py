@@ -1,4 +1,4 @@
-"""Commented scenarios to start from: the bundled ones as they are, and starters written from what laws and bodies declare."""
+"""Commented scenarios to start from: the bundled ones, and starters that are written from the declarations of laws and bodies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from stickslip.scenarios.entries import Source, describe, key_of
 from stickslip.scenarios.schema import KINDS, TABLES, build, columns_of, entries_in, has_kind, kind_of, read_table
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
-"""Generic starters, and the bundled scenario whose values they show."""
+"""Names of the generic starters, each with the bundled scenario whose values it shows."""
 
 _HEADER = """\
 # A scenario for stickslip: what slides, what resists, how it is loaded, where it starts, how long to run.
@@ -39,15 +39,32 @@ _ABOUT = {
 
 
 def template_names() -> list[str]:
-    """Every name that `template` knows."""
+    """Return every name that `template` accepts."""
     return [*STARTERS, *library.names()]
 
 
 def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
-    """A commented scenario as TOML text; `friction` puts another law, with plausible values, into a starter, and `pull` a pull rate
-    that varies in time.
+    """Return a commented scenario as TOML text.
 
-    Raises InputError for a name that is not among `template_names()` and for an unknown law or loading history.
+    Parameters
+    ----------
+    name : str
+        "slab" or "block" for a starter, or the name of a bundled scenario.
+    friction : str, optional
+        Kind of another friction law for a starter, which then has plausible values.
+    pull : str, optional
+        Kind of a loading history for the pull rate of a starter.
+
+    Returns
+    -------
+    str
+        The TOML text.
+
+    Raises
+    ------
+    InputError
+        For a name that is not among `template_names()`, for an unknown law or loading history, and if a bundled scenario is to have
+        another law or pull rate.
     """
     if name in STARTERS:
         return _starter(tomllib.loads(library.text(STARTERS[name])), friction, pull)
@@ -86,19 +103,19 @@ def _starter(example: dict[str, Any], friction: str | None, pull: str | None) ->
 
 
 def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
-    """Where a law without static strength starts: under the load that its example names per normal load."""
+    """Return [initial] for a law that never sticks: its example's state, and a load of the example's share of the normal load."""
     source = Source("starter")
     read = build("body", read_table("body", kind_of("body", body, source.file), body, source), source.file)
     return {"load": law.start["coefficient"] * normal_load(read), "state": law.start["state"]}
 
 
 def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
-    """A law's example by the keys of a scenario."""
+    """Return the example values of a law by their keys in a scenario."""
     return {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
 
 
 def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable | None = None) -> list[str]:
-    """A table with its keys, and the tables in it."""
+    """Return the lines of a table with its keys, and of the tables inside it."""
     lines, inner = [f"[{table}]"], []
     if has_kind(table):
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered

@@ -1,4 +1,4 @@
-"""One value of a scenario: a number in SI or a text with a unit, checked against what its field declares."""
+"""Read one value of a scenario, a number in SI or a text with a unit, and check it against the declaration of its field."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
 
 def read_quantity(value: Any, declared: Quantity, where: str, name: str) -> float:
-    """The value in SI. Raises InputError: "where: name must be ..., got ..."."""
+    """Return a value in SI. Raises InputError with the message "where: name must be ..., got ..."."""
     if declared.infinite and isinstance(value, str) and value in ("inf", "rigid"):
         return math.inf
     refusal = f"{where}: {name} must be {allowed(declared)}, got"
@@ -49,7 +49,7 @@ def _hint(text: str) -> str:
 
 
 def allowed(declared: Quantity) -> str:
-    """What a quantity may be, in words."""
+    """Return in words what may be given for a quantity."""
     plain = (
         "a number" if declared.unit == "1" else f'a number in {declared.unit} or a text with a unit such as "10 {declared.unit}"'
     )
@@ -57,7 +57,7 @@ def allowed(declared: Quantity) -> str:
 
 
 def describe(declared: Quantity) -> str:
-    """Meaning, unit and range of a quantity, for people."""
+    """Return the meaning, the unit and the range of a quantity as text for users."""
     bounds = []
     if declared.above is not None:
         bounds.append(f"above {declared.above:g}")
@@ -67,6 +67,6 @@ def describe(declared: Quantity) -> str:
 
 
 def show(value: Any) -> str:
-    """A value from a file as it can be shown in one short line: quoted, without control characters."""
+    """Return a value from a file as one short line that is safe to show: quoted, in ASCII, without control characters."""
     shown = ascii(value)
     return shown if len(shown) <= 60 else f"{shown[:57]}..."

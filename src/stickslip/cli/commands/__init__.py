@@ -1,1 +1,1 @@
-"""The commands of `stickslip`, one a file."""
+"""The subcommands of `stickslip`, one in each file."""

@@ -1,4 +1,4 @@
-"""`stickslip analogy`: when does a block stand for a slab?"""
+"""`stickslip analogy`: map where a block gives the same first slip event as a slab."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from stickslip.studies.analogy import Analogy
 
 BUNDLED = "block-or-slab"
+"""The bundled scenario for this command."""
 AXES = ("wavelength=0.9..60:13:log", "alpha=0.00392..3.92:9:log")
-"""What is mapped of the bundled scenario."""
+"""Axes of its map unless others are given."""
 
 
 def analogy(
@@ -39,7 +40,7 @@ def analogy(
         str | None, typer.Option(help="How long to wait for the end of the event: s, or with a unit.", show_default=False)
     ] = None,
 ) -> None:
-    """When does a block stand for a slab? The first slip event of both, over two numbers of a scenario.
+    """Find where a block can replace a slab: compare the first slip event of both, over two numbers of a scenario.
 
     The block has the slab's stiffness G/h and the mass rho h/3 of its slow limit,
     the same law and the same load. The map compares slip, peak slip rate,
@@ -111,7 +112,7 @@ def _show(scenario: Scenario, found: Analogy) -> None:
 
 
 def _spread(points: int, most: int = 7) -> list[float]:
-    """Places of at most so many points, the ends included."""
+    """Return at most `most` evenly spaced places among the points, both ends included."""
     count = min(points, most)
     return [k * (points - 1) / (count - 1) for k in range(count)]
 

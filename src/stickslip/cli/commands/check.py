@@ -1,4 +1,4 @@
-"""`stickslip check`: what a scenario means, and what to know before trusting a run."""
+"""`stickslip check`: show what a scenario means, and what to know before trusting a run."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 MOST_UNDECIDED = 10
-"""Intervals of slip rates that are listed where it is not decided whether they hold a fold."""
+"""Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
 
 
 def check(
@@ -38,12 +38,12 @@ def check(
 ) -> None:
     """Check a scenario without running it.
 
-    Shows every value as it is understood, with units (SI); what follows from
-    them (impedance, travel time, strength, excess); whether the contact slips
-    at once; static stability and growth; whether the slip rate is unique, the
-    critical values, the folds with what is proven of them, and what will jump;
-    and warnings. Numbers marked
-    with * rest on the selection rule.
+    The command shows every value as it is understood, with units (SI); what
+    follows from the values (impedance, travel time, strength, excess); whether
+    the contact slips at once; static stability and growth; whether the slip
+    rate is unique, the critical values, the folds with what is proven of them,
+    and the jumps; and warnings. Numbers marked with * depend on the selection
+    rule.
 
     --figure draws the set K: every pair of slip rate and load that solves the
     contact equation. With --map twice it draws the regime over two numbers.
@@ -82,7 +82,7 @@ def _show(scenario: Scenario, found: Examination) -> None:
 
 
 def _drawn(problem: Problem, figure: Path | None, axes: list[str]) -> Figure | None:
-    """The figure that is asked for. Raises InputError."""
+    """Return the figure that is asked for, or None. Raises InputError."""
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
     if figure is None:
@@ -141,7 +141,7 @@ def _print_findings(screen: Console, found: Examination) -> None:
 
 
 def _proof(fold: Fold) -> str:
-    """How closely a fold is proven."""
+    """Return how closely a fold is proven, as the end of a sentence."""
     if fold.enclosure is None:
         return "; not proven"
     low, high = fold.enclosure
@@ -153,7 +153,7 @@ def _exact(value: float | str, unit: str) -> str:
 
 
 def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
-    """What rests on the selection rule: the jumps and the loop that they enclose."""
+    """Yield what depends on the selection rule: the jumps, and the loop that they enclose."""
     for jump in contact.jumps:
         change = jump.traction_after - jump.traction_before
         rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {jump.load:.12g} Pa"

@@ -1,4 +1,4 @@
-"""`stickslip compare`: runs side by side."""
+"""`stickslip compare`: compare runs side by side."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stickslip.studies.compare import Comparison
 
 PICTURES = (".png", ".pdf", ".svg")
+"""File suffixes of figures."""
 
 
 def compare(
@@ -42,12 +43,12 @@ def compare(
 ) -> None:
     """Compare runs: one table, and one figure of slip, slip rate and traction against time.
 
-    Says of each its body, law, selection rule and regime, how many slip events,
-    the largest, its stress drops, how long the first one lasts, and whether the
-    slip rate is smooth or jumps. Slabs and blocks can stand side by side: drops
-    are in Pa and N, the figure then shows friction over the normal load. Runs of
-    very different lengths are drawn over the share of their own time; late
-    events are best seen with --event.
+    The table gives for each run its body, law, selection rule and regime, the
+    number of slip events, the largest one with its stress drops, the duration
+    of the first one, and whether the slip rate is smooth or jumps. Slabs can
+    be compared with blocks: drops are then in Pa and N, and the figure shows
+    friction over the normal load. Runs of very different lengths are drawn
+    over the share of their own time; late events are best seen with --event.
 
     \b
       stickslip compare fig6-block-reconstructed fig6-slab --figure fig6.png
@@ -70,7 +71,7 @@ def compare(
 
 
 def _compared(names: list[str], until: str | None, rtol: float | None, event: int | None) -> Comparison:
-    """Everything is read before anything is run. Raises InputError."""
+    """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.long_run import progress
     from stickslip.scenarios.schema import check_rtol, read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
@@ -108,7 +109,7 @@ def _show(found: Comparison) -> None:
 
 
 def _drop(value: float, unit: str) -> str:
-    """A drop to five digits; a dash where there is no event."""
+    """Format a drop with five significant digits, or as a dash if there is no event."""
     from stickslip.cli.output.show import with_unit
 
     return "-" if math.isnan(value) else with_unit(float(f"{value:.5g}"), unit)

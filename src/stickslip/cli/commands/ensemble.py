@@ -1,4 +1,4 @@
-"""`stickslip ensemble`: how far can a run be trusted, and its statistics?"""
+"""`stickslip ensemble`: find how far a run and its statistics can be trusted."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from stickslip.studies.ensemble import Ensemble
 
 FIRST = 12
-"""Events that are shown: the first, or those around the one from which on sequences differ."""
+"""Number of events that are shown: the first ones, or those around the first event at which members differ."""
 
 
 def ensemble(
@@ -36,20 +36,21 @@ def ensemble(
         Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
     ] = None,
 ) -> None:
-    """How far can single events be trusted, and statistics? The same run with an initial load disturbed by next to nothing.
+    """Find how far single events and statistics can be trusted: repeat a run with tiny disturbances of the initial load.
 
-    A slab whose friction falls with slip rate amplifies its own echoes: two
-    runs that differ by rounding part. Each member begins with a load that is
-    larger or smaller by `size`/2 to `size` of the static strength. Shown are
-    the event from which on members differ, the growth rate of the disturbance
-    beside the predicted one, and how far statistics of the members are apart.
+    A slab whose friction falls with slip rate amplifies its own echoes, so that
+    two runs which differ by rounding diverge. Each member begins with a load
+    that is larger or smaller by `size`/2 to `size` of the static strength. The
+    command shows the event from which on members differ, the growth rate of
+    the disturbance beside the predicted one, and how far the statistics of the
+    members are apart.
 
     \b
       stickslip ensemble fig6-slab --until "30000 years" --events 65 --figure a.png
       stickslip ensemble cycles-block --size 1e-6 --out events.csv
       stickslip ensemble mine.toml --members 20 --size 1e-6 --seed 1
 
-    Ctrl-C shows and saves what the finished members say.
+    After Ctrl-C the command shows and saves the result of the finished members.
 
     Exit code: 0 done, 1 a run failed, 2 unusable input, 130 interrupted.
     """

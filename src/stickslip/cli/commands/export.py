@@ -1,4 +1,4 @@
-"""`stickslip export`: time series of a run for other tools."""
+"""`stickslip export`: write time series of a run for other tools."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 TEXT = (".txt", ".dat")
+"""File suffixes of text in the SCEC layout."""
 SUFFIXES = (*TEXT, ".mseed", ".sac")
+"""File suffixes of all formats."""
 
 
 def export(
@@ -43,12 +45,12 @@ def export(
         typer.Option("--until", "--duration", help='Run this long instead: s, or with a unit ("480 year").', show_default=False),
     ] = None,
 ) -> None:
-    """Export slip, slip rate and stress of the contact at even times, for the tools that seismologists and rupture modellers have.
+    """Export slip, slip rate and stress of the contact at evenly spaced times, for tools of seismologists and rupture modellers.
 
     .txt and .dat are on-fault time series as in the SCEC/USGS rupture benchmarks
     (t slip slip-rate shear-stress; s, m, m/s, MPa); .mseed and .sac are
-    seismograms of slip rate and traction in SI (need ObsPy). Samples are exact:
-    from the right where one falls on a jump.
+    seismograms of slip rate and traction in SI (need ObsPy). Samples are exact,
+    and right limits at jumps.
 
     \b
       stickslip export fig6-slab fig6.txt --sampling-rate 200
@@ -77,7 +79,7 @@ def export(
 
 
 def _place(text: str) -> float:
-    """A distance in m from what was typed. Raises InputError."""
+    """Return a distance (m) from the text that was typed. Raises InputError."""
     from stickslip.foundation.quantities import Quantity
     from stickslip.scenarios.values import read_quantity
 

@@ -1,4 +1,4 @@
-"""`stickslip new`: a commented scenario to start from."""
+"""`stickslip new`: print a commented scenario to start from."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`stickslip paper`: the figures, tables and verdicts on the paper's claims."""
+"""`stickslip paper`: reproduce the paper's figures and tables, and judge its claims."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def paper(
 ) -> None:
     """Reproduce the paper: Figs 1-7, tables, and a verdict on every claim.
 
-    Runs every case of Campillo, Ionescu, Paumier & Renard (1996) with the
-    constants as printed and in the readings under which the described events
-    appear, and says which claim holds under which.
+    The command runs every case of Campillo, Ionescu, Paumier & Renard (1996)
+    with the constants as printed and in the readings under which the described
+    events appear, and says which claim holds under which.
 
     \b
       stickslip paper --out paper

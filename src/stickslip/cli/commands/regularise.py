@@ -1,4 +1,4 @@
-"""`stickslip regularise`: to which selection rule does physics converge?"""
+"""`stickslip regularise`: find the selection rule to which regularised contacts converge."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ def regularise(
     ] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
 ) -> None:
-    """Which selection rule does physics choose? Runs with ever less inertia or lag at the contact, against every rule.
+    """Find which selection rule physics chooses: compare runs with ever less inertia or lag at the contact with every rule.
 
-    Where several slip rates solve the contact equation, a rule picks one. A
+    If several slip rates solve the contact equation, a rule picks one. A
     little physics makes the slip rate unique: a contact mass of Z size, or
     friction that lags behind the slip rate by the time `size`, with or without
-    a direct effect (variation of mu * size / R). The size shrinks; the runs are
-    compared with the exact answer of each rule; the answer is the rule that
-    they tend to, if any, and with what power of the size.
+    a direct effect (variation of mu * size / R). The size shrinks, and the runs
+    are compared with the exact answer of each rule. The result is the rule to
+    which they converge, if any, and the power of the size with which they do.
 
     \b
       stickslip regularise fig4-loop
@@ -78,7 +78,7 @@ def _adjusted(name: str, duration: str | None, rtol: float | None) -> Scenario:
 
 
 def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count: int) -> list[float]:
-    """The sizes (s) from what was typed. Raises InputError."""
+    """Return the sizes (s) that were typed, evenly spaced in their logarithm. Raises InputError."""
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.regularisations import check_massless
     from stickslip.studies.regularise import default_sizes

@@ -1,4 +1,4 @@
-"""`stickslip run`: simulate a scenario, or go on with a run, and say what happened."""
+"""`stickslip run`: simulate a scenario, or resume a run, and report what happened."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def run(
         ),
     ] = None,
 ) -> None:
-    """Simulate a scenario, or go on with a run, and say what happened: slip events, shocks, and what ended the run.
+    """Simulate a scenario, or resume a run, and report what happened: slip events, shocks, and what ended the run.
 
     Times are in s, slips in m, slip rates in m/s, tractions in Pa (slab) or
     N (block). Existing files are replaced, each when its content is complete.
@@ -108,8 +108,9 @@ def run(
       stickslip run cycles-block --until "10000 years" --catalog events.csv
       stickslip run --resume mine.nc --until "1000 years"
 
-    Ctrl-C ends a run with a valid file that --resume takes up; so does the
-    last state of a run that was killed. Nobody can tell from the result.
+    Ctrl-C ends a run with a valid file, from which --resume continues. It also
+    continues from the last checkpoint of a run that was killed. The result is
+    the same, bit for bit, as without the stop.
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """

@@ -1,4 +1,4 @@
-"""`stickslip sweep`: many runs of a scenario over what varies."""
+"""`stickslip sweep`: run a scenario many times with varied numbers."""
 
 from __future__ import annotations
 
@@ -87,11 +87,11 @@ def sweep(
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk, and stop.")] = False,
 ) -> None:
-    """Run a scenario many times, over two or three numbers: a map of pulses, slips, regimes.
+    """Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
 
     Any number of a scenario can be varied, by its place in the file
-    (friction.alpha, body.thickness, friction.slip.mean, run.rtol); units are
-    those of scenarios. Runs that fail are counted, with their reasons.
+    (friction.alpha, body.thickness, friction.slip.mean, run.rtol), with the
+    units of scenarios. Runs that fail are counted, with their reasons.
 
     \b
       stickslip sweep fig6-slab --vary friction.alpha=0.05..2:40 \\
@@ -102,10 +102,10 @@ def sweep(
       stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \\
         --refine events --depth 5 --figure map.png
 
-    Stopped or killed, the same command goes on where the store ends.
+    After a stop, the same command continues where the store ends.
 
-    Kept unless said otherwise: events, pulses, slip, peak_rate,
-    first_duration, recurrence, arrested. A wrong name lists all quantities.
+    By default a sweep keeps events, pulses, slip, peak_rate, first_duration,
+    recurrence and arrested. A wrong name lists all quantities.
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
@@ -153,7 +153,7 @@ def sweep(
 
 @contextmanager
 def _losses() -> Iterator[None]:
-    """Say in one line what a cluster has lost."""
+    """Report in one line what a cluster has lost, and exit with code 1."""
     from stickslip.sweeps.execution.cluster import ChunksLostError
 
     try:
@@ -164,7 +164,7 @@ def _losses() -> Iterator[None]:
 
 
 def _kept(wanted: Sequence[str], refined: str | None) -> list[str]:
-    """The quantities, with the one that is refined."""
+    """Return the quantities to keep, with the one by which the map is refined."""
     return [*wanted, *([refined] if refined and refined not in wanted else [])]
 
 
@@ -185,7 +185,7 @@ def _found(plan: Plan, out: Path | None, run: Runner) -> xr.Dataset:
 
 
 def _refined(plan: Plan, vary: list[str] | None, options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:
-    """The plan of all members of a refined map, and what came of them."""
+    """Return the plan of all members of a refined map, and their results."""
     from stickslip.cli.output.show import progress_to
     from stickslip.sweeps.design.design import Design
     from stickslip.sweeps.refine import COMPLETE, refine
@@ -206,7 +206,7 @@ def _draw(dataset: xr.Dataset, quantity: str, figure: Path) -> None:
 
 
 def so_far(report: Report) -> str:
-    """How far a sweep is, in one line."""
+    """Format the progress of a sweep in one line."""
     from stickslip.cli.output.show import about_time, number
 
     parts = [f"{report.done} of {report.members} members"]

@@ -1,1 +1,1 @@
-"""How results are shown and which files are written."""
+"""Show results on the terminal, and check and write files."""

@@ -1,4 +1,4 @@
-"""Files that a command will write: checked before the work."""
+"""Check the files that a command will write before it starts its work."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def check_target(path: Path, option: str, suffixes: tuple[str, ...]) -> None:
 
 
 def check_folder(path: Path, option: str) -> None:
-    """Refuse a folder that could not be made or written into. Raises InputError."""
+    """Refuse a folder that could not be created or written to. Raises InputError."""
     existing = next(folder for folder in (path, *path.absolute().parents) if folder.exists())
     if not existing.is_dir():
         raise InputError(f"{option} {path}: {existing} is not a folder")

@@ -1,4 +1,4 @@
-"""The pictures that `stickslip run` may draw of a run: one option each."""
+"""The figures and the animation that `stickslip run` can draw, with one option for each."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 SUFFIXES = (".png", ".pdf", ".svg")
+"""File suffixes of figures; those of animations differ."""
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """Where each picture goes, None for those that nobody wants."""
+    """The file of each figure and of the animation, None for those that are not wanted."""
 
     figure: Path | None
     path: Path | None
@@ -34,13 +35,13 @@ class Pictures:
 
     @property
     def _targets(self) -> dict[str, Path]:
-        """Files by option."""
+        """Return the files that are wanted, by option."""
         named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self)}
         return {option: target for option, target in named.items() if target is not None}
 
     @property
     def wanted(self) -> list[str]:
-        """The options that were given."""
+        """Return the options that were given."""
         return list(self._targets)
 
     def check(self) -> None:
@@ -56,7 +57,7 @@ class Pictures:
             check_animation(self.animation, "--animation")
 
     def check_problem(self, problem: Problem) -> None:
-        """Refuse pictures that this problem does not have, before it is run. Raises InputError."""
+        """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
         if inside and not isinstance(problem.body, ElasticSlab):
             raise InputError(f"run: {inside[0]} needs a slab: a block is rigid, it has no inside")
@@ -68,7 +69,7 @@ class Pictures:
                 raise InputError(f"run: --path needs {what}")
 
     def draw(self, solution: Solution) -> Iterator[Path]:
-        """Draw them, and yield each file when it is complete."""
+        """Draw all that are wanted, and yield each file when it is complete."""
         still: tuple[tuple[Path | None, Callable[[Solution], Figure]], ...] = (
             (self.figure, lambda run: run.plot()),
             (self.path, _path),

@@ -1,4 +1,4 @@
-"""How results are shown: one console, plain tables, numbers with units."""
+"""Show results on the terminal: one console, plain tables, numbers with units."""
 
 from __future__ import annotations
 
@@ -19,18 +19,20 @@ if TYPE_CHECKING:
     from stickslip.run.progress import Report
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
+"""SI prefixes with their factors, largest first."""
 _SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
+"""Units that are shown with a prefix."""
 
 
 def console(*, errors: bool = False) -> Console:
-    """Where results go; wide where there is no terminal, so that a table in a file keeps its lines."""
+    """Return the console for results; without a terminal it is 132 columns wide, so that a table in a file keeps its lines."""
     stream = sys.stderr if errors else sys.stdout
     width = None if stream.isatty() else 132
     return Console(file=stream, width=width, highlight=False, markup=False, emoji=False)
 
 
 def table(*headings: str, numbers: bool = False) -> Table:
-    """A table without frame; columns of numbers stand at the right."""
+    """Return a table without a frame; columns of numbers are aligned to the right."""
     made = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
     for heading in headings:
         made.add_column(heading, justify="right" if numbers else "left", overflow="fold")
@@ -38,17 +40,17 @@ def table(*headings: str, numbers: bool = False) -> Table:
 
 
 def clean(text: str) -> str:
-    """Text of a scenario as it can be shown: no control characters."""
+    """Return a text of a scenario with spaces in place of control characters, which could change the terminal."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
 def number(value: float, digits: int = 8) -> str:
-    """A number to so many digits; not-a-number is shown as a dash."""
+    """Format a number with the given number of significant digits; NaN is shown as a dash."""
     return "-" if math.isnan(value) else f"{value:.{digits}g}"
 
 
 def with_unit(value: float, unit: str) -> str:
-    """A quantity for people: 34.3 GPa, 15 147 648 000 s (480 years), rates also per year."""
+    """Format a quantity for users: 34.3 GPa, 1.5147648e+10 s (480 years); slow rates are also given per year."""
     if unit == "1":
         return number(value)
     if unit in _SCALED and math.isfinite(value):
@@ -63,22 +65,23 @@ def with_unit(value: float, unit: str) -> str:
 
 
 _UNITS = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
+"""Units of time with their lengths in s, longest first."""
 
 
 def in_unit(seconds: float) -> tuple[float, str]:
-    """The largest unit of time that fits into a time: its length in s, and its name."""
+    """Return the length (s) and the name of the largest unit that is not longer than a time; seconds for times below 1 s."""
     return next(((length, name) for length, name in _UNITS if seconds >= length), _UNITS[-1])
 
 
 def about_time(seconds: float) -> str:
-    """A time as one says it: 3.2 min."""
+    """Format a time (s) briefly in its largest unit, such as 3.2 min."""
     length, name = in_unit(seconds)
     value = seconds / length
     return f"{value:.0f} {name}" if value >= 100.0 else f"{number(value, 2)} {name}"
 
 
 def so_far(report: Report) -> str:
-    """How far a run is, in one line."""
+    """Format the progress of a run in one line."""
     length, unit = in_unit(report.duration)
     wanted = f" of {report.events_wanted}" if report.events_wanted else ""
     parts = [
@@ -95,9 +98,9 @@ def so_far(report: Report) -> str:
 
 @contextmanager
 def progress_to(what: str) -> Iterator[Callable[..., Any]]:
-    """A spinner on standard error while something runs; where there is no terminal, nothing until it is done.
+    """Show a spinner on standard error while something runs, or nothing without a terminal.
 
-    Yields a function to be called with whatever there is to say: it shows its arguments behind `what`.
+    Yields a function that shows its arguments after `what`.
     """
     shown = console(errors=True)
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())

@@ -1,4 +1,4 @@
-"""What happened in a run, for people: what ended it, its slip events, its shocks."""
+"""Show what happened in a run: what ended it, its slip events, its shocks."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 FIRST = 12
-"""Rows of a table that are shown."""
+"""Number of table rows that are shown."""
 LATE = 1e4
-"""Time (s) from which on decimals are shown rather than a number of digits."""
+"""Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
-    """Print the summary on standard output."""
+    """Print the summary of a run on standard output."""
     screen, force = console(), scenario.problem.load_unit
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
@@ -43,7 +43,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
-    """Print on standard output what came of a run of which only its slip events were kept."""
+    """Print on standard output the summary of a run of which only slip events were kept."""
     screen = console()
     screen.print(clean(scenario.title or scenario.name), style="bold")
     screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
@@ -57,7 +57,7 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
 
 
 def _say_how(screen: Console, scenario: Scenario, creep: str, lumping: str) -> None:
-    """Print duration and tolerances, and the leaps over creep and the lumping that were asked for or came by themselves."""
+    """Print duration and tolerances, and the requested or automatic leaps over creep and lumping of events."""
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
     if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
         screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
@@ -75,7 +75,7 @@ def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) ->
         screen.print(f"no {what}\n")
         return
     headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(rows.columns, units, strict=True)]
-    for digits in (8, 5):  # fewer where the terminal is narrow
+    for digits in (8, 5):  # use fewer digits if the terminal is too narrow
         shown = table(*headings, numbers=True)
         for row in rows.head(FIRST).itertuples(index=False):
             shown.add_row(*(_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)))

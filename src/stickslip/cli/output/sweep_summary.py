@@ -1,4 +1,4 @@
-"""What came of a sweep, for people: how its members ended, their quantities, and where the answer changes."""
+"""Show the results of a sweep: how its members ended, their quantities, and where the answer changes."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
-"""Reasons of failures that are shown."""
+"""Number of reasons for failures that are shown."""
 
 
 def show_estimate(plan: Plan, found: Estimate) -> None:
-    """Print what a sweep would cost."""
+    """Print the estimated time and disk space of a sweep."""
     screen = console()
     _say_what(plan)
     screen.print(f"time: about {about_time(found.seconds)} ({number(found.members / found.seconds, 3)} members a second)")
@@ -34,7 +34,7 @@ def show_estimate(plan: Plan, found: Estimate) -> None:
 
 
 def show_sweep(plan: Plan, dataset: xr.Dataset, *written: Path | None) -> int:
-    """Print the summary on standard output. Returns the exit code; raises KeyboardInterrupt where members are missing."""
+    """Print the summary on standard output. Returns the exit code, and raises KeyboardInterrupt if some members were not run."""
     from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
 
     dataset = dataset.load()
@@ -68,7 +68,7 @@ def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.nd
 
 
 def _show_reasons(reasons: list[str]) -> None:
-    """The most frequent ones, those together that differ in their numbers only."""
+    """Print the most frequent reasons, and group those that differ in their numbers only."""
     alike: dict[str, list[str]] = {}
     for reason in reasons:
         alike.setdefault(_NUMBER.sub("#", reason), []).append(reason)
