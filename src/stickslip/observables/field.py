@@ -34,9 +34,7 @@ class Field(NamedTuple):
     """Displacement, velocity and stress in a slab at given places and times: arrays of the same shape."""
 
     displacement: Floats
-    """Displacement u, m: absolute, as the slip is; in a window, relative to the position of the contact at the start of the
-    event.
-    """
+    """Displacement u, m: absolute, as the slip is; in a window, relative to the contact at the start of the event."""
     velocity: Floats
     """Velocity v, m/s."""
     stress: Floats
@@ -101,9 +99,7 @@ class _Inside:
         self.stretch = Stretch(waves, float(time.min()) - waves.round, float(time.max()))
 
     def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
-        """Return displacement minus that of the contact, velocity and stress at places given by their travel time (s) from the
-        contact.
-        """
+        """Return displacement minus that of the contact, velocity and stress at travel times `away` (s) from the contact."""
         impedance, reference = self.waves.body.impedance, self.waves.reference
         load, leaving = self._coming(away, side), self.stretch.leaving(self.time - away, side)
         rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)

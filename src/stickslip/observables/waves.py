@@ -214,7 +214,10 @@ class Waves:
         return integrand
 
     def _before(self, start: float, end: float, density: OfWave, begun: float = 0.0) -> float:
-        """Integrate over waves that left at times (s) before the run began; the density's time counts from `begun` s after the start."""
+        """Integrate over waves that left at times (s) before the run began.
+
+        The density's time counts from `begun` s after the start.
+        """
         if end <= start:
             return 0.0
         edges = np.concatenate([[start], self.inflow.edges(start + self.round, end + self.round) - self.round, [end]])

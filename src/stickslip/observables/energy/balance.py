@@ -68,7 +68,8 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
     Notes
     -----
     Work is what the driver puts in, net of radiated, which is what leaves through a driver of finite impedance. Balance is
-    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in waves.
+    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in
+    waves.
     """
     time = np.atleast_1d(np.asarray(t, float))
     history = readings.history
@@ -84,7 +85,8 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
 def event_energies(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
     """Return the energies of slip events from their first to their last moments.
 
-    The keys are the columns of `trajectory.tables.ENERGY_COLUMNS`. The energies are integrated over each event alone, so their digits do not depend on the run before it.
+    The keys are the columns of `trajectory.tables.ENERGY_COLUMNS`. The energies are integrated over
+    each event alone, so their digits do not depend on the run before it.
     """
     parts = (_slab_events if isinstance(history.problem.body, ElasticSlab) else _block_events)(history, first, last)
     parts["heat"] = between(history, first, last, _heating(history))
