@@ -5,7 +5,7 @@ after one whose load is beta_0(theta),
 
     tau_n = beta_0 + 2 Z V n - 2 Z C_n,        C_n = sum of v over the round trips before + v_n / 2.
 
-Where it slips tau = S mu(u), where it has not it is below: as slip goes on, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
+Where it slips tau = S mu(u), where it has not it is below: as slip continues, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
 whatever echoes are in beta_0, and however v jumps from one round trip to the next (where it slips the contact reflects with a
 change of sign: v_n and v_(n+1) add up to twice their mean; a rate above twice the mean is followed by as much rest as makes up
 for it). Slip over a round trip then obeys, exactly,
@@ -156,8 +156,9 @@ class AveragedCreep:
     def swing(self, lift: float, creep: Creep, before: Floats) -> float:
         """Return an upper bound of the amplitude of slip (m) around its mean.
 
-        It comes from the range of slip in the first round trip and the one before. `lift` is that of the first round trip, the mean that of a creep near there. `before` holds the offsets (s) of the ends of
-        the pieces of the one before, and the slip (m) since its start.
+        It comes from the range of slip in the first round trip and the one before. `lift` is that of the first round trip, and
+        `creep` a creep near there, whose mean rate is the mean. `before` holds, for the round trip before, the offsets (s) of the
+        ends of its pieces and the slip (m) since its start.
         """
         areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
         ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)

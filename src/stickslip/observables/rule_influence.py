@@ -35,7 +35,7 @@ _CANDIDATES = 50
 
 @dataclass(frozen=True)
 class Choices:
-    """What the selection rule decided in a run.
+    """Decisions of the selection rule in a run.
 
     `regime` is that of the contact. `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was
     between the folds before or after the shock, or the load reached a fold by itself (cause "fold"). `since` is the first time

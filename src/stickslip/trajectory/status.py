@@ -9,7 +9,7 @@ from stickslip.engine.state.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRI
 
 @dataclass(frozen=True)
 class Status:
-    """How a run ended: the name of the status, a message, and `ok`, which is true if it got as far as it was meant to."""
+    """The end of a run: the name of the status, a message, and `ok`, which is true if the run got as far as it was meant to."""
 
     name: str
     message: str
