@@ -93,15 +93,15 @@ class Creep:
     """The averaged state at one lift. Slip is counted from the start of the round trip whose load is the pattern's."""
 
     lift: float  # Pa
-    trips: float  # round trips since: n
+    trips: float  # n: round trips since the pattern's
     slip: float  # ubar, m
-    rate: float  # d ubar / dn, m a round trip
-    bend: float  # d2 ubar / dn2
+    rate: float  # d ubar / dn, m per round trip
+    bend: float  # d2 ubar / dn2, m per round trip squared
     room: float
     length: float  # of the part of the round trip in which the contact slips, s
-    widening: float  # its change in a round trip, s
+    widening: float  # change of length in a round trip, s
     mean_rate: float  # m/s, where the contact slips
-    mean_bend: float  # its change in a round trip
+    mean_bend: float  # change of mean_rate in a round trip, m/s
     error: float  # of ubar, m
 
     @property

@@ -76,7 +76,7 @@ class Above:
 
     area: float  # integral over theta of the part above zero, Pa s
     length: float  # measure of the offsets above zero, s: d area / d lift
-    border: float  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
+    border: float  # sum over the borders of that part of 1 / |d load / d theta|, s/Pa: d length / d lift
     spread: float  # the same sum, weighted with the squared distance from the middle of the part above zero (1/4 at its ends)
 
 

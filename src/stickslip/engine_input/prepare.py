@@ -212,7 +212,7 @@ def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, 
 def start_of(problem: Problem) -> tuple[State, Counts]:
     """Return the state and counts at t = 0, before the first piece of load: the contact is at rest.
 
-    Under a law that never sticks it already slips in the direction of the load, at rate 0.
+    Under a law that never sticks its mode is slip in the direction of the load, for there is no rest.
     """
     state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
     state.last_step = math.inf
