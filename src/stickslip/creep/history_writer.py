@@ -39,11 +39,10 @@ class Scribe:
     count: Counts
 
     def write_way(self, n: int, row: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
-        """Write the averaged slip from `row` on, as cubics from state to state, up to `last_slip` (m). Returns the next free
-        piece.
+        """Write the averaged slip from `row` on, as cubics from state to state, up to `last_slip` (m).
 
         Load and traction are means over a round trip, so that their work and heat are those of the round trips that the pieces
-        replace.
+        replace. Returns the next free piece.
         """
         whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
         unload = 2.0 * averaged.impedance / width

@@ -48,10 +48,9 @@ class Plan:
 
 @dataclass
 class Planner:
-    """Stride along a creep, state by state, as long as the error stays below `tolerance` times the slip since the start of the
-    run.
+    """Stride along a creep while the error stays below `tolerance` times the slip since the start of the run.
 
-    One planner makes one plan. Afterwards `at_end` is true if a longer leap was refused only because of `most`.
+    One planner makes one plan, state by state. Afterwards `at_end` is true if a longer leap was refused only because of `most`.
     """
 
     averaged: AveragedCreep

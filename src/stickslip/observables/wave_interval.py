@@ -94,8 +94,9 @@ class Stretch:
 
     @cached_property
     def _integral(self) -> Floats:
-        """Return the Chebyshev series of the integral of the wave in time from the start of each piece: dtheta = (speed + 2 bend
-        xi) dxi.
+        """Return the Chebyshev series of the wave's integral in time from the start of each piece.
+
+        The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
         """
         speed, bend = (column[self._piece] for column in (self.history.store.speed, self.history.store.bend))
         pace = speed + bend * (1.0 + POINTS[:, None])
@@ -103,8 +104,9 @@ class Stretch:
 
     @cached_property
     def _sums(self) -> Floats:
-        """Return the integrals up to the start of each part, less the part of its piece's own integral that lies before that
-        start.
+        """Return what to add to those integrals so that they count from the start of the interval, for each part.
+
+        It is the integral up to the start of the part, less the value of the part's own series there.
         """
         parts = np.arange(len(self.start))
         begin, end = (

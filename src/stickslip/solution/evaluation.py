@@ -340,9 +340,7 @@ class Readings:
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """Return the names of the quantities that can be drawn: slip, slip rate, traction, load, and the state of a law that has
-        one.
-        """
+        """Return the names of the quantities to draw: slip, slip rate, traction, load, and the state of a law that has one."""
         return CURVES if self.problem.friction.state is None else (*CURVES, "state")
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
