@@ -5,7 +5,7 @@ after one whose load is beta_0(theta),
 
     tau_n = beta_0 + 2 Z V n - 2 Z C_n,        C_n = sum of v over the round trips before + v_n / 2.
 
-Where it slips tau = S mu(u), where it has not it is below: as slip goes on, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
+Where it slips tau = S mu(u), where it has not it is below: as slip continues, C_n = max(0, beta_0 + 2 Z V n - S mu(u)) / (2 Z),
 whatever echoes are in beta_0, and however v jumps from one round trip to the next (where it slips the contact reflects with a
 change of sign: v_n and v_(n+1) add up to twice their mean; a rate above twice the mean is followed by as much rest as makes up
 for it). Slip over a round trip then obeys, exactly,
@@ -39,29 +39,30 @@ from stickslip.engine_input.branch_table import strength_change
 from stickslip.problem.problem import Problem
 
 COMPLEX_STEP = 1e-30
+"""Imaginary part (m) of the slip in a derivative by a complex step: small enough that the derivative is exact to rounding."""
 
 
 @dataclass(frozen=True)
 class Strength:
-    """Friction (Pa) against growing slip x >= 0 (m) from here on, minus the reference strength."""
+    """Friction (Pa) as a function of further slip x >= 0 (m), minus the reference strength."""
 
     problem: Problem
-    law_slip: float  # here, minus that at the start of the run, m
+    law_slip: float  # at x = 0, minus that at the start of the run, m
     sign: float  # change of the law's slip with x
-    step: float  # slip over which a second derivative is seen, m: that of a round trip
+    step: float  # slip over which a second derivative is taken, m: that of a round trip
 
     def __call__(self, x: float) -> float:
         return strength_change(self.problem, self.law_slip + self.sign * x)
 
     @cached_property
     def piece(self) -> int:
-        """Piece of the law that holds here."""
+        """Return the piece of the law that holds at x = 0."""
         law = self.problem.friction
         return int(law.piece_at(self.problem.law_slip + self.law_slip)) if law.knot_variable == "slip" else 0
 
     @cached_property
     def sight(self) -> Sight:
-        """What the law may do out of sight of a slip, in the piece that holds here."""
+        """Return the guards of the piece of the law that holds at x = 0."""
         law = self.problem.friction
         return Sight.of(law.trees()[self.piece], law.parameters(), law.piece_values(self.piece), self.problem.law_slip)
 
@@ -72,18 +73,18 @@ class Strength:
 
     @cached_property
     def room(self) -> float:
-        """How far x may grow within the piece, m."""
+        """Return how far x may grow within the piece of the law, m."""
         knots = (-np.inf, *self.problem.friction.knots, np.inf)
         here = self.problem.law_slip + self.law_slip
         return float(knots[self.piece + 1] - here if self.sign > 0 else here - knots[self.piece])
 
     def slope(self, x: float) -> float:
-        """Its derivative, Pa/m, by a complex step."""
+        """Return the derivative with respect to x, Pa/m, by a complex step."""
         slip = complex(self.problem.law_slip + self.law_slip + self.sign * x, self.sign * COMPLEX_STEP)
         return self.problem.normal * float(np.imag(self.problem.friction.piece_coefficient(self.piece, slip, 0.0))) / COMPLEX_STEP
 
     def curvature(self, x: float) -> float:
-        """Its second derivative, Pa/m^2, from slopes a little apart."""
+        """Return the second derivative with respect to x, Pa/m^2, from the slopes at two nearby slips."""
         return (self.slope(x + self.step) - self.slope(x - self.step)) / (2.0 * self.step)
 
 
@@ -92,23 +93,23 @@ class Creep:
     """The averaged state at one lift. Slip is counted from the start of the round trip whose load is the pattern's."""
 
     lift: float  # Pa
-    trips: float  # round trips since: n
+    trips: float  # n: round trips since the pattern's
     slip: float  # ubar, m
-    rate: float  # d ubar / dn, m a round trip
-    bend: float  # d2 ubar / dn2
+    rate: float  # d ubar / dn, m per round trip
+    bend: float  # d2 ubar / dn2, m per round trip squared
     room: float
     length: float  # of the part of the round trip in which the contact slips, s
-    widening: float  # its change in a round trip, s
+    widening: float  # change of length in a round trip, s
     mean_rate: float  # m/s, where the contact slips
-    mean_bend: float  # its change in a round trip
+    mean_bend: float  # change of mean_rate in a round trip, m/s
     error: float  # of ubar, m
 
     @property
     def seen(self) -> float:
-        """Share of an amplitude that the range within two round trips shows at least.
+        """Return the smallest share of an amplitude that the range of slip within two round trips shows.
 
-        Slip goes up and down as sin(2 x t / R) where x / tan(x) = 1 - room: twice in four round trips where room is 1, once where
-        it is 1/5, more slowly where it is less, and then 1 - cos(2 x) is what shows.
+        Slip oscillates as sin(2 x t / R) where x / tan(x) = 1 - room: twice in four round trips where room is 1, once where it is
+        1/5, more slowly where it is less, and then 1 - cos(2 x) is what shows.
         """
         return min(1.0, 5.0 * self.room)
 
@@ -124,11 +125,11 @@ class AveragedCreep:
 
     @property
     def gain(self) -> float:
-        """Load gained in a round trip, Pa."""
+        """Return the load gained in a round trip, Pa."""
         return 2.0 * self.impedance * self.speed
 
     def at(self, lift: float) -> Creep:
-        """The state at a lift (Pa), with the size of the terms of second order as its error."""
+        """Return the state at a lift (Pa), with the size of the terms of second order as its error."""
         above, z2 = self.pattern.above(lift), 2.0 * self.impedance
         length, border = above.length, above.border
         slip = above.area / z2
@@ -146,17 +147,18 @@ class AveragedCreep:
             -curvature * rate * rate * length / 24.0,
             0.5 * (slope * rate) ** 2 * above.spread,
         )
-        resting = z2 * length * max(-mean_bend, 0.0)  # rates that fall below 0 as the mean falls, and rest instead
-        slip += sum(terms) / z2 if abs(sum(terms)) < z2 * rate else 0.0  # where an extremum is touched they say nothing
+        resting = z2 * length * max(-mean_bend, 0.0)  # rates that would fall below 0 as the mean falls: the contact rests instead
+        slip += sum(terms) / z2 if abs(sum(terms)) < z2 * rate else 0.0  # near an extremum of the load these terms mean nothing
         trips = (lift + self.strength(slip)) / self.gain
         error = (sum(abs(term) for term in terms) + resting) / z2 / room
         return Creep(lift, trips, slip, rate, bend, room, length, border * self.gain / room, mean_rate, mean_bend, error)
 
     def swing(self, lift: float, creep: Creep, before: Floats) -> float:
-        """Amplitude of slip (m) around its mean, or more: from the range in the first round trip and the one before.
+        """Return an upper bound of the amplitude of slip (m) around its mean.
 
-        `lift` is that of the first round trip, the mean that of a creep near there; `before`: offsets (s) of the ends of the pieces
-        of the one before, and slip (m) since its start.
+        It comes from the range of slip in the first round trip and the one before. `lift` is that of the first round trip, and
+        `creep` a creep near there, whose mean rate is the mean. `before` holds, for the round trip before, the offsets (s) of the
+        ends of its pieces and the slip (m) since its start.
         """
         areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
         ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
@@ -165,7 +167,7 @@ class AveragedCreep:
         return float(np.ptp([0.0, *first, *second])) / creep.seen
 
     def start(self) -> Creep:
-        """The state at n = 0."""
+        """Return the state at n = 0."""
         low = high = -self.strength(0.0)
         while self.at(low).trips > 0.0:
             low -= self.gain
@@ -174,14 +176,17 @@ class AveragedCreep:
         return self.reaching(0.0, low, high, 1e-6 * self.gain)
 
     def beyond(self, creep: Creep, trips: float) -> tuple[float, float]:
-        """Lifts between which a creep has gone on for so many round trips, if it does."""
+        """Return two lifts between which the creep has continued for the given number of round trips, if it ever does."""
         high = creep.lift + self.gain
         while (state := self.at(high)).room > 0.0 and state.trips < trips:
             high += self.gain
         return creep.lift, high
 
     def reaching(self, trips: float, low: float, high: float, within: float = 0.0) -> Creep:
-        """The state after so many round trips, between two lifts, by bisection: to rounding, or `within` (Pa)."""
+        """Return the state after the given number of round trips.
+
+        The state lies between two lifts and is found by bisection, to rounding or to `within` (Pa).
+        """
         while high - low > within and low < (middle := 0.5 * (low + high)) < high:
             if self.at(middle).trips < trips:
                 low = middle

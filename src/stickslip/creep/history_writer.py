@@ -1,4 +1,4 @@
-"""Writes a leap over creep into the history: the way, averaged over round trips, and the round trip on which it lands."""
+"""Writer of leaps over creep into the history: the interval averaged over round trips, and the round trip of the landing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from stickslip.problem.problem import Problem
 
 
 def seen(load: Floats, strength: float, direction: int) -> Floats:
-    """Loads (n, TERMS) in the direction of slip, minus the reference strength; the same turns them back."""
+    """Convert loads (n, TERMS) minus the reference strength between signed values and values in the direction of slip.
+
+    The conversion is its own inverse.
+    """
     turned = direction * load
     if direction < 0:
         turned[:, 0] -= 2.0 * strength
@@ -25,7 +28,7 @@ def seen(load: Floats, strength: float, direction: int) -> Floats:
 
 @dataclass(frozen=True)
 class Scribe:
-    """Turns pieces seen in the direction of slip into rows of the history."""
+    """Write pieces, seen in the direction of slip, into the rows of the history."""
 
     store: Store
     problem: Problem
@@ -36,9 +39,10 @@ class Scribe:
     count: Counts
 
     def write_way(self, n: int, row: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
-        """From `row` on the averaged slip, as cubics from state to state, up to `last_slip` (m). Returns the next free piece.
+        """Write the averaged slip from `row` on, as cubics from state to state, up to `last_slip` (m).
 
-        Load and traction are means over a round trip, so that work and heat are those of what the pieces stand for.
+        Load and traction are means over a round trip, so that their work and heat are those of the round trips that the pieces
+        replace. Returns the next free piece.
         """
         whole, width = float(averaged.pattern.whole.sum()), float(averaged.pattern.width.sum())
         unload = 2.0 * averaged.impedance / width
@@ -54,7 +58,10 @@ class Scribe:
         return n
 
     def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
-        """Time since the start of the leap (s), slip (m) and slip rate (m/s): the mean over a round trip is that in its middle."""
+        """Return the time since the start of the leap (s), slip (m) and slip rate (m/s) at the ends of the cubics.
+
+        The mean over a round trip is taken as the value in its middle.
+        """
         first, second, last = plan.states[0], plan.states[1], plan.states[-1]
         inside = [c for c in plan.states[:-1] if 0.0 < c.trips < plan.trips - 1.0]
         return [
@@ -64,7 +71,7 @@ class Scribe:
         ]
 
     def write_landing(self, n: int, row: int, pieces: list[Piece]) -> None:
-        """The round trip on which the leap lands, from piece n on."""
+        """Write the round trip on which the leap lands, from piece n on."""
         for k, piece in enumerate(pieces):
             self._write(n + k, row, piece)
             self.store.real[n + k, at.S_THETA_TO] = pieces[k + 1].theta_from if k + 1 < len(pieces) else self.row_time

@@ -1,4 +1,4 @@
-"""The round trip on which a leap over creep lands: its load, slip rate and slip, as pieces of the history."""
+"""Landing of a leap over creep: load, slip rate and slip of its last round trip, as pieces of the history."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from stickslip.engine.series.polynomial import restrict
 from stickslip.engine.state.layout import TERMS, Floats
 
 ROUNDS = 4
+"""Number of fixed-point iterations that match the strength at a border to the slip there, and the first slip to the mean slip."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of history, seen in the direction of slip."""
+    """A piece of the history, seen in the direction of slip."""
 
     slips: bool
     theta_from: float  # s
@@ -28,23 +29,24 @@ class Piece:
 
     @property
     def theta_to(self) -> float:
-        """Offset at which it ends, s."""
+        """Return the offset at which the piece ends, s."""
         return self.theta_from + self.speed + self.bend
 
     @property
     def grown(self) -> float:
-        """Slip over the piece, m."""
+        """Return the slip over the piece, m."""
         powers = np.arange(1, TERMS + 1)
         return float((self.speed * self.rate / powers).sum() + (2.0 * self.bend * self.rate / (powers + 1)).sum())
 
 
 @dataclass
 class Walk:
-    """From the start of the round trip to its end: rest, slip that has just begun, and creep at its mean rate.
+    """Walk through the round trip from start to end: rest, slip that has just begun, and creep at its mean rate.
 
-    Slip begins at rate 0 where the load has just reached the strength, and one round trip later is twice as fast as the mean.
-    Behind, rates above and below the mean follow each other from one round trip to the next and from place to place. On them
-    nothing depends: there the mean takes their place, and the many pieces become one.
+    Slip begins at rate 0 where the load has just reached the strength, and one round trip later it is twice as fast as the mean.
+    After that, rates above and below the mean alternate from one round trip to the next and from place to place. Nothing depends
+    on them, so the mean replaces them, and the many pieces become one. `core_from` is the offset (s) at which such full creep
+    began, or None outside it.
     """
 
     averaged: AveragedCreep
@@ -66,7 +68,7 @@ class Walk:
         self._close_core(end)
 
     def _part(self, k: int) -> None:
-        """One monotone part: at rest below the strength, beginning to slip just above it, in full creep higher up."""
+        """Walk through a monotone part: rest below the strength, slip that begins just above it, full creep above that."""
         parts = self.averaged.pattern.parts
         load = parts.load[k].copy()
         load[0] += self.averaged.gain * self.creep.trips
@@ -86,17 +88,21 @@ class Walk:
         return float(xi * (parts.speed[k] + xi * parts.bend[k]))
 
     def _strength_at(self, theta: float) -> float:
-        """Strength at an offset, if the contact creeps up to there from where the creep under way, or else the walk, has come."""
+        """Return the strength at an offset theta (s), if the contact creeps up to there at its mean rate.
+
+        The creep is counted from the start of the full creep under way; without one, the slip is that at the present place of the
+        walk.
+        """
         creeping = theta - self.core_from if self.core_from is not None else 0.0
         return self._strength(self.slip + self.creep.mean_rate * max(creeping, 0.0))
 
     def _strength(self, slip: float) -> float:
-        """Friction within the round trip, over which slip hardly grows: to second order."""
+        """Return the friction within the round trip, to second order in the slip, which hardly grows over it."""
         grown = slip - self.first
         return self.friction[0] + grown * (self.friction[1] + grown * self.friction[2])
 
     def _stretch(self, k: int, load: Floats, left: float, right: float, levels: tuple[float, float]) -> None:
-        """A stretch of a part that lies between two levels."""
+        """Write the interval of a part that lies between two cuts."""
         parts, width = self.averaged.pattern.parts, right - left
         part = np.empty(TERMS)
         restrict(load, left, width, part)
@@ -114,7 +120,7 @@ class Walk:
         self._keep(Piece(slips, begin, speed, float(parts.bend[k]) * width * width, self.slip, part, rate))
 
     def _close_core(self, end: float) -> None:
-        """Full creep has lasted up to here: one piece of it, its rate as the mean changes along the round trip."""
+        """Write the full creep that has lasted up to `end` (s) as one piece, whose rate follows the mean as it changes."""
         if self.core_from is None:
             return
         begin, length = self.core_from, end - self.core_from
@@ -135,7 +141,7 @@ class Walk:
 
 
 def landing(averaged: AveragedCreep, creep: Creep) -> list[Piece]:
-    """The round trip whose slips at start and end have the mean `creep.slip`."""
+    """Return the pieces of the round trip whose slips at start and end have the mean `creep.slip`."""
     first = creep.slip - 0.5 * creep.rate
     for _ in range(ROUNDS):
         walk = Walk(averaged, creep, first)

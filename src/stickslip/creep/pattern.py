@@ -14,6 +14,7 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.trajectory.history import horner
 
 SMALLEST = 1e-300
+"""Smallest divisor: it keeps a division by zero from occurring."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +27,15 @@ class Parts:
     bend: Floats
 
     def theta(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """Offset of places in parts, s."""
+        """Return the offset of places in parts, s."""
         return np.asarray(self.theta_from[part] + xi * (self.speed[part] + xi * self.bend[part]))
 
     def pace(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """d theta / d xi, s."""
+        """Return d theta / d xi, s."""
         return np.asarray(self.speed[part] + 2.0 * xi * self.bend[part])
 
     def integral(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """Integral of the load over theta from the start of each part up to xi, Pa s."""
+        """Return the integral of the load over theta from the start of each part up to xi, Pa s."""
         powers = np.arange(1, TERMS + 1)
         straight, bent = (
             self.speed[part, None] * self.load[part] / powers,
@@ -43,11 +44,11 @@ class Parts:
         return np.asarray(xi * (horner(straight, xi) + xi * horner(bent, xi)))
 
     def slope(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """d load / d theta, Pa/s."""
+        """Return d load / d theta, Pa/s."""
         return np.asarray(horner(self.load[part, 1:] * np.arange(1, TERMS), xi) / self.pace(part, xi))
 
     def crossing(self, part: int, level: float) -> float:
-        """Where in [0, 1] a part that straddles a level (Pa) crosses it."""
+        """Return the place in [0, 1] at which a part that straddles a level (Pa) crosses it."""
         shifted, places = self.load[part].copy(), np.empty(TERMS)
         shifted[0] -= level
         if crossings(shifted, places):
@@ -56,7 +57,7 @@ class Parts:
 
 
 def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats) -> Parts:
-    """Pieces of load cut at their extrema."""
+    """Cut the pieces of a load at their extrema."""
     slope, places = np.zeros(TERMS), np.empty(TERMS)
     rows: list[tuple[Floats, float, float, float]] = []
     for p, start, a, b in zip(load, theta_from, speed, bend, strict=True):
@@ -71,12 +72,12 @@ def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats
 
 @dataclass(frozen=True)
 class Above:
-    """Of a load lifted by so much: what lies above zero."""
+    """The part of a load, lifted by a given amount, that lies above zero."""
 
     area: float  # integral over theta of the part above zero, Pa s
     length: float  # measure of the offsets above zero, s: d area / d lift
-    border: float  # sum over its borders of 1 / |d load / d theta|, s/Pa: d length / d lift
-    spread: float  # the same, weighted with the squared distance from the middle of what lies above (1/4 at its ends)
+    border: float  # sum over the borders of that part of 1 / |d load / d theta|, s/Pa: d length / d lift
+    spread: float  # the same sum, weighted with the squared distance from the middle of the part above zero (1/4 at its ends)
 
 
 @dataclass(frozen=True)
@@ -87,22 +88,22 @@ class Pattern:
 
     @cached_property
     def ends(self) -> Floats:
-        """(2, parts): lowest and highest load of each part."""
+        """Return the lowest and the highest load of each part, shape (2, parts)."""
         ends = np.stack([self.parts.load[:, 0], self.parts.load.sum(axis=1)])
         return np.stack([ends.min(axis=0), ends.max(axis=0)])
 
     @cached_property
     def whole(self) -> Floats:
-        """Integral over theta of each part, Pa s."""
+        """Return the integral over theta of each part, Pa s."""
         return self.parts.integral(np.arange(len(self.parts.speed)), np.ones(len(self.parts.speed)))
 
     @cached_property
     def width(self) -> Floats:
-        """Length of each part, s."""
+        """Return the length of each part, s."""
         return np.asarray(self.parts.speed + self.parts.bend)
 
     def above(self, lift: float) -> Above:
-        """What lies above zero when the load is lifted by `lift` (Pa)."""
+        """Return the part of the load that lies above zero when the load is lifted by `lift` (Pa)."""
         part, xi, rises = self._crossings(-lift)
         areas, lengths = self._shares(lift, part, xi, rises)
         length, before = float(lengths.sum()), np.cumsum(lengths)
@@ -111,11 +112,11 @@ class Pattern:
         return Above(float(areas.sum()), length, float(steep.sum()), float((steep * (place - 0.5) ** 2).sum()))
 
     def shares(self, lift: float) -> tuple[Floats, Floats]:
-        """Area (Pa s) and length (s) above zero of each part, when the load is lifted by `lift` (Pa)."""
+        """Return the area (Pa s) and length (s) above zero of each part, when the load is lifted by `lift` (Pa)."""
         return self._shares(lift, *self._crossings(-lift))
 
     def _shares(self, lift: float, part: NDArray[np.intp], xi: Floats, rises: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """The same, the crossings known."""
+        """Return the same as `shares`, from crossings that are known."""
         inside = self.ends[0] >= -lift
         areas, lengths = self.whole * inside, self.width * inside
         covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
@@ -124,7 +125,7 @@ class Pattern:
         return areas + lift * lengths, lengths
 
     def _crossings(self, level: float) -> tuple[NDArray[np.intp], Floats, NDArray[np.bool_]]:
-        """Parts that cross a level (Pa): which, where, and whether upwards."""
+        """Return the parts that cross a level (Pa), the places of the crossings, and True for those that cross it upwards."""
         low, high = self.ends
         part = np.flatnonzero((low < level) & (high > level))
         xi = np.array([self.parts.crossing(k, level) for k in part.tolist()])

@@ -1,4 +1,4 @@
-"""How far a leap over creep may go, and the slip on the way."""
+"""Planner of leaps over creep: how far a leap may go, and the slip along it."""
 
 from __future__ import annotations
 
@@ -11,52 +11,62 @@ from stickslip.creep.averaged import AveragedCreep, Creep
 from stickslip.engine.state.layout import Floats
 
 SAFETY = 4.0
-"""Bound of the error in sizes of the terms of second order (which are counted in: where all is smooth the error is a hundredth of
-them)."""
+"""Bound of the error as a multiple of the terms of second order. The terms themselves are included in the slip; where all is
+smooth, the true error is a hundredth of them.
+"""
 SETTLED = 3.0
-"""Largest slip rate at the start, in mean rates. Up to 2 there is no rest; what has slipped faster rests until the mean has
-caught up."""
+"""Largest slip rate at the start, as a multiple of the mean rate. Up to 2 the contact does not rest; where it has slipped faster,
+it rests until the mean has caught up.
+"""
 FIRST_STRIDE, LONGER = 4.0, 1.5
+"""First stride, and the factor by which strides grow. A stride of 1 is the lift that a contact at rest gains in one round trip."""
 SHORTEST_STRIDE = 0.5
-"""Strides in round trips at the rate of rest: nothing is resolved within a round trip."""
+"""Shortest stride, in the same unit: averaged creep resolves nothing within a round trip."""
 SMOOTH = 0.05
+"""Largest relative difference between the round trips of a stride and Simpson's rule for them: a larger one means that the creep
+is not smooth there.
+"""
 INTERPOLATION = 0.1
 """Share of the tolerance that the interpolation between two states may use."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """States from the round trip of the pattern on, the last one a whole number of round trips later; error of slip there (m)."""
+    """States of a creep from the round trip of the pattern on, and the error of slip at the last of them (m).
+
+    The last state lies a whole number of round trips after the pattern's.
+    """
 
     states: list[Creep]
     error: float
 
     @property
     def trips(self) -> int:
-        """Round trips from the pattern's to that of the landing."""
+        """Return the number of round trips from the pattern's to that of the landing."""
         return round(self.states[-1].trips)
 
 
 @dataclass
 class Planner:
-    """Strides along a creep, state by state, as long as the error stays below `tolerance` times the slip since the start.
+    """Stride along a creep while the error stays below `tolerance` times the slip since the start of the run.
 
-    One planner makes one plan. `at_end` says afterwards that a longer leap was only refused because of `most`.
+    One planner makes one plan, state by state. Afterwards `at_end` is true if a longer leap was refused only because of `most`.
     """
 
     averaged: AveragedCreep
-    slipped: float  # before, since the start of the run, m
+    slipped: float  # slip before the leap, since the start of the run, m
     tolerance: float
     fastest: float  # slip rate at the start, m/s
     before: Floats  # see AveragedCreep.swing
-    most: int  # round trips that there may be
+    most: int  # largest number of round trips
     at_end: bool = False
-    largest: float = 0.0  # of the terms of second order so far, m
-    swing: float = 0.0  # range of slip that goes up and down from one round trip to the next so far, m
+    largest: float = 0.0  # largest error of a state so far, m
+    swing: float = 0.0  # largest range so far by which slip oscillates from one round trip to the next, m
 
     def plan(self) -> Plan | None:
-        """A leap, None if there is none."""
-        start = self.averaged.start()  # its own error says little: rates next to 0 look like borders of slip for a round trip
+        """Return a plan for a leap, or None if no leap is possible."""
+        # the start's own error is not used: for one round trip, slip rates near 0 look like borders of slip
+        start = self.averaged.start()
         near = start, self.averaged.at(start.lift + self.averaged.gain)
         if min(state.room for state in near) <= 0.0 or self.fastest > SETTLED * start.mean_rate:
             return None
@@ -81,7 +91,7 @@ class Planner:
         return Plan(states, self.error(states[-1], 0.0))
 
     def error(self, state: Creep, swing: float) -> float:
-        """Bound of the error of slip so far (m), the amplitude of slip from one round trip to the next given."""
+        """Return a bound of the error of slip so far (m), given the amplitude of slip from one round trip to the next."""
         return SAFETY * max(self.largest, state.error) + max(self.swing, swing)
 
     def _allowed(self, state: Creep) -> float:
@@ -99,7 +109,7 @@ class Planner:
         return state.trips <= self.most
 
     def _stride(self, begin: Creep, stride: float) -> Creep | None:
-        """The state one stride on, if it can be trusted and the way there interpolated."""
+        """Return the state one stride later, or None if it cannot be trusted or the slip up to it cannot be interpolated."""
         middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
         if not self.averaged.strength.in_sight(begin.slip, (middle.slip, end.slip)):
             return None
@@ -120,10 +130,11 @@ class Planner:
 
 
 def swing_of(begin: Creep, middle: Creep, end: Creep) -> float:
-    """Range of slip (m), twice its amplitude, that new slip leaves behind, which begins anywhere between 0 and twice the mean rate.
+    """Return the range (m, twice the amplitude) by which slip oscillates after new parts of the round trip have begun to slip.
 
-    What begins to slip within one round trip does so together. If the length that slips grows smoothly that is its growth in a
-    round trip; growth that this does not explain may come all at once.
+    New parts begin to slip at any rate between 0 and twice the mean, and those that begin within one round trip oscillate
+    together. If the length that slips grows smoothly, that is its growth in a round trip; growth that this does not explain may
+    come all at once.
     """
     trips, growth = end.trips - begin.trips, max(end.length - begin.length, 0.0)
     widening = begin.widening, middle.widening, end.widening
@@ -134,13 +145,16 @@ def swing_of(begin: Creep, middle: Creep, end: Creep) -> float:
 
 
 def hermite(length: float, rise: float, first: float, last: float) -> Floats:
-    """Coefficients in xi on [0, 1] of the cubic that starts at 0, rises by `rise` over `length`, with slopes first and last."""
+    """Return the coefficients in xi on [0, 1] of a cubic.
+
+    The cubic starts at 0 and rises by `rise` over `length`, with slopes `first` and `last` at its ends.
+    """
     a, b = first * length, last * length
     return np.array([0.0, a, 3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise])
 
 
 def between(begin: Creep, end: Creep, trips: float) -> float:
-    """Slip (m) after so many round trips, interpolated between two states."""
+    """Return the slip (m) after the given number of round trips, interpolated between two states."""
     length = end.trips - begin.trips
     xi = (trips - begin.trips) / length
     return begin.slip + float(hermite(length, end.slip - begin.slip, begin.rate, end.rate) @ xi ** np.arange(4))

@@ -1,4 +1,4 @@
-"""What a law of slip may hide from a place in it, for leaps over creep: the guards of `guards`, asked from Python."""
+"""Guards of a law of slip for leaps over creep: they tell which parts of the law leave no trace at a given slip (see `guards`)."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Sight:
         return cls(formula, constants)
 
     def used_up(self, start: float, end: float) -> float:
-        """Return the share of its room that the hardest pressed guard uses up from one slip to another (m, minus the reference).
+        """Return the share of its room that the most critical guard uses up from one slip to another (m, minus the reference).
 
-        Beyond 1 a part of the formula may have come into view of which nothing is left at the start.
+        Beyond 1 a part of the formula that leaves no trace at the start may have come into view.
         """
         if self.formula.guard_count == 0:
             return 0.0
@@ -38,7 +38,7 @@ class Sight:
         return float(np.max(before[:, 1] * (after[:, 0] - before[:, 0])))
 
     def _at(self, slip: float) -> Floats:
-        """Arguments and pulls of the guards."""
+        """Return the arguments and pulls of the guards at a slip (m, minus the reference)."""
         out = np.zeros(2 * self.formula.guard_count)
         self.formula.fill_guards(self.constants, slip, out)
         return out.reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""When to leap over creep: at ends of round trips, from the exact engine into it, with a check where the leap lands."""
+"""Decide when to leap over creep: at ends of round trips, from the exact engine into it, with a check where the leap lands."""
 
 from __future__ import annotations
 
@@ -25,33 +25,37 @@ if TYPE_CHECKING:
     from stickslip.run.session import RunInProgress
 
 SHORTEST_LEAP = 16
+"""Fewest round trips of a leap that is worth its cost."""
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
-"""Round trips between two looks that found no leap: a look takes some milliseconds, as much as thousands of pieces.
+"""Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
+of pieces.
 
-A run that leaps automatically may be one that slides for ever and never creeps: until there is a first leap, looks must not take
-most of its time. After it they are frequent again: where 128 round trips of the creep after a pulse are run, it ends in a storm.
+A run that leaps automatically may slide for ever and never creep, so attempts must not take most of its time until there is a
+first leap. After that they are frequent again: if 128 round trips of the creep after a pulse are computed exactly, the run ends
+in an event storm.
 """
 FAST = 1000.0
-"""Slip rates beyond so many pull rates are no creep that the tolerance would let pass: not worth a closer look."""
+"""Largest slip rate, as a multiple of the pull rate, at which a leap is attempted: no tolerance would accept a faster creep."""
 CHECKED = 1
-"""Exact round trips behind the landing, the last of which has to slip as the leap's continuation does."""
+"""Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000
-"""In a call of the engine."""
+"""Number of steps in one call of the engine."""
 
 
 @dataclass
 class CreepLeaps:
     """Leaps of one run, with an error of slip of at most `tolerance` times the slip since the start.
 
-    What changes in a run stands in its counts, and is restored with them: when to look next, and how many leaps there were.
+    Whatever changes during a run is stored in its counts, and is restored with them: when to try next, and how many leaps there
+    were.
     """
 
     problem: Problem
     tolerance: float
     patient: bool = False
-    """Leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
+    """If true, leap only after PATIENCE round trips with slip, so that a run that never creeps for long stays exact."""
     taken: list[tuple[float, ...]] = field(default_factory=list)
-    """What `History.creep` holds, of each leap."""
+    """The rows of `History.creep`, one for each leap."""
 
     def __post_init__(self) -> None:
         body = self.problem.body
@@ -67,19 +71,22 @@ class CreepLeaps:
         count.pause_at = count.pause_for = 1
 
     def table(self, count: Counts) -> Floats:
-        """The leaps so far, as in `History.creep`."""
+        """Return the leaps so far, as in `History.creep`."""
         return np.array([*NO_LEAPS, *self.taken[: count.creep_leaps]]).reshape(-1, NO_LEAPS.shape[1])
 
     def take_up(self, table: Floats) -> None:
-        """The leaps of a run that goes on."""
+        """Set the leaps of a run that is resumed."""
         self.taken = [tuple(leap) for leap in table.tolist()]
 
     def are_due(self, count: Counts, last_row: int) -> bool:
-        """Whether the engine has paused for them."""
+        """Return True if the engine has paused for an attempt to leap."""
         return bool(count.ready == 0 and count.source == 0 and count.pause_at <= count.row <= last_row)
 
     def at_row_end(self, run: RunInProgress, last: tuple[int, float]) -> None:
-        """Round trip PAUSE_AT comes next in a run up to `last`: leap if there is creep, and say when to look again."""
+        """Leap if there is creep, and set when to try again.
+
+        The run, which lasts up to `last`, is at the end of a round trip; round trip `pause_at` comes next.
+        """
         count = run.count
         if not self._creeps(run):
             count.pause_at, count.pause_for = count.row + 1, 1
@@ -92,7 +99,7 @@ class CreepLeaps:
         while plan is not None and plan.trips >= SHORTEST_LEAP:
             if self._leap(run, planner.averaged, plan, last):
                 count.pause_for = 1
-                return  # and at once into the next one, if it can be
+                return  # the next leap may follow at once
             run.restore(before)
             plan = self._planner(run, plan.trips // 2).plan()
         count.pause_at = count.row + count.pause_for
@@ -105,7 +112,7 @@ class CreepLeaps:
         return slice(int(count.previous_from), int(count.previous_to))
 
     def _creeps(self, run: RunInProgress) -> bool:
-        """Whether the last round trip slipped, in the direction of the driver and slowly, just before this one."""
+        """Return True if the last round trip came just before this one and slipped slowly, in the direction of the driver only."""
         rows = self._previous(run.count)
         modes, rate = run.store.mode[rows], run.store.rate[rows]
         slow = np.abs([rate[:, 0], rate.sum(axis=1)]).max() <= FAST * self.speed
@@ -117,19 +124,19 @@ class CreepLeaps:
         )
 
     def _planner(self, run: RunInProgress, most: int) -> Planner:
-        """For a leap of at most so many round trips from the coming one on."""
+        """Return the planner of a leap of at most the given number of round trips from the coming one on."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
         return Planner(averaged, abs(float(run.state.slip_now)), self.tolerance, fastest, self._before(run), most)
 
     def _before(self, run: RunInProgress) -> Floats:
-        """The last round trip as `AveragedCreep.swing` takes it."""
+        """Return the last round trip in the form that `AveragedCreep.swing` takes."""
         rows, store = self._previous(run.count), run.store
         slip = np.append(store.slip[rows], run.state.slip_now)
         return np.stack([store.theta_to[rows], self.direction * (slip[1:] - slip[0])])
 
     def _averaged(self, run: RunInProgress) -> AveragedCreep:
-        """Creep from the coming round trip on."""
+        """Return the averaged creep from the coming round trip on."""
         rows, store = self._previous(run.count), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
         load[:, 0] += 2.0 * self.impedance * self.speed
@@ -141,7 +148,7 @@ class CreepLeaps:
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
     def _leap(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
-        """Leap, and run exact round trips behind it; whether they go on as the leap did."""
+        """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.row), float(run.state.slip_now)
         self._write(run, averaged, plan)
         delay = plan.error / plan.states[-1].rate * row_time(self.problem)
@@ -155,7 +162,7 @@ class CreepLeaps:
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
     def _write(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan) -> None:
-        """The leap as pieces of the history, and the engine behind it."""
+        """Write the leap as pieces of the history, and set the engine to its end."""
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))
         count, landed_on, sign = run.count, int(run.count.row) + plan.trips, averaged.strength.sign
@@ -168,7 +175,7 @@ class CreepLeaps:
         count.row, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
 
     def _move(self, run: RunInProgress, end: Piece, sign: float) -> None:
-        """The contact at the end of the last piece of a landing."""
+        """Move the contact to the end of the last piece of a landing."""
         state, count, grown = run.state, run.count, end.slip + end.grown
         state.slip_now += self.direction * grown
         state.law_slip += sign * grown
@@ -177,7 +184,7 @@ class CreepLeaps:
         count.source = count.moved = count.stuck_rows = count.edge = count.jump = count.cause = count.stalled = 0
 
     def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
-        """Run exact round trips up to this one; False where something else comes: rest that is leapt over, a failure."""
+        """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
         while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, at.FULL):
             if code == at.FULL:
                 run.reserve(2 * len(run.store.whole))

@@ -1,1 +1,1 @@
-"""From a problem to the numbers that the engine works on."""
+"""Conversion of a problem to the numbers that the engine works on."""

@@ -1,7 +1,7 @@
-"""What a run does where nothing else is said: it leaps over creep, and lumps short events, where following each is hopeless.
+"""Automatic choices of a run: it leaps over creep and lumps short events if it would be hopeless to follow each of them.
 
-The engine counts what decides, so that a single run, one that is taken up again and a member of a batch decide alike. Until then
-a run is the same, bit for bit, as one that does neither.
+The engine counts what these choices depend on, so that a single run, a run that is resumed and a member of a batch make the same
+choice. Until then a run is bit for bit the same as one that never leaps or lumps.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None
 
 
 def set_length(par: Params, shortest: float | None) -> None:
-    """Set the length of the pieces that are lumped, in `Setup.par` or in one with a column a member."""
+    """Set the length of the pieces that are lumped, in `Setup.par` or in one with a column for each member."""
     par.shortest = AUTOMATIC_SHARE * par.row_time if shortest is None else shortest
 
 
 def lumping_note(count: Counts, par: Params, shortest: float | None) -> str:
-    """Return one line on automatic lumping in a run; empty where it did not begin."""
+    """Return one line on automatic lumping in a run; empty if it did not begin."""
     if shortest is not None or count.lumps == 0:
         return ""
     since = count.lumped_since * par.row_time

@@ -1,8 +1,9 @@
-"""Branches of a massless contact, for the engine: once for a law of slip rate, again and again for a law of slip and slip rate.
+"""Table of the branches of a massless contact for the engine.
 
-Where friction depends on both, folds and the levels of the selection rule move with slip. The slip rate is followed by its series;
-the branches at a slip are worked out only where a choice is due. A rule other than perfect delay is looked at after every step:
-a built-in one in compiled code (`moving_levels`), a user's own by its table, which is Python and costs milliseconds a step.
+A law of slip rate alone needs it once. If friction depends on both slip and slip rate, the folds and the levels of the selection
+rule move with slip, and the table is needed again and again. The slip rate itself follows from its series; the branches at a slip
+are computed only where a choice between them is due. A rule other than perfect delay is checked after every step: a built-in rule
+in compiled code (`moving_levels`), a user's own rule by its table, in Python, which costs milliseconds per step.
 """
 
 from __future__ import annotations
@@ -40,35 +41,35 @@ from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 
 OUT_OF_BUDGET = -1
-"""What `advance` returns when it has made as many steps as it was asked for."""
+"""Code that `advance` returns when it has made the number of steps that it was asked for."""
 AT_A_TIME = 100
-"""Steps looked at before the caller may say how far the run is."""
+"""Number of steps that are checked before the caller gets a chance to report progress."""
 STORM_OF, STORM_IN = 30, 1e-6
-"""So many crossings within this share of a round trip are a storm."""
+"""An event storm: this many crossings within this share of a round trip."""
 
 
 def has_inertia(problem: Problem) -> bool:
-    """Whether the contact itself has mass, so that its slip rate cannot jump."""
+    """Return True if the contact itself has mass, so that its slip rate cannot jump."""
     return not isinstance(problem.body, ElasticSlab) or problem.body.contact_mass > 0.0
 
 
 def is_algebraic(problem: Problem) -> bool:
-    """Whether the slip rate is a root of the contact equation, on one of its branches.
+    """Return True if the slip rate is a root of the contact equation, on one of its branches.
 
-    That is so for a massless contact under a law of rate that has no state of its own.
+    This holds for a massless contact under a law of slip rate without a state variable.
     """
     return not has_inertia(problem) and problem.friction.depends_on_rate and problem.friction.state is None
 
 
 def folds_move(problem: Problem) -> bool:
-    """Whether these branches change with slip."""
+    """Return True if the branches of the contact equation change with slip."""
     return is_algebraic(problem) and problem.friction.depends_on_slip
 
 
 def branch_rows(problem: Problem, law_slip: float) -> tuple[Floats, float]:
-    """Rows of `Setup.branch` at a law slip (m, minus the initial one), and the load minus strength (Pa) at which stick is left.
+    """Return the rows of `Setup.branch` at a law slip (m, minus the initial one), and the load at which the contact leaves stick.
 
-    One branch, kept for ever, where the solution is unique.
+    That load is in Pa, minus the strength. Where the solution is unique there is one branch, which is never left.
     """
     if not is_algebraic(problem):
         return np.array([[0.0], [math.inf], [-math.inf], [math.inf], [-math.inf], [math.inf]]), 0.0
@@ -80,7 +81,10 @@ def branch_rows(problem: Problem, law_slip: float) -> tuple[Floats, float]:
 
 
 def strength_change(problem: Problem, law_slip: float) -> float:
-    """Static strength (Pa) at a law slip (m, minus the initial one), minus that at the start, to rounding of the difference."""
+    """Return the static strength (Pa) at a law slip (m, minus the initial one), minus that at the start.
+
+    The result is exact to the rounding of the difference.
+    """
     law, start = problem.friction, problem.law_slip
     home = int(law.piece_at(start))
     if law.knot_variable == "slip" and int(law.piece_at(start + law_slip)) != home:
@@ -89,19 +93,22 @@ def strength_change(problem: Problem, law_slip: float) -> float:
 
 
 def branch_of(rows: Floats, rate: float) -> int:
-    """The branch to which a slip rate (m/s) belongs: the nearest one, for at a fold it may lie outside by rounding."""
+    """Return the branch to which a slip rate (m/s) belongs.
+
+    It is the nearest branch, because rounding may put a rate at a fold outside of every branch.
+    """
     return int(np.argmin(np.maximum(np.maximum(rows[at.RATE_FROM] - rate, rate - rows[at.RATE_TO]), 0.0)))
 
 
 def has_levels_to_set(problem: Problem) -> bool:
-    """Whether compiled code sets the levels of the rule: those of Maxwell's take Python tenths of a second."""
+    """Return True if compiled code sets the levels of the rule: those of Maxwell's rule take tenths of a second in Python."""
     return COMPILED_RULES.get(problem.rule) == MAXWELL
 
 
 def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
-    """The setup with the branches at the present law slip; the other arguments take note of it.
+    """Return the setup with the branches at the present law slip, and update `par`, `state` and `count` to match.
 
-    Under Maxwell's rule its levels are still to be set (`RuleFollower.set_levels`).
+    Under Maxwell's rule the levels still have to be set (`RuleFollower.set_levels`).
     """
     case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
     rows, par.stick_to = branch_rows(case, float(state.law_slip))
@@ -112,7 +119,7 @@ def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Co
 
 @dataclass(frozen=True)
 class Step:
-    """The last step in a history, with the rule's levels along it: xi runs over it from 0 to 1."""
+    """The last step in a history, with the levels of the selection rule along it; xi runs over the step from 0 to 1."""
 
     problem: Problem
     store: Store
@@ -120,11 +127,11 @@ class Step:
 
     @property
     def direction(self) -> int:
-        """+1 for slip forwards, -1 backwards, 0 at rest."""
+        """Return +1 for forward slip, -1 for backward slip, 0 at rest."""
         return int(self.store.mode[self.row])
 
     def law_slip(self, xi: float) -> float:
-        """Law slip (m), minus the initial one."""
+        """Return the law slip (m), minus the initial one."""
         rate, powers = self.store.rate[self.row], xi ** np.arange(1, at.TERMS + 1)
         straight = self.store.speed[self.row] * (RECIPROCAL[1 : at.TERMS + 1] * rate * powers).sum()
         bent = 2.0 * self.store.bend[self.row] * xi * (RECIPROCAL[2 : at.TERMS + 2] * rate * powers).sum()
@@ -132,7 +139,7 @@ class Step:
         return float(self.store.law_slip[self.row]) + (grown if self.problem.friction.counts == "net" else self.direction * grown)
 
     def room(self, xi: float) -> float:
-        """How far (Pa) the load is inside the interval for which the rule keeps the branch; negative outside."""
+        """Return how far (Pa) the load is inside the interval in which the rule keeps the branch; negative outside."""
         rows, _ = branch_rows(self.problem, self.law_slip(xi))
         powers = xi ** np.arange(at.TERMS)
         rate, load = abs(float(self.store.rate[self.row] @ powers)), float(self.store.load[self.row] @ powers)
@@ -141,7 +148,7 @@ class Step:
         return min(seen - float(rows[at.KEEP_FROM, branch]), float(rows[at.KEEP_TO, branch]) - seen)
 
     def crossing(self) -> float | None:
-        """Where the load first leaves that interval; None if it stays in it."""
+        """Return the place at which the load first leaves that interval, or None if it stays in it."""
         before, slack = 0.0, ROUNDING * self.problem.strength
         for place in (FIRST_PLACE, LAST_PLACE):
             if self.room(place) < -slack:
@@ -152,9 +159,10 @@ class Step:
 
 
 def root_between(room: Callable[[float], float], low: float, high: float, slack: float) -> float:
-    """Where a function, not negative at low and negative at high, falls through zero: false position, kept from standing still.
+    """Return the place at which a function that is not negative at `low` and negative at `high` falls through zero.
 
-    Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
+    The method is false position with the Illinois modification, which keeps an end from standing still.
+    Source: Dowell & Jarratt 1971, BIT 11, 168.
     """
     above, below, side, x = max(room(low), slack), room(high), 0, high
     for _ in range(100):
@@ -174,7 +182,10 @@ def root_between(room: Callable[[float], float], low: float, high: float, slack:
 
 @dataclass
 class RuleFollower:
-    """Runs the engine; step by step for a rule whose levels move: a step over a level is taken back, and made again up to it."""
+    """Run the engine under a selection rule whose levels may move with slip.
+
+    If they move, the run goes step by step: a step across a level is taken back and made again up to the level.
+    """
 
     problem: Problem
     row_time: float
@@ -183,7 +194,10 @@ class RuleFollower:
     times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
 
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
-        """As `loop.advance`. at.STORM where the contact goes to and fro across a level, which slip moves against the load."""
+        """Advance the run as `loop.advance` does, under the selection rule.
+
+        Returns at.STORM if the contact goes to and fro across a level that slip moves against the load.
+        """
         if not folds_move(self.problem) or self.problem.rule == "perfect-delay":
             return advance(table, *last, budget)
         for _ in range(min(budget, AT_A_TIME)):
@@ -200,12 +214,12 @@ class RuleFollower:
         return OUT_OF_BUDGET
 
     def set_levels(self, table: Integers) -> None:
-        """Put what `renewed` has left out into the setup that is lent."""
+        """Set the levels that `renewed` has left out, in the setup that the engine uses."""
         if has_levels_to_set(self.problem):
             set_maxwell_levels(table, *self._scan)
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
-        """Where a step in slip that has just been made crosses a level of the rule."""
+        """Return the place at which a slip step that has just been made crosses a level of the rule, or None."""
         stepped = self.count.length > length and store.mode[length] != 0 and self.count.leaving == 0
         if not stepped:
             return None
@@ -216,12 +230,12 @@ class RuleFollower:
 
     @cached_property
     def _scan(self) -> tuple[Floats, Floats]:
-        """Slip rates (m/s) at which compiled code looks for branches, and room for what it finds."""
+        """Return the slip rates (m/s) at which compiled code looks for branches, and a table for those that it finds."""
         rates = scan_rates(resistance(self.problem))
         return rates, new_branches(rates)
 
     def _storms(self) -> bool:
-        """Note the time of a crossing: whether many have come with hardly any time between them."""
+        """Record the time of a crossing, and return True if many have come with hardly any time between them."""
         whole, theta = float(self.count.row), float(self.state.theta_from)
         xi = float(self.state.exit)
         self.times.append(whole * self.row_time + theta + xi * (self.state.speed + xi * self.state.bend))

@@ -1,4 +1,4 @@
-"""In which problems there are leaps over creep, what may be asked of them, and what is done where nothing is said."""
+"""Limits of leaps over creep: which problems allow them, which tolerances are valid, and the automatic tolerance."""
 
 from __future__ import annotations
 
@@ -9,16 +9,19 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 LARGEST_RTOL = 1e-2
+"""Largest creep_rtol that is accepted."""
 PATIENCE = 200
-"""Round trips with slip that are all run before automatic leaps may begin: on the printed slab 40 000 pieces and 0.1 s."""
+"""Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
+0.1 s.
+"""
 PER_ROOT_RTOL = 0.1
-"""Automatic creep_rtol, over the square root of rtol: the first pulse's time then has a relative error of about rtol."""
+"""Automatic creep_rtol divided by the square root of rtol: the time of the first pulse then has a relative error of about rtol."""
 TIGHTEST, LOOSEST = 1e-6, 1e-3
-"""Bounds of the automatic creep_rtol: tighter ones leave too many round trips to be run, looser ones are not measured."""
+"""Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
 
 def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> float:
-    """Return the tolerance of leaps over creep in a run: the one given, or the automatic one; 0 where there are no leaps."""
+    """Return the tolerance of leaps over creep in a run: the given or the automatic one, or 0 if there are no leaps."""
     if creep_rtol is not None:
         return creep_rtol
     return 0.0 if _missing(problem) else min(max(PER_ROOT_RTOL * math.sqrt(rtol), TIGHTEST), LOOSEST)
@@ -37,12 +40,12 @@ def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, nam
 
 
 def _missing(problem: Problem) -> str:
-    """Return what a problem lacks; empty where there are leaps over creep."""
+    """Return what a problem lacks for leaps over creep; empty if it lacks nothing."""
     return missing_but_pull(problem) or ("" if problem.pull_rate != 0.0 else "a pull rate that is not 0")
 
 
 def missing_but_pull(problem: Problem) -> str:
-    """Return what a problem lacks besides a pull rate, which may be another one in each member of a batch."""
+    """Return what a problem lacks besides a pull rate, which may differ between the members of a batch."""
     body, law = problem.body, problem.friction
     if not isinstance(body, ElasticSlab):
         return "a slab, which creeps from round trip to round trip"

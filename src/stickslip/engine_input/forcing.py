@@ -1,7 +1,8 @@
-"""What the driver sends, as the load at the contact has it: for tables and observables; `varying_forcing` is the engine's own way.
+"""Inflow: what the driver adds to the load at the contact. For tables and observables; the engine has its own `varying_forcing`.
 
-A slab's load is beta(t) = r w(t - R) + F(t), with the inflow F(t) = 2 Z [Zd V + s] / (Z + Zd) at t - h/c, 2 Z V(t - h/c) for a
-rigid driver, less (1 + r) times the reference strength, as all loads are differences. A block's grows by K V(t) in a second.
+The load of a slab is beta(t) = r w(t - R) + F(t). The inflow is F(t) = 2 Z [Zd V + s] / (Z + Zd) at t - h/c, or 2 Z V(t - h/c)
+for a rigid driver, less (1 + r) times the reference strength, because all loads are differences from it. The load of a block
+grows by K V(t) per second.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Inflow:
-    """Straight segments, each from the time on (s) at which it arrives, and a tone. Slab: Pa; block: N/s."""
+    """Straight segments, each from the time (s) at which it arrives, plus a tone. Slab: Pa; block: N/s."""
 
     start: Floats
     value: Floats
@@ -35,13 +36,13 @@ class Inflow:
     is_rigid: bool
 
     def at(self, time: Floats) -> Floats:
-        """F at times (s since the start of the run); behind a jump."""
+        """Return F at times (s since the start of the run); at a jump, its right limit."""
         n = self.segment(time)
         straight = self.value[n] + self.slope[n] * (time - self.start[n])
         return straight if self.tone is SILENT else np.asarray(straight + self._swing(time))
 
     def total(self, low: Floats, high: Floats) -> Floats:
-        """Integral of F between times (s)."""
+        """Return the integral of F between times (s)."""
         first, last, middle = self.segment(low), self.segment(high), 0.5 * (low + high)
         inside = (high - low) * (self.value[first] + self.slope[first] * (middle - self.start[first]))
         straight = np.where(first == last, inside, self._up_to(last, high) - self._up_to(first, low))
@@ -51,9 +52,9 @@ class Inflow:
         return np.asarray(straight + 2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(middle))
 
     def gathered(self, row: Floats, offset: Floats, rows: Floats) -> Floats:
-        """By how much a load at rest has grown so many whole rows later; nothing changes in the rows between but the tone.
+        """Return the growth of a load at rest over the given number of whole rows, in which nothing but the tone changes.
 
-        On a slab that is the sum of F over these rows: so many times its mean, and Dirichlet's kernel for the tone.
+        On a slab it is the sum of F over these rows: their number times the mean of F, with Dirichlet's kernel for the tone.
         """
         time = row * self.row_time + offset
         if self.is_block:
@@ -68,7 +69,7 @@ class Inflow:
         return np.asarray(straight + self._summed(rows) * self._swing(middle))
 
     def breaks(self) -> list[tuple[int, float]]:
-        """Rows and offsets (s) at which segments begin; the edges of rows are offset 0 of the later one."""
+        """Return the rows and offsets (s) at which segments begin; an edge between rows is offset 0 of the later one."""
         rows = np.floor(self.start / self.row_time)
         offsets = self.start - rows * self.row_time
         late, early = offsets > (1.0 - EDGE) * self.row_time, offsets < EDGE * self.row_time
@@ -76,13 +77,13 @@ class Inflow:
         return list(zip((rows + late).astype(int).tolist(), offsets.tolist(), strict=True))
 
     def edges(self, low: float, high: float) -> Floats:
-        """Times (s) between two others at which segments arrive, and which part a tone where it turns by 1 rad."""
+        """Return the times (s) between two others at which segments arrive or a tone has turned by about 1 rad."""
         turns = math.floor((high - low) * self.tone.frequency) if self.tone.amplitude != 0.0 else 0
         inside = self.start[(self.start > low) & (self.start < high)]
         return np.unique(np.concatenate([inside, np.linspace(low, high, turns + 2)[1:-1]])) if turns else inside
 
     def segment(self, time: Floats) -> NDArray[np.intp]:
-        """Which segment has arrived at times (s)."""
+        """Return the segment that has arrived at each time (s)."""
         return np.maximum(np.searchsorted(self.start, time, side="right") - 1, 0)
 
     def _up_to(self, n: NDArray[np.intp], time: Floats) -> Floats:
@@ -92,7 +93,7 @@ class Inflow:
         return np.asarray(whole[n] + since * (self.value[n] + 0.5 * self.slope[n] * since))
 
     def _summed(self, rows: Floats) -> Floats:
-        """By how much the tones of so many rows are larger than that at their mean time."""
+        """Return the sum of the tone over the given number of rows, divided by the tone at their mean time."""
         return np.array([dirichlet(count, self.tone.frequency * self.row_time) for count in rows.tolist()])
 
     def _swing(self, time: Floats) -> Floats:
@@ -100,15 +101,17 @@ class Inflow:
 
 
 DAY = 86_400.0
+"""A day, s: the length of a row for a block that never sticks."""
 LONGEST_ROW = 1e6
-"""Periods of a block in a row of its history (1), at most."""
+"""Largest number of periods of a block in one row of its history (1)."""
 
 
 def row_time(problem: Problem) -> float:
-    """Length of a row of the history, in s: the slab's two-way travel time, the block's period of free oscillation.
+    """Return the length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
 
-    A block that never sticks may creep for years, over which no row can leap: its row lasts a day, but no longer than the period
-    of a tone in its loading, nor than LONGEST_ROW of its own periods, which times in a row would no longer resolve.
+    A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
+    period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve
+    them; but it never is shorter than one period of the block.
     """
     body = problem.body
     if isinstance(body, ElasticSlab):
@@ -121,11 +124,11 @@ def row_time(problem: Problem) -> float:
 
 
 EDGE = 1e-13
-"""Breaks nearer to the edge of a row, as a share of it, lie on it."""
+"""Distance from the edge of a row, as a share of it, within which a break lies on the edge."""
 
 
 def steady_inflow(problem: Problem) -> tuple[float, float]:
-    """The inflow of a loading that does not vary: value at 0 s and what it gains in a second. Slab: Pa; block: N/s."""
+    """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s."""
     body = problem.body
     if not isinstance(body, ElasticSlab):
         return body.stiffness * problem.first_pull_rate, 0.0
@@ -140,7 +143,7 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
 
 @lru_cache(maxsize=64)
 def inflow_of(problem: Problem) -> Inflow:
-    """The inflow of a problem."""
+    """Return the inflow of a problem."""
     body = problem.body
     if not problem.varies:
         value, slope = steady_inflow(problem)
@@ -154,7 +157,10 @@ def inflow_of(problem: Problem) -> Inflow:
 
 
 def _lossy(problem: Problem, body: ElasticSlab) -> tuple[list[Segment], Tone]:
-    """Far stress and pull rate together, one of which varies, as they leave a driver of finite impedance."""
+    """Return the segments and the tone of far stress and pull rate together, as they leave a driver of finite impedance.
+
+    One of the two varies.
+    """
     gain, far = 1.0 + body.reflection, problem.far_stress
     if isinstance(far, LoadingHistory):
         segments, tone = _scaled(far, gain)
@@ -174,7 +180,10 @@ def _scaled(history: float | LoadingHistory, gain: float) -> tuple[list[Segment]
 
 
 def _inflow(segments: list[Segment], tone: Tone, delay: float, problem: Problem) -> Inflow:
-    """As it arrives. The first segment is carried on to 0 s: before its delay is over nothing of it is asked for."""
+    """Return the inflow as it arrives at the contact, after the delay (s).
+
+    The first segment is extended back to 0 s: nothing asks for the inflow before the delay is over.
+    """
     body = problem.body
     start, value, slope = np.array(segments).T
     start = start + delay

@@ -1,12 +1,13 @@
-"""Where slip events too short to be told apart may be lumped, and what may be asked for.
+"""Limits of lumping: where slip events that are too short to be told apart may be lumped, and which lengths are valid.
 
-Under rate weakening every slip steepens the echoes that it sends back, and the events that they make get shorter and shorter. With
-a `shortest_event`, pieces of load that are shorter carry their mean, so that they slip as a whole or not at all, and a piece at
-rest breaks only where more of it than that is beyond the strength. So the pieces of a round trip are bounded in number.
+Under rate weakening every slip steepens the echoes that it sends back, and the events that they cause get shorter and shorter.
+With a `shortest_event`, shorter pieces of load are replaced by their mean, so that they slip as a whole or not at all, and a
+piece at rest begins to slip only where more of it than that length is beyond the strength. This bounds the number of pieces in a
+round trip.
 
-Without one being given, nothing is lumped until a round trip has more than MOST_PIECES pieces. A contact that creeps below the
-critical rate weakening doubles them in each round trip, because it answers each echo with a larger one of the opposite sign:
-nobody can follow that for long, and what is lumped then is far beyond what can be resolved.
+Without a given `shortest_event`, nothing is lumped until a round trip has more than MOST_PIECES pieces. A contact that creeps
+below the critical rate weakening doubles them in each round trip, because it answers each echo with a larger one of the opposite
+sign. No computation can follow that for long, and the events that are lumped then could not be resolved anyway.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 LARGEST_SHARE = 0.01
-"""Of the two-way travel time: more would not be a slab."""
+"""Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab."""
 MOST_PIECES = 4096
-"""Pieces in a round trip from which on events are lumped automatically: each costs about 0.4 kB and a microsecond."""
+"""Number of pieces in a round trip above which events are lumped automatically: each costs about 0.4 kB and a microsecond."""
 AUTOMATIC_SHARE = 1.0 / 1024.0
-"""Shortest event of automatic lumping, as a share of the two-way travel time: a few pieces fit into each."""
+"""Shortest event of automatic lumping, as a share of the two-way travel time: a few pieces fit into each such interval."""
 
 
 def check_shortest_event(problem: Problem, shortest: float | None, where: str, name: str = "shortest_event") -> float | None:
@@ -39,7 +40,10 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
 
 
 def lumps_by_itself(problem: Problem) -> bool:
-    """Return True if events are lumped automatically: echoes come back whole, and friction depends on the slip rate alone."""
+    """Return True if events are lumped automatically.
+
+    That requires echoes that come back whole, and friction that depends on the slip rate and has no state variable.
+    """
     body, law = problem.body, problem.friction
     return (
         isinstance(body, ElasticSlab)

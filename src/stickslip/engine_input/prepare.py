@@ -1,4 +1,4 @@
-"""From a problem to the numbers that the compiled engine works on."""
+"""Preparation of a run: from a problem to the numbers that the compiled engine works on."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from stickslip.problem.selection_rule import SelectionRule
 
 
 def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, State, Counts]:
-    """Everything that the engine needs to know of a problem, and state and counts at t = 0, to be changed by the run.
+    """Return the setup that the engine needs for a problem, and the state and counts at t = 0, which the run changes.
 
-    Compiles the law's formulas if they are new. What does not depend on the tolerance is kept for the next run.
+    Compiles the law's formulas if they are new. The parts that do not depend on the tolerance are cached for the next run.
     """
     setup, state, count = _prepared(problem, rule_of(problem))
     par = setup.par.copy()
@@ -37,13 +37,13 @@ def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tupl
 
 
 def set_tolerance(par: Params, rtol: Any, shortest: float | None) -> None:
-    """What the tolerance says in `Setup.par`, or in one with a column a member."""
+    """Set the numbers that depend on the tolerance, in `Setup.par` or in one with a column for each member."""
     set_length(par, shortest)
     par.tolerance, par.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
 @lru_cache(maxsize=256)
-def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # the rule of a name may change
+def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
     par = parameters_of(problem)
     branches, par.stick_to = branch_rows(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
@@ -54,7 +54,10 @@ def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]
 
 
 def parameters_of(problem: Problem) -> Params:
-    """`Setup.par` but for what the tolerance says; with a column a member where any of the problem's numbers is an array."""
+    """Return `Setup.par` without the numbers that depend on the tolerance.
+
+    If any of the problem's numbers is an array, the result has a column for each member of a batch.
+    """
     body, law = problem.body, problem.friction
     par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
     par.row_time = row_time(problem)
@@ -83,21 +86,22 @@ def parameters_of(problem: Problem) -> Params:
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:
-    """One table of numbers; with a column a member where any of them is an array."""
+    """Return one table of numbers; it has a column for each member if any of them is an array."""
     if any(np.ndim(number) for number in numbers):
         return np.stack([np.asarray(number, float) for number in np.broadcast_arrays(*numbers)])
     return np.array(numbers, float)
 
 
 SMALLEST, SLOWEST = 1e-300, 1e-12
-"""Slip rates that are resolved to the last digit: down to nothing where slip begins from rest, to a share of the law's own scale
-where friction has no rest."""
+"""Slip rates that are resolved to the last digit: any (m/s) if slip begins from rest; down to this share of the law's own rate
+scale if friction has no rest.
+"""
 SAFETY = 0.1
 """Local tolerance per step as a share of rtol: leaves the error of a whole run below rtol (see docs/numerics.md)."""
 
 
 def first_load(problem: Problem) -> at.Floats:
-    """The load of the first round trip (minus the reference), linear between its breaking points."""
+    """Return the load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
     if not isinstance(body, ElasticSlab):
         return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
@@ -106,7 +110,7 @@ def first_load(problem: Problem) -> at.Floats:
         return _pieces([0.0, body.two_way_time], [excess], [slope])
     r, half = body.reflection, 0.5 * body.two_way_time
     steady, rate = steady_inflow(problem)
-    # for h/c <= t < R the start comes back: w(t - R) = G V (R - t) / h - tau0
+    # for h/c <= t < R the waves of the initial state come back: w(t - R) = G V (R - t) / h - tau0
     reflected = steady + rate * half + r * (slope * half - excess)
     before = excess + slope * half
     jump = abs(reflected - before) > 1e-12 * np.maximum(abs(problem.strength), abs(before))
@@ -114,7 +118,10 @@ def first_load(problem: Problem) -> at.Floats:
 
 
 def first_load_varying(problem: Problem) -> at.Floats:
-    """The same without what a loading that varies adds to it, in parts so short that a tone in it is a polynomial to rounding."""
+    """Return the load of the first round trip without the inflow of a loading that varies.
+
+    Its parts are so short that a tone in them is a polynomial to rounding.
+    """
     body, excess = problem.body, problem.excess
     if not isinstance(body, ElasticSlab):
         return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [0.0]))
@@ -126,7 +133,7 @@ def first_load_varying(problem: Problem) -> at.Floats:
 
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
-    """The same in shorter pieces, in which a tone turns by at most LARGEST_TURN."""
+    """Return the same load in shorter pieces, in which the phase of a tone changes by at most LARGEST_TURN."""
     theta, tone = pieces[0], inflow_of(problem).tone
     if tone.amplitude == 0.0:
         return pieces
@@ -145,12 +152,13 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
 
 
 NOT_VARYING = np.zeros((5, 1))
+"""Rows of `Setup.loading` for a loading that does not vary."""
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
-"""Phase (rad) in which a sine's Taylor series is right to rounding; parts of a round trip."""
+"""Largest phase (rad) over which a sine's Taylor series is right to rounding, and the largest number of parts of a round trip."""
 
 
 def loading_of(problem: Problem) -> at.Floats:
-    """Rows of `Setup.loading`: the segments of the inflow by where they arrive; none of a loading that does not vary."""
+    """Return the rows of `Setup.loading`: the segments of the inflow and where they arrive; none if the loading is steady."""
     if not problem.varies:
         return NOT_VARYING
     inflow = inflow_of(problem)
@@ -166,12 +174,15 @@ def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any]
 
 
 def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
-    """Addresses of the functions and constants of the law's pieces; shifts and offsets to their own references, and knots."""
+    """Return three tables of the law's pieces: addresses of their functions, their constants, and their references and knots.
+
+    The last table holds the shift of slip and the offset of friction to each piece's own reference, and the knot at its end.
+    """
     law, start = problem.friction, problem.law_slip
     change = law.state_tree() if law.state else None
     formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
     home = int(law.piece_at(start))
-    # each piece's friction is a difference from its own reference slip: the start for the piece we start in, else its near knot
+    # each piece's friction is a difference from its own reference slip: the start in the piece that holds there, else the near knot
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
     references = near if law.knot_variable == "slip" else [start] * len(formulas)
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
@@ -186,7 +197,10 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
 
 
 def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int, int, int]:
-    """Return what `Setup.address` holds of a formula: a law with a state is only ever stepped implicitly."""
+    """Return the addresses and the number of guards of a formula for `Setup.address`; 0 stands for what is not needed.
+
+    A law with a state is always stepped implicitly.
+    """
     stepped_implicitly = problem.friction.state is not None or has_inertia(problem)
     guards = formula.address("guards") if formula.guard_count and stepped_implicitly else 0
     if problem.friction.state:
@@ -196,7 +210,10 @@ def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, 
 
 
 def start_of(problem: Problem) -> tuple[State, Counts]:
-    """State and counts at t = 0: at rest, the load not yet met."""
+    """Return the state and counts at t = 0, before the first piece of load: the contact is at rest.
+
+    Under a law that never sticks its mode is slip in the direction of the load, for there is no rest.
+    """
     state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
     state.last_step = math.inf
     count.piece = int(problem.friction.piece_at(problem.law_slip))

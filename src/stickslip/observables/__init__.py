@@ -1,1 +1,1 @@
-"""What is calculated from the history of a run."""
+"""Quantities that are computed from the history of a run."""

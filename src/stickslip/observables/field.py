@@ -1,4 +1,4 @@
-"""Displacement, velocity and shear stress anywhere inside the slab, exactly, from what its contact sent and received.
+"""Exact displacement, velocity and shear stress anywhere inside the slab, from the waves that its contact sent and received.
 
 Two waves travel in the slab (d'Alembert): with x = 0 at the contact and x = h at the driver,
 
@@ -6,8 +6,8 @@ Two waves travel in the slab (d'Alembert): with x = 0 at the contact and x = h a
     Z v(x, t) - sigma(x, t) = w(t - x/c)         away from it, w = 2 Z v(0, t) - beta(t)
     u(x, t) = u(0, t) + [integral of beta over (t, t + x/c) - integral of w over (t - x/c, t)] / (2 Z)
 
-There is no grid. The load beta that is still on its way is what the driver made of an earlier w: so the past alone says what the
-slab holds now, and a longer run says the same.
+There is no grid. The load beta that is still on its way is an earlier w, reflected by the driver, plus what the driver adds. So
+the present field follows from the past alone, and does not change when a run is made longer.
 """
 
 from __future__ import annotations
@@ -27,25 +27,45 @@ if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
 
 ROUNDS = 8
-"""Round trips that are read together."""
+"""Round trips that are evaluated together."""
 
 
 class Field(NamedTuple):
-    """What a slab does at places and times: arrays of one shape."""
+    """Displacement, velocity and stress in a slab at given places and times: arrays of the same shape."""
 
     displacement: Floats
-    """u, m: absolute, as the slip is; in a window measured from where the contact stood when the event began."""
+    """Displacement u, m: absolute, as the slip is; in a window, relative to the contact at the start of the event."""
     velocity: Floats
-    """v, m/s."""
+    """Velocity v, m/s."""
     stress: Floats
-    """Shear stress sigma, Pa: positive where it pulls the contact forwards."""
+    """Shear stress sigma, Pa: positive if it pulls the contact forwards."""
 
 
 def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
-    """Displacement, velocity and stress at distances x (m) from the contact and times t (s), which are broadcast together.
+    """Return displacement, velocity and shear stress inside the slab.
 
-    `side` is the limit in time at a front: "left" before it passes, "right" behind it; what is within rounding of a front lies on
-    it. Raises InputError for a block, for places outside the slab and for times outside the run.
+    Parameters
+    ----------
+    readings : Readings
+        A run, or a window on it.
+    x : array_like
+        Distances from the contact, m.
+    t : array_like
+        Times, s; `x` and `t` are broadcast together.
+    side : {"right", "left"}
+        Limit in time at a wave front: "left" before the front passes, "right" after it. A point within rounding of a front
+        lies on it.
+
+    Returns
+    -------
+    Field
+        Displacement (m), velocity (m/s) and shear stress (Pa), each of the broadcast shape.
+
+    Raises
+    ------
+    InputError
+        For a block, for places outside the slab, for times outside the run, and if the waves in the slab left the contact in
+        a leap over creep.
     """
     body = slab_of(readings)
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
@@ -53,7 +73,7 @@ def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") 
         raise InputError(f"field: x must lie between 0 (the contact) and the thickness, {body.thickness:g} m (the driver)")
     if side not in get_args(Side):
         raise InputError(f"side must be 'left' or 'right', got {side!r}")
-    slip = np.broadcast_to(getattr(readings, readings.curves[0])(t), time.shape)  # InputError for times outside the run
+    slip = np.broadcast_to(getattr(readings, readings.curves[0])(t), time.shape)  # raises InputError for times outside the run
     waves, away, moment = Waves(readings.history, body), place.ravel() / body.wave_speed, time.ravel()
     rise, velocity, stress = np.empty((3, moment.size))
     batch = np.floor(moment / (ROUNDS * waves.round))
@@ -64,7 +84,7 @@ def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") 
 
 
 def slab_of(readings: Readings) -> ElasticSlab:
-    """The slab of a run. Raises InputError for a block."""
+    """Return the slab of a run. Raises InputError for a block."""
     body = readings.problem.body
     if not isinstance(body, ElasticSlab):
         raise InputError("field: a block is rigid, it has no inside: only an ElasticSlab has a field")
@@ -72,30 +92,33 @@ def slab_of(readings: Readings) -> ElasticSlab:
 
 
 class _Inside:
-    """The slab at some times (s since the epoch), read from one stretch of its past."""
+    """The slab at several times (s since the epoch), evaluated from one interval of its past."""
 
     def __init__(self, waves: Waves, time: Floats) -> None:
         self.waves, self.time = waves, time
         self.stretch = Stretch(waves, float(time.min()) - waves.round, float(time.max()))
 
     def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
-        """Displacement minus that of the contact, velocity, stress at travel times away from it."""
+        """Return displacement minus that of the contact, velocity and stress at travel times `away` (s) from the contact."""
         impedance, reference = self.waves.body.impedance, self.waves.reference
         load, leaving = self._coming(away, side), self.stretch.leaving(self.time - away, side)
         rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)
         return rise / (2.0 * impedance), (load + leaving) / (2.0 * impedance), reference + 0.5 * (load - leaving)
 
     def _coming(self, away: Floats, side: Side) -> Floats:
-        """The load minus the reference that will be at the contact in so much time: of the start, or sent back by the driver."""
+        """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s).
+
+        It comes from the initial state, or was sent back by the driver.
+        """
         waves, half = self.waves, self.waves.half
         since = self.time - self.stretch.first + away
         slack = rounding(since, half) * (1.0 if side == "left" else -1.0)
-        left = self.time - (waves.round - away)  # the contact
+        left = self.time - (waves.round - away)  # when the wave left the contact
         sent_back = waves.arriving(self.stretch.leaving(left, side), left - self.stretch.first)
         return np.where(since < half + slack, waves.excess + waves.slope * since, sent_back)
 
     def _load_coming(self, away: Floats) -> Floats:
-        """Integral of that over the time until then, Pa s."""
+        """Return the integral of that load over the time until then, Pa s."""
         waves, first = self.waves, self.stretch.first
         since = np.minimum(self.time - first, waves.half)
         until = np.minimum(self.time - first + away, waves.half)
@@ -105,5 +128,5 @@ class _Inside:
         return np.asarray(of_start + waves.body.reflection * self._left(low, high) + inflow)
 
     def _left(self, low: Floats, high: Floats) -> Floats:
-        """Integral of the leaving wave plus the reference between times, Pa s."""
+        """Return the integral between two times of the wave that leaves the contact plus the reference, Pa s."""
         return self.stretch.total(high) - self.stretch.total(low)

@@ -14,18 +14,19 @@ Integrand = Callable[[Moments], Floats]
 
 _GAUSS = np.polynomial.legendre.leggauss(20)
 NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
-"""Gauss-Legendre on [0, 1]: exact to degree 39, so for the squares of the history's polynomials; the law along a Taylor step is
-integrated to rounding."""
+"""Gauss-Legendre rule on [0, 1]. It is exact to degree 39, which includes the squares of the history's polynomials; it integrates
+the law along a Taylor step to rounding.
+"""
 
 
 BLOCK = 1 << 14
-"""Pieces that are integrated together: keeps the memory bounded."""
+"""Number of pieces that are integrated together, which keeps the memory bounded."""
 
 
 def over(
     history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: Floats | None = None
 ) -> Floats:
-    """Integral over the part [low, high] (in xi) of each piece; of its echo so many whole rows later, where those are given."""
+    """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
     leaped = np.zeros(len(piece)) if leaped is None else leaped
     if len(piece) > BLOCK:
         cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
@@ -39,7 +40,7 @@ def over(
 
 
 def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
-    """Integral over the (given) pieces up to each moment; rest that was not recorded is left out."""
+    """Integrate over all pieces, or the given ones, up to each moment; rest that was not recorded is left out."""
     at = at.recorded()
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
@@ -53,7 +54,7 @@ def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[n
 
 
 def between(history: History, first: Moments, last: Moments, integrand: Integrand) -> Floats:
-    """Integrals from each first moment to the last one of the same slip event: nothing outside of it enters."""
+    """Integrate from each first moment to the last one of the same slip event; nothing outside the event enters."""
 
     def one(begin: int, end: int, low: float, high: float) -> float:
         pieces = np.arange(begin, end + 1)

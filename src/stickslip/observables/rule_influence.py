@@ -1,7 +1,7 @@
-"""How much of a run rests on the selection rule: at which shocks, and from when on, it had a choice.
+"""Influence of the selection rule on a run: the shocks that it decided, and the first time at which it had a choice.
 
-The rule has a choice while the load lies strictly between the folds: there several stable slip rates solve the contact equation.
-Outside there is one, and every rule takes it.
+The rule has a choice while the load lies strictly between the folds, where several stable slip rates solve the contact equation.
+At any other load one slip rate solves it, and every rule takes that one.
 """
 
 from __future__ import annotations
@@ -24,19 +24,23 @@ Side = Literal["left", "right"]
 Regime = Literal["regular", "irregular", "continuum"]
 
 _ROUNDING = 1e-12
-"""Share of the window by which a load must lie inside it: at its ends (a start at the static strength) there is no choice."""
+"""Distance from the ends of the window between the folds, as a share of it, within which a load has no choice: a start at the
+static strength has none.
+"""
 _SLIPS = 33
+"""Number of slips along a run at which the branches are computed to find its regime."""
 _CANDIDATES = 50
+"""Largest number of intervals that are searched for the first time between the folds: it bounds the cost of a search that fails."""
 
 
 @dataclass(frozen=True)
 class Choices:
-    """What the rule decided in a run.
+    """Decisions of the selection rule in a run.
 
-    `regime` is that of the contact; `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was
-    between the folds before or after it, or the shock is one that the load reached by itself (cause "fold"). `since` is the
-    first time (s) at which the load lay between the folds, None where it never did. Both are empty for a law whose folds move
-    with slip.
+    `regime` is that of the contact. `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was
+    between the folds before or after the shock, or the load reached a fold by itself (cause "fold"). `since` is the first time
+    (s) at which the load lay between the folds, or None. For a law whose folds move with slip `shocks` is empty and `since` is
+    None.
     """
 
     rule: str
@@ -46,10 +50,10 @@ class Choices:
 
 
 def choices(solution: Solution) -> Choices:
-    """What the selection rule decided in a run.
+    """Return what the selection rule decided in a run.
 
-    `since` is looked for between the 2000 times of `solution.curve` and all breaking points: a visit that begins and ends between
-    two of them is overlooked.
+    The search for `since` uses the 2000 times of `solution.curve` and all breaking points: it overlooks a visit between the folds
+    that begins and ends between two of these times.
     """
     problem = solution.problem
     contact = uniqueness(problem)
@@ -68,7 +72,7 @@ def choices(solution: Solution) -> Choices:
 
 
 def _between(contact: Uniqueness, solution: Solution, time: Floats, side: Side) -> NDArray[np.bool_]:
-    """Whether the load, of either sign, is strictly between the folds."""
+    """Return True where the load, of either sign, is strictly between the folds."""
     return _inside(contact, solution.load(time, side=side) if len(time) else np.zeros(0))
 
 
@@ -77,7 +81,7 @@ def _inside(contact: Uniqueness, load: Floats) -> NDArray[np.bool_]:
 
 
 def _place(contact: Uniqueness, load: Floats) -> Floats:
-    """-1 below the folds, 0 strictly between them, +1 above, for loads of either sign."""
+    """Return -1 below the folds, 0 strictly between them and +1 above, for loads of either sign."""
     assert contact.window is not None
     assert contact.resistance is not None
     low, high = contact.window
@@ -86,7 +90,10 @@ def _place(contact: Uniqueness, load: Floats) -> Floats:
 
 
 def _first_between(contact: Uniqueness, solution: Solution) -> float | None:
-    """The first time (s) with the load between the folds: at a sample, or found between two samples on either side of them."""
+    """Return the first time (s) at which the load is between the folds, or None.
+
+    The time is a sample, or is found between two samples that lie on different sides of the folds.
+    """
     time, load = solution.curve("load")
     place = _place(contact, load)
     passed = (place[1:] == 0.0) | ((place[1:] != place[:-1]) & (np.diff(time) > 0.0))
@@ -96,7 +103,10 @@ def _first_between(contact: Uniqueness, solution: Solution) -> float | None:
 
 
 def _refined(contact: Uniqueness, solution: Solution, low: float, high: float) -> float | None:
-    """The first time in an interval with the load between the folds, to its resolution; None where it only jumps across them."""
+    """Return the first time in an interval with the load between the folds, to the resolution of time.
+
+    Returns None if the load only jumps across the folds.
+    """
     while True:
         times = np.linspace(low, high, 33)
         place = _place(contact, solution.load(times))
@@ -110,7 +120,7 @@ def _refined(contact: Uniqueness, solution: Solution, low: float, high: float) -
 
 
 def _regime_on_the_way(solution: Solution, contact: Uniqueness) -> Regime:
-    """Irregular if the contact is so at any of the slips that the run passes."""
+    """Return "irregular" if the contact is irregular at any of the slips that the run passes."""
     if contact.regime != "regular":
         return contact.regime
     slips = solution.slip(solution.breaks)
@@ -124,12 +134,12 @@ def _regime_on_the_way(solution: Solution, contact: Uniqueness) -> Regime:
 
 
 def several(stable: tuple[Branch, ...]) -> bool:
-    """Whether branches leave a load with more than one slip rate."""
+    """Return True if the branches give some load more than one slip rate."""
     return len(stable) > 1 or stable[0].rate_from > 0.0 or stable[0].excess_from < 0.0
 
 
 def selection_note(solution: Solution) -> str:
-    """One line on whether the answer rests on the selection rule, and how much of it."""
+    """Return one line on whether the result depends on the selection rule, and how much of it."""
     found = choices(solution)
     if found.regime == "regular":
         return f"{found.rule}: without effect, the solution is unique"

@@ -11,19 +11,31 @@ if TYPE_CHECKING:
     import pandas as pd
 
 QUANTITIES = ("recurrence", "duration", "slip", "peak_rate", "traction_drop", "static_drop", "released", "trapped")
-"""Columns of a catalogue whose distribution is described, where the table has them."""
+"""Columns of a catalogue whose distribution is described, if the table has them."""
 
 SAME = 1e-9
-"""Values that vary by less than this share of their mean are one value: what follows what among them says nothing."""
+"""Relative spread below which values count as equal: the correlation of successive values then says nothing."""
 
 
 def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
-    """How the events of a catalogue (`Solution.events`, `Solution.catalogue`) are distributed: one row a quantity, in its unit.
+    """Return statistics of the events of a catalogue, one row per quantity.
 
-    Columns: `count`; `mean`; `deviation`, the sample's standard deviation; `variation`, deviation / mean (of the recurrence
-    times: 0 periodic, 1 as random as a Poisson process, above 1 clustered); `smallest`, `median`, `largest`; and `next`, the
-    correlation of a value with that of the next event. NaN where there are too few events. An event that the run's end cuts off
-    counts in the recurrence only.
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A catalogue: `Solution.events`, or the result of `Solution.catalogue`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Each row is in the unit of its quantity. Columns: `count`; `mean`; `deviation`, the sample's standard deviation;
+        `variation`, which is deviation / mean (of the recurrence times: 0 periodic, 1 as random as a Poisson process, above 1
+        clustered); `smallest`, `median`, `largest`; and `next`, the correlation of a value with that of the next event.
+        Values are NaN if there are too few events.
+
+    Notes
+    -----
+    An event that is cut off by the end of the run counts in the recurrence only.
     """
     import pandas as pd
 
@@ -52,7 +64,7 @@ def _describe(column: pd.Series) -> dict[str, float]:
 
 
 def _next(values: NDArray[np.float64]) -> float:
-    """Correlation of each value with the one after it."""
+    """Return the correlation of each value with the next one."""
     now, later = values[:-1], values[1:]
     if len(now) < 3 or min(np.ptp(now), np.ptp(later)) <= SAME * np.abs(values).max():
         return np.nan

@@ -1,4 +1,4 @@
-"""A stretch of a slab's run: what left the contact at every moment of it, and its integral in time."""
+"""The wave that left the contact during an interval of a slab's run, and its integral in time."""
 
 from __future__ import annotations
 
@@ -15,16 +15,19 @@ from stickslip.observables.waves import Waves
 from stickslip.trajectory.history import Floats, Moments, Side
 
 POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
-"""Where the wave of a piece is read: polynomials of the history, times the linear pace of time in xi, follow exactly."""
+"""Points at which the wave of a piece is sampled. Their number makes the interpolation exact for the polynomials of the history
+times the linear derivative of time with respect to xi.
+"""
 TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
-"""From values at these points to coefficients of Chebyshev's series: without loss of digits."""
+"""Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
 
 
 class Stretch:
-    """The wave that left the contact, w = 2 Z v - beta plus the reference strength, between two times (s since the epoch).
+    """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 
-    Which pieces of the history stand for a stretch is looked up once, rests that were leaped over included; any number of moments
-    is then read together. Before the run the wave is that of the start, linear in time.
+    The pieces of the history that hold in the interval are looked up once, including those whose echoes arrive in rests that were
+    leaped over; then any number of moments is evaluated together. Before the run the wave is that of the initial state, linear in
+    time.
     """
 
     def __init__(self, waves: Waves, low: float, high: float) -> None:
@@ -39,7 +42,7 @@ class Stretch:
         if any(self.history.is_averaged(row) for row in np.unique(self.history.store.row[at.piece])):
             raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
         self.start: Floats = breaks[another]
-        """Times (s) from which on another piece of the history stands, or the same one some whole round trips later."""
+        """Times (s) from which on another piece of the history holds, or the same one a number of whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]
         store = self.history.store
         self._origin = self.history.seconds(store.row[self._piece] + leaped, store.theta_from[self._piece])
@@ -49,7 +52,7 @@ class Stretch:
         self._wave = TO_SERIES @ self._values
 
     def _candidates(self, low: float, high: float) -> Floats:
-        """Times inside at which another piece may begin to stand: all phases of all pieces so far, in every round trip."""
+        """Return the times inside at which another piece may begin to hold: phases of all pieces so far, in every round trip."""
         history, store = self.history, self.history.store
         known = max(int(np.searchsorted(history.start, high, side="right")), 1)
         phases = np.unique(np.concatenate([[0.0], store.theta_from[:known], store.theta_to[:known]]))
@@ -59,7 +62,7 @@ class Stretch:
         return np.unique(times[(times > low) & (times < high)])
 
     def leaving(self, time: Floats, side: Side) -> Floats:
-        """w plus the reference (Pa) at times (s) of the stretch."""
+        """Return w plus the reference (Pa) at times (s) in the interval."""
         part = self._part(time, side)
         inside = np.maximum(part, 0)
         since = time - self.first
@@ -67,14 +70,20 @@ class Stretch:
         return np.where(part < 0, start, _series(self._wave, inside, self._xi(time, inside)))
 
     def total(self, time: Floats) -> Floats:
-        """Integral of that up to times (s) of the stretch, from its beginning, or the start of the run if that is later; Pa s."""
+        """Return the integral of w plus the reference up to times (s) in the interval, Pa s.
+
+        It begins at the start of the interval, or at the start of the run if that is later.
+        """
         part = np.maximum(self._part(time, "right"), 0)
         before = np.minimum(time - self.first, 0.0)
         start = -before * (0.5 * self.waves.slope * before + self.waves.excess)
         return np.where(before < 0.0, start, self._sums[part] + _series(self._integral, part, self._xi(time, part)))
 
     def _part(self, time: Floats, side: Side) -> NDArray[np.intp]:
-        """Part in which each time lies, -1 before the run. Times within rounding of a break lie on it: `side` picks the part."""
+        """Return the part in which each time lies, -1 before the run.
+
+        Times within rounding of a break lie on it, and `side` picks the part.
+        """
         slack = rounding(time, self.history.row_time)
         if side == "right":
             return np.searchsorted(self.start, time + slack, side="right") - 1
@@ -85,14 +94,20 @@ class Stretch:
 
     @cached_property
     def _integral(self) -> Floats:
-        """Of w in time, from where each piece starts: dtheta = (speed + 2 bend xi) dxi."""
+        """Return the Chebyshev series of the wave's integral in time from the start of each piece.
+
+        The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
+        """
         speed, bend = (column[self._piece] for column in (self.history.store.speed, self.history.store.bend))
         pace = speed + bend * (1.0 + POINTS[:, None])
         return np.asarray(chebyshev.chebint(TO_SERIES @ (pace * self._values), scl=0.5, lbnd=-1.0, axis=0))
 
     @cached_property
     def _sums(self) -> Floats:
-        """What is to be added to that: integrals up to the start of each part, less what the piece had before it."""
+        """Return what to add to those integrals so that they count from the start of the interval, for each part.
+
+        It is the integral up to the start of the part, less the value of the part's own series there.
+        """
         parts = np.arange(len(self.start))
         begin, end = (
             _series(self._integral, parts, self._xi(time, parts)) for time in (self.start, np.append(self.start[1:], self.high))
@@ -101,10 +116,10 @@ class Stretch:
 
 
 def _series(coefficients: Floats, part: NDArray[np.intp], xi: Floats) -> Floats:
-    """Chebyshev's series of the parts (one a column) at xi."""
+    """Evaluate the Chebyshev series of the parts (one per column) at xi."""
     return np.asarray(chebyshev.chebval(2.0 * xi - 1.0, coefficients[:, part], tensor=False))
 
 
 def rounding(time: Floats, row_time: float) -> Floats:
-    """How far (s) a time may be off that was worked out from times and travel times."""
+    """Return the possible error (s) of a time that was computed from times and travel times."""
     return np.asarray(4.0 * np.spacing(np.maximum(np.abs(time), row_time)))

@@ -1,8 +1,8 @@
-"""The waves inside the slab, as the contact sent and received them: what its stored energy and the driver's work are made of.
+"""Waves inside the slab, as its contact sent and received them: the basis of its stored energy and of the driver's work.
 
-Everything is written with what leaves the contact, w = 2 Z v - beta, plus the reference strength: small where the slab is near
-its strength. The load that arrives one round trip later is r w + inflow, so the past alone says what the slab holds now.
-Before t = 0, w(-y) = G V y / h - tau0 for 0 < y < h/c; the load is tau0 + G V t / h up to h/c.
+Everything is written in terms of the wave that leaves the contact, w = 2 Z v - beta, plus the reference strength; this sum is
+small if the slab is near its strength. The load that arrives one round trip later is r w + inflow, so the past alone determines
+the present waves. Before t = 0, w(-y) = G V y / h - tau0 for 0 < y < h/c; the load is tau0 + G V t / h up to h/c.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from stickslip.trajectory.history import START, Epoch, History, Moments
 
 Floats = NDArray[np.float64]
 OfWave = Callable[[Floats, Floats], Floats]
-"""A density as a function of a wave (plus or minus the reference) and of a time in s."""
+"""A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""
 
 
 class Waves:
-    """Integrals over the waves of a slab's run; energies in J/m^2."""
+    """Integrals over the waves in a slab; energies are in J/m^2."""
 
     def __init__(self, history: History, body: ElasticSlab) -> None:
         self.history, self.body = history, body
@@ -36,21 +36,24 @@ class Waves:
         self.inflow = inflow_of(history.problem)
 
     def leaving(self, at: Moments) -> Floats:
-        """w plus the reference, Pa."""
+        """Return w plus the reference, Pa."""
         return 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
 
     def arriving(self, leaving: Floats, left: Floats) -> Floats:
-        """Load minus the reference one round trip after a wave left the contact, at a time (s) since the start of the run."""
+        """Return the load minus the reference (Pa) one round trip after a wave left the contact.
+
+        `left` is the time at which it left (s since the start of the run).
+        """
         return np.asarray(self.body.reflection * leaving + self.inflow.at(left + self.round))
 
     def begun(self, now: Epoch) -> float:
-        """Time since the start of the run, s: only where its rounding does not matter."""
+        """Return the time since the start of the run, s; use it only where its rounding does not matter."""
         return now.row * self.round + now.offset
 
     # ---- energies -----------------------------------------------------------------------------------------------------------
 
     def stored(self, now: Epoch) -> float:
-        """Elastic and kinetic energy inside the slab, less a constant."""
+        """Return the elastic and kinetic energy inside the slab, up to a constant."""
 
         def down(load: Floats, _: Floats) -> Floats:
             return load * (2.0 * self.reference + load)
@@ -61,7 +64,10 @@ class Waves:
         return self._inside(now, down, up) / (4.0 * self.body.impedance)
 
     def trapped(self, now: Epoch) -> float:
-        """Energy of the waves inside the slab: what it stores beyond the same mean stress at rest (rigid driver: sheared at V)."""
+        """Return the energy of the waves inside the slab: the stored energy beyond that of the same mean stress at rest.
+
+        With a rigid driver the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
+        """
         mean = self._inside(now, lambda load, _: load, lambda leaving, _: -leaving) / (2.0 * self.half)
         rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.reflection == -1.0 else 0.0
         drift = self.body.impedance * rate / self.half
@@ -75,21 +81,24 @@ class Waves:
         return self._inside(now, down, up) / (4.0 * self.body.impedance)
 
     def driver_rate(self, leaving: Floats, left: Floats) -> Floats:
-        """Velocity (m/s) of the slab at the driver, h/c after a wave left: (A + B) / (2 Z) of arriving A and leaving B."""
+        """Return the velocity (m/s) of the slab at the driver h/c after a wave left the contact.
+
+        It is (A + B) / (2 Z), with A the wave that the driver sends and B the one that it receives.
+        """
         incoming = self.inflow.at(left + self.round)
         return np.asarray(((1.0 + self.body.reflection) * leaving + incoming) / (2.0 * self.body.impedance))
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
-        """sigma v at the driver, h/c after a wave left: (A^2 - B^2) / (4 Z), without cancellation."""
+        """Return sigma v at the driver (W/m^2) h/c after a wave left the contact: (A^2 - B^2) / (4 Z), without cancellation."""
         drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + self.inflow.at(left + self.round)
         return 0.5 * self.driver_rate(leaving, left) * drop
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
-        """By how much that grows from an echo at rest to the next: the stress does, by the ramp."""
+        """Return the growth of the power from one echo at rest to the next: the stress grows by the ramp."""
         return self.history.ramp * self.driver_rate(leaving, left)
 
     def work(self, now: Epoch) -> float:
-        """Work of the driver since the start of the run."""
+        """Return the work of the driver since the start of the run."""
         end = Epoch(now.row, now.offset - self.half) if now.offset >= self.half else Epoch(now.row - 1, now.offset + self.half)
         if end.row < 0:
             return self._before(-self.half, end.offset - self.round, self.power)
@@ -102,7 +111,10 @@ class Waves:
         return total + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
 
     def _row_by_row(self, past: int) -> float:
-        """Work of all that left the contact before a row, where the loading varies: no sum over echoes stands for rows at rest."""
+        """Return the work of all waves that left the contact before a row, for a loading that varies.
+
+        The echoes of rows at rest then differ by more than a ramp, and the sum in closed form over them does not hold.
+        """
         rows = np.unique(self.history.store.row)
         rows, of_rows = rows[rows < past], self._of_rows
         last = int(rows[-1]) if len(rows) else -1
@@ -110,36 +122,39 @@ class Waves:
 
     @cached_property
     def _of_rows(self) -> Floats:
-        """Work of all that left before the end of each stored row; 0 at the start."""
+        """Return the work of all waves that left before the end of each stored row, after a 0 for the start."""
         rows = np.unique(self.history.store.row)
         own = [self._in_row(int(row), 0.0, self.round, self._of(self.power)) for row in rows]
         rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
         return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
 
     def _at_rest(self, first: int, past: int) -> float:
-        """Work of what left in whole rows that were leaped over. Nothing is lost in them: a rigid driver's work is in the slab."""
+        """Return the work of the waves that left in whole rows that were leaped over.
+
+        The contact dissipates nothing in them, so the work of a rigid driver is the growth of the energy that the slab stores.
+        """
         if past <= first:
             return 0.0
         of_row = partial(self._in_row, high=self.round, integrand=self._of(self.power))
         if self.body.reflection == -1.0:
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + of_row(past - 1, low=self.half)
-        # nothing changes in these rows; what the driver sends back of the last one may meet another loading
+        # all these rows are alike, but the waves of the last one may meet another loading at the driver
         return (past - first - 1) * of_row(first, low=0.0) + of_row(past - 1, low=0.0)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
-        """Work of the driver from one moment to a later one, not long after: nothing outside of these enters."""
+        """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
         lasting = (last.row - first.row) * self.round + (last.offset - first.offset)
         begun = self.begun(last)
         return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
 
     @cached_property
     def _passed(self) -> Floats:
-        """Work of all that left the contact before an echo of it was recorded, summed over the pieces in order of time."""
+        """Return the cumulative work, over the pieces in order of time, of all waves that left before their echo was recorded."""
         store = self.history.store
         echo = np.flatnonzero(store.echo_of >= 0)
         source, work = store.echo_of[echo], np.zeros(len(store.row))
         work[echo] = self._work_of(source, store.theta_from[echo], store.theta_to[echo], store.row[echo] - store.row[source])
-        for row, trips in self.history.creep[:, :2]:  # averages have the work of what they stand for
+        for row, trips in self.history.creep[:, :2]:  # averages have the same work as the round trips that they replace
             way, landing = (np.searchsorted(store.row, when) for when in (row, row + trips))
             own = np.arange(way, landing)
             work[landing] = self._work_of(own, store.theta_from[own], store.theta_to[own], np.ones(len(own), np.int64)).sum()
@@ -148,7 +163,7 @@ class Waves:
         return np.append(0.0, np.cumsum(work))
 
     def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, rows: NDArray[np.int64]) -> Floats:
-        """Work of what left between two offsets (s) of pieces, and of its echoes: so many rows each."""
+        """Return the work of parts of pieces between two offsets (s) and of their echoes, over `rows` round trips in all."""
         come = rows > 0
         piece, low, high, rows = piece[come], low[come], high[come], rows[come]
         part = piece, *self._places(piece, low, high)
@@ -156,13 +171,13 @@ class Waves:
         return rows * once + growth * rows * (rows - 1.0) / 2.0
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-        """Where in pieces (xi) two offsets (s) lie."""
+        """Return the places (xi) in pieces of two offsets (s)."""
         history, start, end = self.history, self.history.store.theta_from[piece], self.history.store.theta_to[piece]
         first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
         return first, np.where(high >= end, 1.0, last)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """As `History.standing`. Raises InputError for a row in a leap over creep: it holds averages."""
+        """Return `History.standing`. Raises InputError for a row in a leap over creep, which holds averages."""
         last = int(np.searchsorted(self.history.store.row, row, side="right")) - 1
         if self.history.is_averaged(int(self.history.store.row[last])):
             raise InputError(f"the waves of round trip {row} are not known: they left the contact in a leap over creep")
@@ -171,8 +186,10 @@ class Waves:
     # ---- integrals ----------------------------------------------------------------------------------------------------------
 
     def _inside(self, now: Epoch, down: OfWave, up: OfWave) -> float:
-        """Integral over the waves inside the slab: `down` of those that come to the contact (as a load minus the reference),
-        `up` of those that left it, each with the time (s) that it has yet to go, or has come, between its place and the contact.
+        """Integrate over the waves inside the slab.
+
+        `down` is the density of waves on their way to the contact (as a load minus the reference), `up` that of waves that left
+        it. The second argument of each is the travel time (s) between the wave's place and the contact.
         """
         begun = self.begun(now)
 
@@ -180,13 +197,13 @@ class Waves:
             return down(self.arriving(leaving, begun + since), since + self.round)
 
         total = self._between(now, -self.half, 0.0, lambda leaving, since: up(leaving, -since))
-        if begun < self.half:  # the load that the start sends down, before anything has come back
+        if begun < self.half:  # part of the load still comes from the initial state, before any wave has come back
             away = (self.half - begun) * NODES
             total += (self.half - begun) * float(down(self.excess + self.slope * (begun + away), away) @ WEIGHTS)
         return total + self._between(now, max(-self.round, -self.half - begun), -self.half, back)
 
     def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Moments], Floats]:
-        """The density at moments, with the time since an epoch."""
+        """Return the density as a function of moments, with the time counted from an epoch."""
 
         def integrand(at: Moments) -> Floats:
             store = self.history.store
@@ -197,7 +214,10 @@ class Waves:
         return integrand
 
     def _before(self, start: float, end: float, density: OfWave, begun: float = 0.0) -> float:
-        """Integral over waves that left at times (s) before the run began; the density's time counts from `begun` after that."""
+        """Integrate over waves that left at times (s) before the run began.
+
+        The density's time counts from `begun` s after the start.
+        """
         if end <= start:
             return 0.0
         edges = np.concatenate([[start], self.inflow.edges(start + self.round, end + self.round) - self.round, [end]])
@@ -206,7 +226,7 @@ class Waves:
         return float(lasting @ (values.reshape(left.shape) @ WEIGHTS))
 
     def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
-        """Integral of a density over the waves that left between two times since now (s, not positive)."""
+        """Integrate a density over the waves that left between two times relative to `now` (s, not positive)."""
         begun = self.begun(now)
         total = self._before(begun + low, min(begun + high, 0.0), density, begun)
         low = max(low, -begun)
@@ -220,7 +240,7 @@ class Waves:
         return total
 
     def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
-        """Integral over the offsets low to high (s) of a row."""
+        """Integrate over the offsets from low to high (s) of a row."""
         piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
@@ -230,7 +250,7 @@ class Waves:
         return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped).sum())
 
     def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """Parts of pieces (offsets in a row, s) whose echo meets the same segment of the loading throughout."""
+        """Cut pieces (offsets in a row, s) into parts whose echo meets the same segment of the loading throughout."""
         breaks = np.array([offset for other, offset in self.inflow.breaks() if other == row + 1])
         edges = np.unique(np.concatenate([begin, breaks[(breaks > begin[:1]) & (breaks < end[-1:])] if len(piece) else breaks[:0]]))
         which = np.searchsorted(begin, edges, side="right") - 1
@@ -238,22 +258,23 @@ class Waves:
 
 
 class Radiation(Waves):
-    """What leaves through a driver of finite impedance Zd: `work` is that of the waves that go on behind it, Zd (v - V)^2.
+    """Radiation through a driver of finite impedance Zd: `work` is that of the waves that continue beyond it, Zd (v - V)^2.
 
-    The far stress and the driver's steady motion do the work of the driver and this: it is what `Waves.work` is net of.
+    The far stress and the steady motion of the driver do the work of the driver and the work of radiation; `Waves.work` is net of
+    the latter.
     """
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
-        """Of the wave behind the driver, h/c after a wave left the contact; nothing goes into a rigid one."""
+        """Return the power of the wave beyond the driver, h/c after a wave left the contact; it is zero for a rigid driver."""
         if self.body.reflection == -1.0:
             return np.zeros(len(leaving))
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
         return np.asarray(self.body.driver_impedance * behind**2)
 
     def _at_rest(self, first: int, past: int) -> float:
-        """As `Waves._at_rest`; nothing leaves through a rigid driver."""
+        """Return the work of `Waves._at_rest`; it is zero for a rigid driver."""
         return 0.0 if self.body.reflection == -1.0 else super()._at_rest(first, past)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
-        """Echoes at rest move the driver alike."""
+        """Return zero: all echoes at rest move the driver in the same way."""
         return np.zeros(len(leaving))

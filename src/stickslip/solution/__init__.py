@@ -1,1 +1,1 @@
-"""What a run gives: values at any time, tables, windows."""
+"""Results of a run: values at any time, tables of events, and windows around events."""

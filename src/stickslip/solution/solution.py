@@ -1,4 +1,4 @@
-"""What a run gives: histories to evaluate, tables, energy, and what ended it."""
+"""The result of a run: values at any time, tables, energies, and the status that says what ended it."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Readings):
-    """A finished run. Times in s from the start of the run; arrays in, arrays of the same shape out.
+    """A finished run.
 
-    `side` ("left" or "right") picks the limit at a shock; the left limit at t = 0 is the initial state at rest.
-    Times outside the run raise InputError. Tables are built when they are asked for.
+    Times are in s from the start of the run. Methods take scalars or arrays and return arrays of the same shape. `side` ("left"
+    or "right") picks the limit at a shock; the left limit at t = 0 is the initial state at rest. Times outside the run raise
+    InputError. Tables are built when they are first asked for.
     """
 
     problem: Problem
@@ -39,48 +40,77 @@ class Solution(Readings):
     status: Status
     history: History
     checkpoint: Checkpoint | None = None
-    """From where the run, or a longer one, can go on (`stickslip.resume`)."""
+    """State from which the run, or a longer one, can continue (`stickslip.resume`)."""
     events_wanted: int | None = None
-    """Slip events after which the run was to stop."""
+    """Number of slip events after which the run was told to stop."""
     creep_rtol: float | None = None
-    """Tolerance of leaps over creep as it was asked for: None is automatic, 0 runs every round trip."""
+    """Tolerance of leaps over creep as the user gave it: None is automatic, 0 computes every round trip."""
     shortest_event: float | None = None
-    """Events shorter than this (s) are lumped, as it was asked for: None is automatic, 0 lumps none."""
+    """Duration (s) below which events are lumped, as the user gave it: None is automatic, 0 lumps none."""
     lumping_note: str = ""
-    """One line on automatic lumping; empty where it did not begin."""
+    """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
-    """One line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
+    """One line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """Slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
+        """Return the slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
         return self.catalogue()
 
     def catalogue(self, event_rate: float | None = None, *, energies: bool = False) -> pd.DataFrame:
-        """Slip events, one row each; columns and units in `stickslip.trajectory.tables`: EVENT_COLUMNS, and ENERGY_COLUMNS (J/m^2;
-        block: J) with `energies`, which take their time.
+        """Return the slip events as a table, one row each.
 
-        An event is a maximal interval with |v| above event_rate (m/s; default 1e-6 S (range of mu) / Z, for the block
-        / sqrt(K m); 0 takes every slip).
+        Parameters
+        ----------
+        event_rate : float, optional
+            Slip rate (m/s) that defines an event: an event is a maximal interval in which |v| is larger. The default is 1e-6
+            S (range of mu) / Z, for the block 1e-6 S (range of mu) / sqrt(K m); 0 takes every slip.
+        energies : bool
+            If true, add the energies of each event (J/m^2; block: J), which take longer to compute.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`, in
+            `stickslip.trajectory.tables`.
         """
         rate = default_event_rate(self.problem) if event_rate is None else event_rate
         return events_table(self.history, rate, energies)
 
     def energetics(self, event_rate: float | None = None) -> pd.DataFrame:
-        """Slip events, one row each, as seismologists account for them: parts of the energy (J/m^2; block: J), static and dynamic
-        drop, overshoot, apparent stress, efficiencies.
+        """Return the energy budget of the slip events as seismologists define it, one row per event.
 
-        Columns and units in `stickslip.observables.energy.energetics.ENERGETICS_COLUMNS`; rows and event_rate (m/s) as in
-        `catalogue`.
+        The columns are the parts of the energy (J/m^2; block: J), static and dynamic stress drop, overshoot, apparent stress and
+        efficiencies.
+
+        Parameters
+        ----------
+        event_rate : float, optional
+            Slip rate (m/s) that defines an event, as in `catalogue`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Rows as in `catalogue`; columns and units in `stickslip.observables.energy.energetics.ENERGETICS_COLUMNS`.
         """
         from stickslip.observables.energy.energetics import energetics_table
 
         return energetics_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
 
     def pulses(self, event_rate: float | None = None) -> pd.DataFrame:
-        """Pulses of the slip events, one row each: times, slip, largest slip rate, smallest traction, fracture energy.
+        """Return the pulses of the slip events, one row each.
 
-        Columns and units in `stickslip.observables.energy.pulses.PULSE_COLUMNS`; event_rate (m/s) as in `catalogue`.
+        The columns are times, slip, largest slip rate, smallest traction and fracture energy.
+
+        Parameters
+        ----------
+        event_rate : float, optional
+            Slip rate (m/s) that defines an event, as in `catalogue`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns and units are those of `stickslip.observables.energy.pulses.PULSE_COLUMNS`.
         """
         from stickslip.observables.energy.pulses import pulses_table
 
@@ -88,26 +118,45 @@ class Solution(Readings):
 
     @cached_property
     def creep(self) -> pd.DataFrame:
-        """Leaps over creep (`simulate(..., creep_rtol=...)`), one row each: start and end (s), start_row (whole round trips before
-        it, without rounding), round_trips in it, error (bound, of the slip where it lands, m), time_error (the same in s: over the
-        slip rate there, by how much what comes next may be early or late).
+        """Return the leaps over creep (`simulate(..., creep_rtol=...)`), one row each.
 
-        Within a leap slip is an average over round trips: right to the error, true slip weaves around it by half of what it grows
-        in a round trip. Slip rate, traction and load are averages too.
+        Columns: start and end (s); start_row (whole round trips before the leap, without rounding); round_trips in it; error
+        (bound of the error of slip at the landing, m); time_error (s: that error divided by the slip rate there, which is how
+        much too early or too late the following events may be).
+
+        Notes
+        -----
+        Within a leap the slip is an average over round trips. It is right to within the error; the true slip oscillates around it
+        by half of its growth in one round trip. Slip rate, traction and load are averages too.
         """
         return creep_table(self.history)
 
     @property
     def creep_note(self) -> str:
-        """One line on the leaps over creep; empty where there are none."""
+        """Return one line on the leaps over creep; empty if there are none."""
         return creep_note(self.history.creep)
 
     def window(self, event: int | pd.Series = 0, before: float | None = None, after: float | None = None) -> Window:
-        """The run around one slip event, in local time: seconds since the event began, sharp however late that is.
+        """Return the run around one slip event, in seconds since the event began.
 
-        event: a row number of `events` (negative ones count from the last), or a row of any `catalogue`.
-        It shows the time from `before` the event to `after` its start (s; default: a tenth of its duration on either side).
-        Raises InputError where there is no such event.
+        Parameters
+        ----------
+        event : int or pandas.Series
+            Row number in `events` (negative ones count from the last), or a row of any `catalogue`.
+        before : float, optional
+            Time to show before the start of the event, s. The default is a tenth of its duration.
+        after : float, optional
+            Time to show after the start of the event, s. The default is its duration and a tenth of it.
+
+        Returns
+        -------
+        Window
+            Its local times are exact to their own rounding, however late in the run the event is.
+
+        Raises
+        ------
+        InputError
+            If there is no such event, and if `before` or `after` is not a finite time of the right sign.
         """
         return window_around(self, self._row(event), before, after)
 
@@ -120,16 +169,41 @@ class Solution(Readings):
         return self.events.iloc[event]
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
-        """Energies at times t (s), as differences from the start: see `stickslip.observables.energy.balance`."""
+        """Return the energies of the run as differences from its start.
+
+        Parameters
+        ----------
+        t : array_like
+            Times, s.
+
+        Returns
+        -------
+        xarray.Dataset
+            See `stickslip.observables.energy.balance.energy`.
+        """
         from stickslip.observables.energy.balance import energy
 
         return energy(self, t)
 
     def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-        """Slip, slip rate, traction and load at times t (s, one-dimensional) as an xarray Dataset with units and provenance.
+        """Return slip, slip rate, traction and load as an xarray Dataset with units and provenance.
 
-        With x (m from the contact, one-dimensional) also displacement, velocity and stress inside the slab, over time and x.
-        Raises InputError for more than 2e7 values of a quantity.
+        Parameters
+        ----------
+        t : array_like
+            Times (s), one-dimensional.
+        x : array_like, optional
+            Distances from the contact (m), one-dimensional. With them the dataset also holds displacement, velocity and
+            stress inside the slab, over time and x.
+
+        Returns
+        -------
+        xarray.Dataset
+
+        Raises
+        ------
+        InputError
+            For more than 2e7 values of a quantity.
         """
         from stickslip.io.netcdf import solution_dataset
 
@@ -137,13 +211,34 @@ class Solution(Readings):
         return solution_dataset(self, t, x)
 
     def save(self, path: str | Path) -> Path:
-        """Write everything to a netCDF file, from which `stickslip.load` gives this solution back bit for bit."""
+        """Write the solution to a netCDF file.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+
+        Returns
+        -------
+        Path
+            The file that was written. `stickslip.load` restores this solution from it bit for bit.
+        """
         from stickslip.io.netcdf import save
 
         return save(self, path)
 
     def plot(self, start: float | None = None, end: float | None = None) -> Figure:
-        """Slip, slip rate, traction and load against time."""
+        """Plot slip, slip rate, traction and load against time.
+
+        Parameters
+        ----------
+        start, end : float, optional
+            First and last time to show, s. The default is the whole run.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
         from stickslip.figures.runs.run import plot_run
 
         return plot_run(self, start, end)
@@ -170,21 +265,24 @@ class Solution(Readings):
 
     @cached_property
     def trapped_note(self) -> str:
-        """How much energy bounces in the slab in waves at the end of the run; empty for a block."""
+        """Return one line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
         from stickslip.observables.energy.balance import trapped_note
 
         return trapped_note(self)
 
     @cached_property
     def horizon_note(self) -> str:
-        """How long single events are predictable; empty where it is not known what becomes of an error (see `predictability`)."""
+        """Return one line on how long single events are predictable.
+
+        It is empty if the growth of an error is not known for the problem (see `predictability`).
+        """
         from stickslip.observables.predictability import is_followed, predictability
 
         return predictability(self).text if is_followed(self.problem) else ""
 
     @cached_property
     def selection_note(self) -> str:
-        """Whether the answer rests on the selection rule."""
+        """Return one line that says whether the result depends on the selection rule."""
         from stickslip.observables.rule_influence import selection_note
 
         return selection_note(self)

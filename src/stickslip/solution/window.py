@@ -23,15 +23,16 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 MARGIN = 0.1
-"""Time shown on either side of an event, as a share of its duration."""
+"""Default time shown on either side of an event, as a share of its duration."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Window(Readings):
-    """The run around a slip event. Times in s since the event began: exact to the rounding of these times, however late it is.
+    """The run around a slip event.
 
-    No time since the start of the run enters in one number. `event` is the event's row of the catalogue; `before` and `after` (s)
-    are what `curve` and `plot` show. Values can be read at any time within the run.
+    Times are in s since the event began. They are exact to their own rounding, however late in the run the event is, because the
+    time since the start of the run is never stored as a single number. `event` is the event's row of the catalogue. `before` and
+    `after` (s) are the times around its start that `curve` and `plot` show; values can be read at any time within the run.
     """
 
     solution: Solution
@@ -42,46 +43,82 @@ class Window(Readings):
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # read only
-        """The problem that was run."""
+        """Return the problem that was run."""
         return self.solution.problem
 
     @property
     def epoch(self) -> Epoch:
-        """When the event begins: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
+        """Return the start of the event: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
         return self.history.epoch
 
     @property
     def shown(self) -> tuple[float, float]:
-        """Local times (s) from which and up to which it is drawn."""
+        """Return the first and the last local time (s) that figures show."""
         first, last = self.history.span
         return max(-self.before, first), min(self.after, last)
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """What there is to draw: that of a run, with the slip since the event began."""
+        """Return the names of the quantities to draw: those of a run, but with the slip since the event began."""
         return ("event_slip", *super().curves[1:])
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Shocks in the time that is shown: as `Solution.shocks`, in local time."""
+        """Return the shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
         return shocks_table(self.history, *self.shown)
 
     def event_slip(self, t: ArrayLike) -> Floats:
-        """Slip (m) since the event began, at local times t (s): with all its digits, however much has slipped before."""
+        """Return the slip since the event began.
+
+        Parameters
+        ----------
+        t : array_like
+            Local times, s.
+
+        Returns
+        -------
+        ndarray
+            Slip (m), of the shape of `t`. It has full precision however large the slip before the event is.
+        """
         origin, _ = self._at(0.0, "right")
         at, shape = self._at(t, "right")
         return self.history.slipped_since(origin, at).reshape(shape)
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
-        """Energies at local times t (s), as differences from the start of the event: see `stickslip.observables.energy.balance`."""
+        """Return the energies as differences from the start of the event.
+
+        Parameters
+        ----------
+        t : array_like
+            Local times, s.
+
+        Returns
+        -------
+        xarray.Dataset
+            See `stickslip.observables.energy.balance.energy`.
+        """
         from stickslip.observables.energy.balance import energy
 
         return energy(self, t, origin=0.0)
 
     def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-        """Slip since the event began, slip rate, traction and load at local times t (s), with units, provenance and the epoch.
+        """Return slip since the event began, slip rate, traction and load, with units, provenance and the epoch.
 
-        With x (m) also what is inside the slab: see `Solution.dataset`.
+        Parameters
+        ----------
+        t : array_like
+            Local times (s), one-dimensional.
+        x : array_like, optional
+            Distances from the contact (m), one-dimensional: adds the quantities inside the slab, as in `Solution.dataset`.
+
+        Returns
+        -------
+        xarray.Dataset
+
+        Raises
+        ------
+        InputError
+            For more than 2e7 values of a quantity.
         """
         from stickslip.io.netcdf import window_dataset
 
@@ -89,7 +126,7 @@ class Window(Readings):
         return window_dataset(self, t, x)
 
     def plot(self) -> Figure:
-        """Slip since the event began, slip rate, traction and load against local time."""
+        """Plot slip since the event began, slip rate, traction and load against local time."""
         from stickslip.figures.runs.run import plot_run
 
         return plot_run(self)
@@ -101,7 +138,7 @@ class Window(Readings):
 
 
 def window_around(solution: Solution, event: pd.Series, before: float | None, after: float | None) -> Window:
-    """The window on an event; see `Solution.window`."""
+    """Return the window on an event; see `Solution.window`."""
     lasts = float(event.duration)
     history = solution.history.seen_from(Epoch(int(event.start_row), float(event.start_offset)))
     if math.isnan(lasts):

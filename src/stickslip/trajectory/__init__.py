@@ -1,1 +1,1 @@
-"""What a run leaves: its history, slip events, tables, status and checkpoints."""
+"""Data that a run leaves: its history, slip events, tables, status and checkpoints."""

@@ -1,4 +1,4 @@
-"""Where the engine stands in a run: with the history up to there, all it needs to go on as if it had never stopped."""
+"""Checkpoints: with the history up to there, a checkpoint lets a run continue as if it had never stopped."""
 
 from __future__ import annotations
 
@@ -23,34 +23,34 @@ DECIDE = (
     "solution",
     "trajectory",
 )
-"""Folders of the package whose code decides what a run gives."""
+"""Folders of the package whose code decides the result of a run."""
 
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """Copies of everything that changes in a run but its history (see `layout`)."""
+    """Copies of everything that changes in a run, except its history (see `layout`)."""
 
     state: Floats
     count: Integers
     scratch: Floats
-    branch: Floats  # Setup.branch, which moves with slip for some laws
-    stick_to: Floats  # (1,): Setup.par[STICK_TO], which moves with it
-    crossings: Floats  # times (s) of the last crossings of a moving level
+    branch: Floats  # Setup.branch, which changes with slip for some laws
+    stick_to: Floats  # (1,): Setup.par.stick_to, which changes with it
+    crossings: Floats  # times (s) of the last crossings of a level of the selection rule that moves with slip
     engine: str  # hash of the code that made it
 
     @property
     def length(self) -> int:
-        """Pieces of the history up to here; a run that has ended may have cut some more to its end."""
+        """Return the number of pieces in the history at the checkpoint; a run that has ended may hold more, cut at its end."""
         return int(Counts(self.count).length)
 
 
 ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engine")
-"""Names of the arrays in it."""
+"""Names of the arrays in a checkpoint."""
 
 
 @cache
 def engine() -> str:
-    """A hash of the code that decides what a run gives: another one may go on in other digits."""
+    """Return a hash of the code that decides the result of a run; a run that continues with other code may differ in its digits."""
     package, digest = Path(__file__).parents[1], hashlib.sha256(SOURCES.encode())
     for path in sorted(path for folder in DECIDE for path in (package / folder).rglob("*.py")):
         digest.update(path.read_bytes())

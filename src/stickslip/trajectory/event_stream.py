@@ -1,7 +1,7 @@
-"""Slip events as they become known, each once, while the run that makes them goes on.
+"""Stream of slip events: each event is reported once, as soon as it is final, while the run continues.
 
-An event is known when nothing that comes can change its row in the table: when the contact has come to rest (or turned) behind
-its end, or the slip rate has risen again. What is told does not depend on when the stream is asked.
+An event is final when nothing that follows can change its row in the table: when the contact has come to rest (or reversed its
+direction) after the end of the event, or the slip rate has risen again. The rows do not depend on when the stream is asked.
 """
 
 from __future__ import annotations
@@ -31,31 +31,34 @@ class Place(NamedTuple):
 
 
 BEFORE = Place(-1, 0.0)
+"""A place before the first piece, for a stream that has reported no event yet."""
 WAVES_OF = 3
-"""Round trips before an event whose waves are in the slab when it begins, or have just left it."""
+"""Number of round trips before an event whose waves are in the slab when it begins, or have just left it."""
 
 
 @dataclass
 class EventStream:
-    """Follows a history. `first` is the piece from which it still needs it, and what stands in the body then; `told` counts the
-    events it has told.
+    """Follow a history and report its slip events.
+
+    `first` is the first piece that the stream still has to search, and `told` the number of events that it has reported. It also
+    needs the waves that travel in the body when piece `first` begins (see `needed`).
     """
 
     problem: Problem
     threshold: float
     ramp: float
     first: int = 0
-    last_start: Place = BEFORE  # of the last event that was told
+    last_start: Place = BEFORE  # of the last event that was reported
     told: int = 0
     energies: bool = False
-    """Whether rows have the energies of events too."""
+    """True if the rows also hold the energies of the events."""
 
     def needed(self, store: Store) -> int:
-        """The first piece without which new events could not be told, and the energy of the waves under way."""
+        """Return the first piece of the history that is needed for new events and for the energy of the waves under way."""
         return int(np.searchsorted(store.row, store.row[self.first] - WAVES_OF))
 
     def look(self, store: Store, length: int) -> Look:
-        """What is new in the first `length` pieces of a history."""
+        """Return the new events in the first `length` pieces of a history."""
         history = self.history(store, length)
         events = SlipEvents.of(history, self.threshold, self.first)
         place = events.piece[0] + 0.5 * events.xi[0]
@@ -66,13 +69,13 @@ class EventStream:
         return Look(self, history, events, old, by[: open_from[0]] if open_from.size else by)
 
     def history(self, store: Store, length: int) -> History:
-        """The history so far."""
+        """Return the history so far."""
         kept, row = at.trimmed(store, length), row_time(self.problem)
         reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.whole) else 0.0
         return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:
-        """The history has lost its first pieces."""
+        """Shift the piece numbers after the given number of pieces was removed from the start of the history."""
         self.first -= pieces
         self.last_start = Place(self.last_start.piece - pieces, self.last_start.xi)
         assert self.first >= 0
@@ -80,25 +83,25 @@ class EventStream:
 
 @dataclass(frozen=True)
 class Look:
-    """New events in a stream; they count as told when `tell` is called."""
+    """New events in a stream; they count as reported once `tell` is called."""
 
     stream: EventStream
     history: History
     events: SlipEvents
-    """Of which the first `old` were told before."""
+    """All events that were found; the first `old` of them were reported before."""
     old: int
     known_by: Integers
-    """For each new event the piece by which it is known."""
+    """For each new event that is final, the piece from which on it is final."""
 
     def table(self, *, unknown: bool = False) -> pd.DataFrame:
-        """Rows of the new events; on demand also of those that the end of the history leaves open."""
-        before = min(self.old, 1)  # whose start says when the first new one recurs
+        """Return the rows of the new events; with `unknown`, also of those that are not final at the end of the history."""
+        before = min(self.old, 1)  # the recurrence time of the first new event counts from its start
         wanted = slice(self.old - before, None if unknown else self.old + len(self.known_by))
         events = self.events.some(wanted)
         return with_energies(self.history, events, self.stream.energies).iloc[before:].reset_index(drop=True)
 
     def tell(self) -> None:
-        """The new events are old ones from now on; what lies well before the last of them is no longer needed."""
+        """Mark the new events as reported, so that the history well before the last of them is no longer needed."""
         if not len(self.known_by):
             return
         stream, last = self.stream, self.old + len(self.known_by) - 1

@@ -1,4 +1,4 @@
-"""The history of a run: pieces of load and slip rate, and how to read them at any time."""
+"""The history of a run: pieces that hold load and slip rate as polynomials, and their evaluation at any time."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Side = Literal["left", "right"]
 
 
 def horner(coefficients: Floats, x: Floats) -> Floats:
-    """Polynomials (one a row, ascending) at x (one value a row)."""
+    """Evaluate polynomials (one per row, ascending coefficients) at x (one value per row)."""
     value = coefficients[:, -1].copy()
     for k in range(coefficients.shape[1] - 2, -1, -1):
         value *= x
@@ -32,7 +32,7 @@ def horner(coefficients: Floats, x: Floats) -> Floats:
 
 @kernel
 def add_up(values: Floats, past: Integers, sums: Floats) -> None:
-    """Sums of the values that end at places, each from where the one before ends, term by term."""
+    """Add up consecutive groups of values, term by term: group n ends before index past[n] and begins where group n - 1 ends."""
     begin = 0
     for n in range(len(past)):
         sums[n] = 0.0
@@ -42,60 +42,63 @@ def add_up(values: Floats, past: Integers, sums: Floats) -> None:
 
 
 class Epoch(NamedTuple):
-    """A moment without rounding: whole rows (round trips of a slab) since t = 0, and an offset in s."""
+    """A moment without rounding: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
 
     row: int
     offset: float
 
 
 ROUNDING = 1e-13
-"""Of the offsets of pieces that follow each other, relative to a row."""
+"""Rounding of the offsets of consecutive pieces, relative to the length of a row."""
 
 BLOCK = 1024
-"""Pieces that are integrated together: keeps the memory bounded, and in the cache."""
+"""Number of pieces that are integrated together: it keeps the memory bounded, and the data in the cache."""
 
 START = Epoch(0, 0.0)
 """t = 0, the start of the run."""
 
 NO_LEAPS = np.empty((0, 4))
+"""Table of leaps over creep (`History.creep`) without rows."""
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Times found in the history: in a piece, at a place xi in it; or at rest, where nothing was recorded.
+    """Times located in the history: each lies in a piece, at a place xi in it, or in a rest over which nothing was recorded.
 
-    There `leaped` counts the whole rows since the piece, whose echo is the load, and `last` is the last piece before that time.
+    At rest the load is an echo of `piece`: `leaped` is the number of whole rows since then (0 within a recorded piece), and
+    `last` is the last piece before the moment.
     """
 
     piece: NDArray[np.intp]
     xi: Floats
     leaped: Floats
     before: NDArray[np.bool_]
-    """Left of t = 0."""
+    """True for the left limit at t = 0."""
     last: NDArray[np.intp]
 
     @classmethod
     def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Moments:
-        """Places in the history by piece and xi."""
+        """Return the moments at places xi in recorded pieces."""
         pieces, places = np.broadcast_arrays(np.atleast_1d(np.asarray(piece, np.intp)), np.atleast_1d(np.asarray(xi, float)))
         return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool), pieces)
 
     @property
     def at_rest(self) -> NDArray[np.bool_]:
-        """Where nothing was recorded."""
+        """Return True for moments at which nothing was recorded because the contact rests."""
         return self.leaped > 0.0
 
     def recorded(self) -> Moments:
-        """The last moments up to these that were recorded: slip has been the same since."""
+        """Return the last recorded moments up to these; slip is the same at both, because the contact rests between them."""
         piece, xi = np.where(self.at_rest, self.last, self.piece), np.where(self.at_rest, 1.0, self.xi)
         return Moments(piece, xi, np.zeros(len(xi)), self.before, piece)
 
 
 @dataclass(frozen=True)
 class History:
-    """Pieces in order of time. Loads are minus the reference strength, slips minus the initial slip (see `layout.Store`).
+    """The pieces of a run in order of time.
 
-    Times go in and out as seconds since `epoch`, and are as sharp as their own rounding: take an epoch near what you look at.
+    Loads are differences from the reference strength, slips from the initial slip (see `layout.Store`). Times are seconds since
+    `epoch` and are exact to their own rounding, so an epoch near the times of interest gives the sharpest result.
     """
 
     store: Store
@@ -105,30 +108,31 @@ class History:
     duration: float
     epoch: Epoch = START
     creep: Floats = field(default_factory=NO_LEAPS.copy)
-    """Leaps over creep, one a row: round trips before it, round trips in it, bounds of the error of slip (m) where it lands and of
-    the time (s) at which that slip is reached."""
+    """Leaps over creep, one per row: round trips before it, round trips in it, and bounds of the errors of slip at its landing
+    (m) and of the time at which that slip is reached (s).
+    """
 
     def seen_from(self, epoch: Epoch) -> History:
-        """The same history with its times counted from another epoch."""
+        """Return the same history with its times counted from another epoch."""
         return replace(self, epoch=epoch)
 
     def seconds(self, row: Integers | Floats, offset: Floats) -> Floats:
-        """Times (s since the epoch) of offsets in whole rows."""
+        """Return the times (s since the epoch) of offsets (s) in whole rows."""
         return np.asarray((row - self.epoch.row) * self.row_time + (offset - self.epoch.offset))
 
     @cached_property
     def start(self) -> Floats:
-        """Time at which each piece starts, s."""
+        """Return the time at which each piece starts, s."""
         return self.seconds(self.store.row, self.store.theta_from)
 
     @cached_property
     def end(self) -> Floats:
-        """Time at which each piece ends, s."""
+        """Return the time at which each piece ends, s."""
         return self.seconds(self.store.row, self.store.theta_to)
 
     @property
     def span(self) -> tuple[float, float]:
-        """Times (s) of the start and the end of the run."""
+        """Return the times (s) of the start and the end of the run."""
         start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
         return start, start + self.duration
 
@@ -136,11 +140,14 @@ class History:
         return len(self.store.whole)
 
     def is_averaged(self, row: int) -> bool:
-        """Whether a stored row is a leap over creep: its pieces are averages over round trips."""
+        """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
         return bool((self.creep[:, 0] == row).any())
 
     def find(self, time: Floats, side: Side) -> Moments:
-        """Where the times (s, one-dimensional) lie; `side` picks the piece at a boundary. InputError outside the run."""
+        """Locate times (s, one-dimensional) in the history; `side` picks the piece at a boundary.
+
+        Raises InputError for times outside the run.
+        """
         if side not in ("left", "right"):
             raise InputError(f"side must be 'left' or 'right', got {side!r}")
         begin, end = self.span
@@ -157,7 +164,7 @@ class History:
         return found
 
     def _find_echoes(self, found: Moments, n: NDArray[np.intp], time: Floats, side: Side) -> None:
-        """Where the load at times at rest comes from: the n-th of those found behind recorded pieces."""
+        """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`."""
         row = (self.store.row[found.last[n]] - self.epoch.row).astype(float)
         rows = row + np.floor((time + self.epoch.offset - row * self.row_time) / self.row_time)
         phase = time + self.epoch.offset - rows * self.row_time
@@ -173,7 +180,7 @@ class History:
         found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
 
     def just_before(self, piece: Integers) -> Moments:
-        """The left limits at the starts of pieces."""
+        """Return the moments of the left limits at the starts of pieces."""
         last = np.maximum(piece - 1, 0)
         found = Moments(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
         n = np.flatnonzero(self.rests[last] & (piece > 0))
@@ -185,11 +192,14 @@ class History:
 
     @cached_property
     def phases(self) -> Phases:
-        """Its pieces, by phase."""
+        """Return the index of the pieces by phase."""
         return Phases.of(self.store, self.row_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """What stands in the body at the end of a row: pieces in order of phase, each from where to where in the row (s)."""
+        """Return the pieces whose waves are in the body at the end of a row.
+
+        The pieces are in order of phase; the other arrays hold the offsets (s) in the row from which and up to which each holds.
+        """
         first, past = (int(np.searchsorted(self.store.row, row, side=side)) for side in ("left", "right"))
         own = np.arange(first, past)
         low, high = self.store.theta_from[own], self.store.theta_to[own]
@@ -198,7 +208,10 @@ class History:
         return self.phases.standing(past - 1)
 
     def echo_edges(self, begin: float, end: float, most: int) -> Floats:
-        """Times (s) between two times at which echoes of recorded pieces begin, where the contact rests; none if they are many."""
+        """Return the times (s) between `begin` and `end` at which echoes of recorded pieces begin while the contact rests.
+
+        The result is empty if there are more than `most` of them.
+        """
         behind = np.append(self.start[1:], self.span[1])
         found: list[Floats] = []
         for n in np.flatnonzero(self.rests & (self.end < end) & (behind > begin)):
@@ -215,34 +228,34 @@ class History:
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
-        """Whether the contact rests behind each piece, unrecorded, until the next one or the end."""
+        """Return True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
         row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
         follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
         last = row[-1:] * self.row_time + end[-1:]
         return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.row_time), last)
 
     def placed(self, at: Moments) -> tuple[Integers, Floats]:
-        """Rows and offsets (s) of moments."""
+        """Return the rows and offsets (s) of moments."""
         store, piece, xi = self.store, at.piece, at.xi
         inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
         return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
 
     def lasting(self, begin: Moments, end: Moments) -> Floats:
-        """Time from moments to others, s, without the rounding of either."""
+        """Return the time between pairs of moments (s), without the rounding of either."""
         (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
         return np.asarray((later_row - row) * self.row_time + (later_offset - offset))
 
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
-        """Place in [0, 1] of a time `local` s after the start of a piece."""
+        """Return the place xi in [0, 1] of a time `local` s after the start of a piece."""
         speed, bend = self.store.speed[piece], self.store.bend[piece]
         root = np.sqrt(np.maximum(speed * speed + 4.0 * bend * local, 0.0))
-        pace = speed + root  # zero where a piece starts at a fold, and only at its very start
+        pace = speed + root  # zero only at the very start of a piece that starts at a fold
         return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
 
     # ---- values at moments --------------------------------------------------------------------------------------------------
 
     def excess(self, at: Moments) -> Floats:
-        """Load minus the reference strength."""
+        """Return the load minus the reference strength, Pa (block: N)."""
         value = horner(self.store.load[at.piece], at.xi)
         if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
             left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
@@ -250,22 +263,22 @@ class History:
         return np.where(at.before, self.problem.excess, value + self._gained(at))
 
     def _gained(self, at: Moments) -> Floats:
-        """By how much the load has grown in rows at rest since it was recorded."""
+        """Return the growth of the load over the rows at rest since it was recorded."""
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
         offset = self.store.theta_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
         return inflow_of(self.problem).gathered(self.store.row[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Moments) -> Floats:
-        """Slip rate, m/s."""
+        """Return the slip rate, m/s."""
         return np.where(at.before | at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
 
     def mode(self, at: Moments) -> Integers:
-        """0 at rest, +1 in slip forwards, -1 backwards."""
+        """Return the mode of the contact: 0 at rest, +1 in forward slip, -1 in backward slip."""
         return np.where(at.at_rest, 0, self.store.mode[at.piece])
 
     def grown(self, at: Moments) -> Floats:
-        """Slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
+        """Return the slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
         rate = self.store.rate[at.piece]
         powers = np.arange(1, rate.shape[1] + 1)
         straight = at.xi * horner(self.store.speed[at.piece, None] * rate / powers, at.xi)
@@ -275,12 +288,15 @@ class History:
         return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
 
     def slipped(self, at: Moments) -> Floats:
-        """Slip since the start of the run, m."""
+        """Return the slip since the start of the run, m."""
         at = at.recorded()
         return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
 
     def slipped_since(self, origin: Moments, at: Moments) -> Floats:
-        """Slip since one moment, m: summed from there, so that it has all its digits however much has slipped before."""
+        """Return the slip since one moment, m.
+
+        The sum begins at that moment, so that it has full precision however large the slip before it is.
+        """
         origin, at = origin.recorded(), at.recorded()
         begin = int(origin.piece[0])
         first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
@@ -292,7 +308,7 @@ class History:
         return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
 
     def slipped_within(self, begin: Moments, end: Moments) -> Floats:
-        """Slip from each of some recorded moments to a later one, m: as `slipped_since`, of all of them at once."""
+        """Return the slip from each of several recorded moments to a later one, m, with the precision of `slipped_since`."""
         past = np.cumsum(end.piece - begin.piece)
         crossed = np.arange(past[-1] if len(past) else 0) + np.repeat(end.piece - past, end.piece - begin.piece)
         blocks = np.array_split(crossed, len(crossed) // BLOCK + 1)
@@ -302,13 +318,13 @@ class History:
         return sums + (self.grown(end) - self.grown(begin))
 
     def state(self, at: Moments) -> Floats:
-        """State of the friction law as its formulas see it; 0 for a law without one."""
+        """Return the state of the friction law as its formulas see it; 0 for a law without a state."""
         if self.problem.friction.state is None:
             return np.zeros(len(at.xi))
         return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
 
     def friction(self, at: Moments) -> Floats:
-        """Friction traction minus the reference strength, signed with the load."""
+        """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body
         if isinstance(body, ElasticSlab) and body.contact_mass == 0.0:

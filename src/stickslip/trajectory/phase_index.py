@@ -1,8 +1,8 @@
-"""Which piece of a history holds at a phase of the round trip: the last one recorded there.
+"""Index of a history by phase: find the piece that was recorded last at a given phase of the round trip.
 
-Where the contact rests nothing is recorded: the load there is an echo of what was recorded last. Pieces are intervals of phase, in
-order of time; they are kept in a segment tree over the phases at which any of them begins or ends (Bentley 1977, unpublished; see
-de Berg et al. 2008, Computational Geometry, section 10.3), each node with its pieces in order.
+While the contact rests nothing is recorded: the load is then an echo of what was recorded last at the same phase. Pieces are
+intervals of phase in order of time. They are kept in a segment tree over all phases at which a piece begins or ends; each node
+lists its pieces in order of time (Bentley 1977, unpublished; see de Berg et al. 2008, Computational Geometry, section 10.3).
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
 
 NOTHING = -1
+"""Marks a phase at which no piece has been recorded."""
 FEW = 64
-"""Pieces that are looked at first for what stands in the body."""
+"""Number of recent pieces that are searched first for the waves in the body."""
 
 
 @kernel
 def _collect(first: Integers, past: Integers, leaves: int, place: Integers, members: Integers) -> None:
-    """Put each piece into the nodes that make up its interval, from place[node] on; without room for members only count."""
+    """Enter each piece into the nodes that make up its interval, from place[node] on; with empty `members`, only count them."""
     for n in range(len(first)):
         low, high = first[n] + leaves, past[n] + leaves
         while low < high:
@@ -46,7 +47,7 @@ def _put(node: int, n: int, place: Integers, members: Integers) -> None:
 
 @kernel
 def _last(members: Integers, begin: int, end: int, upto: int) -> int:
-    """The largest of members[begin:end], ascending, that does not exceed upto."""
+    """Return the index of the last of members[begin:end] (ascending) that is at most `upto`; begin - 1 if there is none."""
     while begin < end:
         middle = (begin + end) // 2
         if members[middle] <= upto:
@@ -58,6 +59,7 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
 
 @kernel
 def _latest(begins: Integers, members: Integers, leaves: int, leaf: Integers, upto: Integers, found: Integers) -> None:
+    """Find, for each leaf, the last piece up to upto[q] in any node on the way from the leaf to the root."""
     for q in range(len(leaf)):
         node, best = leaf[q] + leaves, NOTHING
         while node >= 1:
@@ -70,7 +72,7 @@ def _latest(begins: Integers, members: Integers, leaves: int, leaf: Integers, up
 
 @kernel
 def _standing(begins: Integers, members: Integers, upto: int, best: Integers) -> None:
-    """For every node, from the root down, the last piece up to `upto` that covers it."""
+    """Find, for every node from the root down, the last piece up to `upto` that covers it."""
     best[0] = NOTHING
     for node in range(1, len(best)):
         place = _last(members, begins[node], begins[node + 1], upto)
@@ -79,16 +81,19 @@ def _standing(begins: Integers, members: Integers, upto: int, best: Integers) ->
 
 @dataclass(frozen=True, eq=False)
 class Phases:
-    """The pieces of a history, to be found by phase (offset in the round trip, s) and by when they were recorded."""
+    """The pieces of a history, indexed by phase (offset in the round trip, s) and by the order in which they were recorded."""
 
     edges: Floats
-    leaves: int  # a power of two, not less than the intervals between the edges
+    leaves: int  # a power of two, at least the number of intervals between the edges
     begins: Integers
     members: Integers
 
     @classmethod
     def of(cls, store: Store, row_time: float) -> Self:
-        """Of the pieces of a history with rows so long (s). Leaps over creep, which are longer, are averages, and stand nowhere."""
+        """Index the pieces of a history whose rows last `row_time` (s).
+
+        Leaps over creep are longer than a row; they are averages, not waves in the body, and are left out.
+        """
         stands = store.theta_to <= row_time
         edges = np.unique(np.concatenate([store.theta_from[stands], store.theta_to[stands]]))
         first, past = (np.where(stands, np.searchsorted(edges, theta), 0) for theta in (store.theta_from, store.theta_to))
@@ -101,9 +106,9 @@ class Phases:
         return cls(edges, leaves, begins, members)
 
     def latest(self, phase: Floats, upto: Integers, side: Literal["left", "right"] = "right") -> Integers:
-        """The last piece up to `upto` at each phase; at an edge, that on the `side`. -1 where there is none.
+        """Return the last piece up to `upto` at each phase, or -1 if there is none; `side` picks the piece at an edge.
 
-        Beyond the first and last edge (by rounding) what holds next to them.
+        A phase that rounding puts before the first or after the last edge belongs to the interval next to it.
         """
         leaf = np.searchsorted(self.edges, phase, side=side) - 1
         found = np.empty(len(leaf), np.int64)
@@ -111,7 +116,10 @@ class Phases:
         return found
 
     def standing(self, upto: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """What stands in the body behind the piece `upto`: pieces in order of phase, each from where to where (s)."""
+        """Return the pieces whose waves are in the body after the piece `upto`.
+
+        The pieces are in order of phase; the other arrays hold the phases (s) from which and up to which each holds.
+        """
         best = np.empty(2 * self.leaves, np.int64)
         _standing(self.begins, self.members, upto, best)
         leaf = best[self.leaves : self.leaves + len(self.edges) - 1]
@@ -122,7 +130,10 @@ class Phases:
 
 
 def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Floats, Floats]:
-    """What stands in the body behind a history, as `Phases.standing`: looks back no further than to where all phases are known."""
+    """Return the pieces whose waves are in the body after the whole history, as `Phases.standing` does.
+
+    The search goes back only until every phase is known.
+    """
     looked = FEW
     while True:
         first = max(len(store.whole) - looked, 0)

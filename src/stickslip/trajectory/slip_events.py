@@ -1,4 +1,4 @@
-"""Slip events along a history: where each begins, is fastest and ends, and by which piece it is known what it left behind."""
+"""Slip events in a history: where each begins, is fastest and ends, and from which piece on its aftermath is known."""
 
 from __future__ import annotations
 
@@ -13,19 +13,22 @@ from stickslip.engine.state.layout import S_MODE, TERMS, Floats, Integers, Store
 from stickslip.trajectory.history import History, Moments
 
 MAXIMA_PER_PIECE = 32
+"""Largest number of extrema of the slip rate, or of crossings of the threshold, in one piece."""
 SAME = 1e-12
-"""Relative distance of a slip rate from the threshold within which rounding may decide on which side it is."""
+"""Relative distance of a slip rate from the threshold below which rounding may decide on which side it is."""
 NOT_YET = -1
+"""Marks an event whose aftermath is not known within the history."""
 
 
 @kernel
 def turning_points(
     store: Store, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
 ) -> int:
-    """Walk along |slip rate| from a piece on: note where and how much it is at starts, ends, extrema, crossings of the threshold.
+    """Walk along |slip rate| from piece `begin` on and record its starts, ends, extrema and crossings of the threshold.
 
-    kind: 0 a point above the threshold, +1 the rate rises above it here, -1 it falls to it here. Returns the number of points,
-    or -1 if the arrays are too short.
+    For each point the arrays receive the piece, the place xi in it, the rate (m/s), and the kind: 0 for a point above the
+    threshold, +1 if the rate rises above the threshold there, -1 if it falls to it. Returns the number of points, or -1 if the
+    arrays are too short.
     """
     found = 0
     p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
@@ -66,7 +69,10 @@ def turning_points(
 
 @kernel
 def is_monotone(p: Floats, slope: Floats) -> bool:
-    """Whether bounds show at once that p only rises or only falls on (0, 1]; `slope` receives its derivative or minus that."""
+    """Return True if bounds show at once that p only rises or only falls on (0, 1].
+
+    `slope` receives the derivative of p, with the sign that makes it start at or above zero.
+    """
     way = 1.0 if p[1] >= 0.0 else -1.0
     for k in range(TERMS - 1):
         slope[k] = way * (k + 1) * p[k + 1]
@@ -75,7 +81,10 @@ def is_monotone(p: Floats, slope: Floats) -> bool:
 
 @kernel
 def keeps_its_sign(c: Floats) -> bool:
-    """Whether bounds show at once that p does not change sign on (0, 1]: Horner's rule in intervals, leading zeros divided out."""
+    """Return True if bounds show at once that the polynomial does not change sign on (0, 1].
+
+    The bounds come from Horner's rule in interval arithmetic, after leading zeros are divided out.
+    """
     low = high = 0.0
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:
@@ -103,14 +112,17 @@ def _note(
 
 @kernel
 def highest(values: Floats, begin: Integers, past: Integers, found: Integers) -> None:
-    """Where the largest (the first, of several) of values[begin:past] is, for each of some stretches."""
+    """Find the index of the largest of values[begin:past] (the first, if several are equal) for each of several ranges."""
     for n in range(len(begin)):
         found[n] = begin[n] + np.argmax(values[begin[n] : past[n]])
 
 
 @kernel
 def count_pulses(rate: Floats, begin: Integers, past: Integers, pulses: Integers) -> None:
-    """Maxima of |v| separated by minima below half the lower of their neighbours, in each of some stretches; 0 at rest."""
+    """Count the pulses in each of several ranges of turning points; the result is 0 for a range at rest.
+
+    Pulses are maxima of |v| separated by minima below half the lower of the two.
+    """
     for n in range(len(begin)):
         pulses[n], peak, low = 0, 0.0, 0.0
         for k in range(begin[n], past[n]):
@@ -125,7 +137,7 @@ def count_pulses(rate: Floats, begin: Integers, past: Integers, pulses: Integers
 
 @kernel
 def rises_over(c: Floats, rate: float) -> bool:
-    """Whether |slip rate| is seen above a rate in a piece."""
+    """Return True if |slip rate| exceeds a rate at any of four places of a piece."""
     highest = 0.0
     for k in range(1, 5):
         highest = max(highest, abs(evaluate(c, 0.25 * k)))
@@ -134,7 +146,7 @@ def rises_over(c: Floats, rate: float) -> bool:
 
 @kernel
 def find_aftermath(store: Store, piece: Integers, xi: Floats, by: Integers) -> None:
-    """See `SlipEvents.known_by`."""
+    """Find the piece from which on the aftermath of each event is known; see `SlipEvents.known_by`."""
     for n in range(len(piece)):
         mode, rate = store.whole[piece[n], S_MODE], abs(evaluate(store.rate[piece[n]], xi[n]))
         by[n] = NOT_YET
@@ -145,7 +157,7 @@ def find_aftermath(store: Store, piece: Integers, xi: Floats, by: Integers) -> N
 
 
 def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, Any, Any]:
-    """`turning_points` with enough room, in order of time."""
+    """Return the points of `turning_points` in order of time, with arrays that are large enough for all of them."""
     room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
     while True:
         piece, kind = np.empty(room, np.int64), np.empty(room, np.int64)
@@ -158,18 +170,18 @@ def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, 
 
 
 class SlipEvents(NamedTuple):
-    """Slip events in order of time. Begin, peak and end are places in the history: pieces, and xi in each."""
+    """Slip events in order of time. Their begin, peak and end are places in the history: pieces, and xi in each."""
 
     piece: Integers  # (3, events)
     xi: Floats  # (3, events)
     peak_rate: Floats
     pulses: Integers
     is_over: NDArray[np.bool_]
-    """Whether the slip rate falls to the threshold within the history."""
+    """True if the slip rate falls to the threshold within the history."""
 
     @classmethod
     def of(cls, history: History, threshold: float, first: int = 0) -> Self:
-        """Maximal intervals with |slip rate| above the threshold (m/s) from a piece on."""
+        """Find the maximal intervals with |slip rate| above the threshold (m/s), from piece `first` on."""
         piece, xi, rate, kind = walk(history, threshold, first)
         begin = np.flatnonzero(kind == 1)
         past = np.append(begin, len(kind))[1:]
@@ -180,33 +192,35 @@ class SlipEvents(NamedTuple):
         return cls(piece[places], xi[places], rate[top], pulses, kind[past - 1] == -1)
 
     def some(self, which: slice) -> Self:
-        """Some of the events."""
+        """Return a part of the events."""
         return self._replace(**{name: column[..., which] for name, column in self._asdict().items()})
 
     @property
     def begin(self) -> Moments:
-        """When they begin."""
+        """Return the moments at which the events begin."""
         return Moments.inside(self.piece[0], self.xi[0])
 
     @property
     def peak(self) -> Moments:
-        """When they are fastest."""
+        """Return the moments at which the slip rate is largest."""
         return Moments.inside(self.piece[1], self.xi[1])
 
     @property
     def end(self) -> Moments:
-        """When they end, or the history does."""
+        """Return the moments at which the events end, or the history does."""
         return Moments.inside(self.piece[2], self.xi[2])
 
     def largest(self, values: Floats) -> Floats:
-        """Of values by piece of the history, the largest in each event."""
+        """Return the largest value in each event, from values given for each piece of the history."""
         ends = np.stack([self.piece[0], self.piece[2] + 1], axis=1).ravel()
         found: Floats = np.maximum.reduceat(np.append(values, np.nan), ends)[::2] if len(ends) else np.empty(0)
         return found
 
     def known_by(self, history: History) -> Integers:
-        """The piece by which it is known what each leaves behind: there the contact has come to rest or turned, or the slip rate is
-        seen above that at the end of the event. NOT_YET where the history ends before.
+        """Return the piece from which on it is known what each event leaves behind; NOT_YET if the history ends before that.
+
+        In that piece the contact has come to rest or reversed its direction, or the slip rate exceeds its value at the end of the
+        event.
         """
         by = np.empty(len(self.pulses), np.int64)
         find_aftermath(history.store, self.piece[2], self.xi[2], by)

@@ -1,4 +1,4 @@
-"""What ended a run, and what to try if it failed."""
+"""Statuses: what ended a run, and what to try if it failed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from stickslip.engine.state.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRI
 
 @dataclass(frozen=True)
 class Status:
-    """Name, message and whether the run reached its end."""
+    """The end of a run: the name of the status, a message, and `ok`, which is true if the run got as far as it was meant to."""
 
     name: str
     message: str
@@ -20,7 +20,7 @@ class Status:
 
 
 def rounding_note(steps: int, share: float) -> str:
-    """Return one line on steps in which rounding in the law's formula is larger than the tolerance; empty where there are none."""
+    """Return one line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
     if steps == 0:
         return ""
     return (
@@ -30,10 +30,15 @@ def rounding_note(steps: int, share: float) -> str:
 
 
 FULL_HISTORY = -2
+"""The history has reached its limit of pieces."""
 INTERRUPTED = -3
+"""The user stopped the run."""
 ENOUGH_EVENTS = -4
+"""The run has reached the number of slip events that was asked for."""
 UNDER_WAY = -5
+"""The solution comes from a checkpoint of a run that continued afterwards."""
 BAD_PARAMETERS = -6
+"""The parameters of a member of a batch make no valid problem."""
 
 STATUSES = {
     FINISHED: Status("finished", "the run reached its duration", True),
@@ -67,3 +72,4 @@ STATUSES = {
     BAD_PARAMETERS: Status("bad parameters", "a member of a batch whose numbers make no problem", False),
     UNDER_WAY: Status("under way", "a checkpoint of a run that went on: what is there is valid up to this time", False),
 }
+"""Status for each code: those of the engine (`layout`) are not negative, the others are defined above."""

@@ -1,4 +1,4 @@
-"""Tables of a run: slip events and shocks."""
+"""Tables of a run: slip events, shocks and leaps over creep."""
 
 from __future__ import annotations
 
@@ -46,24 +46,29 @@ ENERGY_COLUMNS = {
     "heat": ("energy", "friction heat, from the law"),
     "balance": ("energy", "released + work - heat - damped: zero for an exact solution"),
 }
+"""Columns that energies add to the catalogue: unit and meaning, as in EVENT_COLUMNS."""
 
 CAUSES = ("", "start", "fold", "echo", "loading", "healing")
+"""Names of the causes of shocks, by their code in the history; code 0 is no shock."""
 
 
 def default_event_rate(problem: Problem) -> float:
-    """1e-6 S (range of mu) / Z, m/s; for the block sqrt(K m) stands for Z."""
+    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
     body = problem.body
     resistance = body.impedance if isinstance(body, ElasticSlab) else np.sqrt(body.stiffness * body.mass)
     return 1e-6 * problem.normal * problem.friction.variation / resistance
 
 
 def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
-    """One row a maximal interval with |slip rate| above the threshold (m/s); columns as in EVENT_COLUMNS, and ENERGY_COLUMNS."""
+    """Return a table with one row per maximal interval in which |slip rate| exceeds the threshold (m/s).
+
+    The columns are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`.
+    """
     return with_energies(history, SlipEvents.of(history, threshold), energies)
 
 
 def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
-    """One row an event, with its energies if they are wanted."""
+    """Return a table with one row per event, including the energies if they are wanted."""
     from stickslip.observables.energy.balance import event_energies
 
     table = event_rows(history, events)
@@ -71,7 +76,7 @@ def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.Data
 
 
 def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
-    """One row an event."""
+    """Return a table with one row per event and the columns of EVENT_COLUMNS."""
     import pandas as pd
 
     begin, peak, end = events.begin, events.peak, events.end
@@ -103,7 +108,7 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
 
 
 def friction_before(history: History, begin: Moments) -> Floats:
-    """Left limit of the traction (minus the reference)."""
+    """Return the traction minus the reference strength just before events begin (left limit)."""
     at_once = begin.xi == 0.0
     friction = np.empty(len(at_once))
     friction[at_once] = history.friction(history.just_before(begin.piece[at_once]))
@@ -112,10 +117,10 @@ def friction_before(history: History, begin: Moments) -> Floats:
 
 
 def friction_after(history: History, events: SlipEvents) -> Floats:
-    """Traction (minus the reference) after events: at rest, where the slip rate falls on to zero from their ends.
+    """Return the traction minus the reference strength after events.
 
-    The traction of a law that strengthens as the rate vanishes is another one an instant before rest: it says nothing of what
-    an event left behind.
+    If the slip rate falls from the end of the event to zero, this is the traction at rest. The traction of a law that strengthens
+    as the rate vanishes is different an instant before rest, and would not describe what the event left behind.
     """
     by, end, mode = events.known_by(history), events.end, history.store.mode
     rests = (by != NOT_YET) & (mode[by] != mode[end.piece])
@@ -125,7 +130,7 @@ def friction_after(history: History, events: SlipEvents) -> Floats:
 
 
 def shocks_table(history: History, first: float = -np.inf, last: float = np.inf) -> pd.DataFrame:
-    """One row a jump of the slip rate between two times (s)."""
+    """Return a table with one row per jump of the slip rate between two times (s)."""
     import pandas as pd
 
     piece = np.flatnonzero((history.store.cause > 0) & (history.start >= first) & (history.start <= last))
@@ -143,7 +148,7 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
 
 
 def creep_table(history: History) -> pd.DataFrame:
-    """One row a leap over creep."""
+    """Return a table with one row per leap over creep; for the columns see `Solution.creep`."""
     import pandas as pd
 
     row, trips, error, delay = history.creep.T
@@ -153,7 +158,7 @@ def creep_table(history: History) -> pd.DataFrame:
 
 
 def creep_note(creep: Floats) -> str:
-    """One line on the leaps over creep of `History.creep`; empty where there are none."""
+    """Return one line on the leaps over creep in `History.creep`; empty if there are none."""
     if not len(creep):
         return ""
     leaps, (_, trips, error, delay) = len(creep), creep.T
@@ -162,7 +167,7 @@ def creep_note(creep: Floats) -> str:
 
 
 def rule_in_force(problem: Problem) -> str:
-    """The selection rule, where the contact equation has several solutions at some load (and slip); else empty."""
+    """Return the selection rule if the contact equation has several solutions at some load (and slip), else an empty string."""
     if not is_algebraic(problem):
         return ""
     several = folds_move(problem) or uniqueness(problem).regime != "regular"

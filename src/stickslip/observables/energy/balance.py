@@ -1,9 +1,9 @@
 """Energy of a run, as differences from its start.
 
-Per unit area of the slab (J/m^2); for the block in J. The slab's elastic and kinetic energy is that of its two travelling parts,
-[(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness; which of it is kinetic takes both at the same place. The
-heat is computed from the law at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an
-identity.
+Energies are per unit area for the slab (J/m^2), and in J for the block. The elastic and kinetic energy of the slab is that of its
+two travelling waves, [(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness; the kinetic part alone needs both
+waves at the same place. The heat is computed from the law at the slip and slip rate of the run, not from the load: so the balance
+tests the run, and is not an identity.
 """
 
 from __future__ import annotations
@@ -38,16 +38,38 @@ LONG_NAMES = {
     "balance": "work - stored - heat - damped: zero for an exact solution",
     "trapped": "of the waves inside the slab, beyond a state of uniform stress",
 }
+"""Long names of the energies in a dataset."""
 
 
 def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
-    """Energies at times t (s) minus their values at `origin` (s; default: the start of the run): work, stored (elastic + kinetic),
-    elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J).
+    """Return the energies of a run as differences from their values at an origin.
 
-    Work is what the driver puts in, net of radiated: what leaves through a driver of finite impedance. Balance is
-    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that bounces to and fro in
-    waves. Raises InputError for times outside the run, and in a leap over creep or within a round trip behind it: the waves that
-    left the contact there are not known.
+    Parameters
+    ----------
+    readings : Readings
+        A run, or a window on it.
+    t : array_like
+        Times, s.
+    origin : float, optional
+        Time at which the differences are zero, s. The default is the start of the run.
+
+    Returns
+    -------
+    xarray.Dataset
+        work, stored (elastic + kinetic), elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no
+        difference (slab: J/m^2, block: J).
+
+    Raises
+    ------
+    InputError
+        For times outside the run, and for times in a leap over creep or within a round trip after it: the waves that left the
+        contact there are not known.
+
+    Notes
+    -----
+    Work is what the driver puts in, net of radiated, which is what leaves through a driver of finite impedance. Balance is
+    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in
+    waves.
     """
     time = np.atleast_1d(np.asarray(t, float))
     history = readings.history
@@ -61,9 +83,10 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
 
 
 def event_energies(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
-    """Energies of slip events from their first to their last moments: the columns of `trajectory.tables.ENERGY_COLUMNS`.
+    """Return the energies of slip events from their first to their last moments.
 
-    What an event does is integrated over the event alone: its digits do not depend on what the run did before.
+    The keys are the columns of `trajectory.tables.ENERGY_COLUMNS`. The energies are integrated over
+    each event alone, so their digits do not depend on the run before it.
     """
     parts = (_slab_events if isinstance(history.problem.body, ElasticSlab) else _block_events)(history, first, last)
     parts["heat"] = between(history, first, last, _heating(history))
@@ -101,7 +124,7 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
 
 
 def trapped_note(solution: Solution) -> str:
-    """One line on the waves that bounce in the slab at the end of a run; empty for a block, which has none."""
+    """Return one line on the waves that travel in the slab at the end of a run; empty for a block, which has none."""
     history, body = solution.history, solution.problem.body
     if not isinstance(body, ElasticSlab):
         return ""
@@ -113,15 +136,15 @@ def trapped_note(solution: Solution) -> str:
 
 
 def epochs(history: History, at: Moments) -> list[Epoch]:
-    """Moments without rounding."""
+    """Return moments as epochs, without rounding."""
     return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
 
 
 def energies(history: History, at: Moments) -> dict[str, Floats]:
-    """Work, heat, damped and radiated since the start of the run, stored and elastic less a constant, kinetic and trapped, at
-    moments of a history.
+    """Return the energies at moments of a history.
 
-    All of them at exactly these moments: late in a run, too, their differences balance.
+    Work, heat, damped and radiated count from the start of the run; stored and elastic are up to a constant; kinetic and trapped
+    are absolute. All are taken at exactly the same moments, so that their differences balance late in a run too.
     """
     return _slab(history, at) if isinstance(history.problem.body, ElasticSlab) else _block(history, at)
 
@@ -164,7 +187,7 @@ def _block(history: History, at: Moments) -> dict[str, Floats]:
 
 
 def _pulling(history: History) -> Integrand:
-    """Work of the block's driver in a second."""
+    """Return the power of the block's driver as a function of moments, W."""
     problem = history.problem
 
     def power(at: Moments) -> Floats:
@@ -176,7 +199,7 @@ def _pulling(history: History) -> Integrand:
 
 
 def _at_rest(history: History, at: Moments) -> Floats:
-    """Work of the block's driver up to each moment in rests that were not recorded: it is in the spring."""
+    """Return the work of the block's driver up to each moment in rests that were not recorded, J: the spring has stored it."""
     row = history.store.row
     before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
     force, left = (history.excess(Moments.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
@@ -187,19 +210,19 @@ def _at_rest(history: History, at: Moments) -> Floats:
 
 
 def _stretching(history: History, force: Floats, later: Floats) -> Floats:
-    """Energy (J) that the block's spring gains from one force minus the reference to another."""
+    """Return the energy (J) that the block's spring gains from one force to another (both minus the reference)."""
     body = history.problem.body
     assert isinstance(body, SpringBlock)
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
 def heat(history: History, at: Moments) -> Floats:
-    """Friction heat up to each moment, from the law. Slab: J/m^2, block: J."""
+    """Return the friction heat up to each moment, from the law. Slab: J/m^2, block: J."""
     return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
 
 
 def resistance(history: History) -> Integrand:
-    """Traction against the slip (slab: Pa, block: N) while the contact slips, from the law: S mu(u, |v|)."""
+    """Return the traction against slip while the contact slips as a function of moments (slab: Pa, block: N): S mu(u, |v|)."""
     problem, law = history.problem, history.problem.friction
 
     def traction(at: Moments) -> Floats:
@@ -212,13 +235,13 @@ def resistance(history: History) -> Integrand:
 
 
 def _heating(history: History) -> Integrand:
-    """Friction heat in a second."""
+    """Return the power of friction heat as a function of moments (slab: W/m^2, block: W)."""
     traction = resistance(history)
     return lambda at: traction(at) * np.abs(history.rate(at))
 
 
 def _damping(history: History) -> Integrand:
-    """What the block's damping dissipates in a second."""
+    """Return the power that the block's damping dissipates as a function of moments, W."""
     body = history.problem.body
     assert isinstance(body, SpringBlock)
     damping = body.damping

@@ -1,9 +1,10 @@
-"""Slip events as seismologists account for them: where the energy goes, stress drops, apparent stress, efficiencies.
+"""Energy budget of slip events as seismologists define it: parts of the energy, stress drops, apparent stress, efficiencies.
 
     elastic + work = kinetic + heat + damped + balance
 
-With `waves` = what is radiated through the driver, what the slab traps at the end more than at the start, and what the damping of a
-block takes, which is to a block what radiation is to a slab. Waves of events before may feed an event: then it is negative.
+`waves` is the sum of three energies: what is radiated through the driver, what is trapped in the slab at the end beyond what was
+trapped at the start, and what the damping of a block dissipates, which is to a block what radiation is to a slab. The waves of
+earlier events may feed an event; then `waves` is negative.
 Source: Kanamori & Brodsky 2004, Rep. Prog. Phys. 67, 1429; Kanamori & Rivera 2006, AGU Geophysical Monograph 170, 3.
 """
 
@@ -49,11 +50,14 @@ ENERGETICS_COLUMNS = {
 
 
 ROUNDING = 1e-12
-"""Of a stress drop, relative to the normal load."""
+"""Rounding of a stress drop, relative to the normal stress (block: force)."""
 
 
 def energetics_table(history: History, threshold: float) -> pd.DataFrame:
-    """One row a slip event above a threshold (m/s); columns as in ENERGETICS_COLUMNS. Ratios of nothing to nothing are NaN."""
+    """Return a table with one row per slip event above a threshold (m/s) and the columns of ENERGETICS_COLUMNS.
+
+    A ratio of zero to zero is NaN.
+    """
     import pandas as pd
 
     events = SlipEvents.of(history, threshold)
@@ -102,17 +106,18 @@ def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Float
 
 
 def extreme_tractions(history: History, begin: Moments, pulses: Pulses) -> tuple[Floats, Floats]:
-    """Tractions against the slip of events: at rest before each, and the smallest of its pulses (Pa, block: N)."""
+    """Return two tractions against the slip of each event (Pa, block: N): at rest before it, and the smallest of its pulses."""
     smallest = np.full(len(begin.piece), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
     return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
 
 
 def friction_at_rest_before(history: History, begin: Moments) -> Floats:
-    """Traction (minus the reference) at rest before the slip in which events begin: the load, also where it only turns round.
+    """Return the traction minus the reference strength at rest before the slip in which each event begins.
 
-    Of a law that never sticks: just before the event. A block, or a contact with mass, moves for a while before its slip rate
-    counts as an event: where friction falls at once it has its sliding value by then.
+    This is the load, also if the contact does not rest but only reverses its direction. A block, or a contact with mass, moves
+    for a while before its slip rate counts as an event, and friction that falls at once has its sliding value by then; so the
+    traction is taken before the slip, not before the event. For a law that never sticks it is the traction just before the event.
     """
     if not history.problem.friction.sticks:
         return friction_before(history, begin)

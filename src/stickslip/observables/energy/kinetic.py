@@ -1,7 +1,8 @@
-"""Kinetic energy inside the slab: both waves at the same place, Z v = (A + B) / 2 with A = beta on its way and B = w on its way.
+"""Kinetic energy inside the slab, from both waves at the same place: Z v = (A + B) / 2.
 
-Between the places where a piece of either wave ends both are smooth in the travel time from the contact, but for a square root at
-a fold: with s^2 (3 - 2 s) for the place in such a stretch they are smooth in s up to its ends.
+A is the beta that is on its way to the contact, B the w that is on its way to the driver. Between the places at which a piece of
+either wave ends, both are smooth functions of the travel time from the contact, except for a square root at a fold. With
+s^2 (3 - 2 s) for the place in such an interval they are smooth functions of s up to its ends.
 """
 
 from __future__ import annotations
@@ -16,19 +17,21 @@ from stickslip.trajectory.history import Epoch, Moments
 Floats = NDArray[np.float64]
 
 PLACES = NODES**2 * (3.0 - 2.0 * NODES)
+"""Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
 SHARES = 6.0 * NODES * (1.0 - NODES) * WEIGHTS
+"""Weights of these places: the derivative of s^2 (3 - 2 s) times the weights of the rule."""
 
 
 def kinetic(waves: Waves, now: Epoch) -> float:
-    """Kinetic energy of the slab at a moment, J/m^2; without that of a contact mass.
+    """Return the kinetic energy of the slab at a moment, J/m^2, without that of a contact mass.
 
-    Raises InputError where the waves inside are not known: in a leap over creep, and within a round trip behind it.
+    Raises InputError if the waves inside are not known: in a leap over creep, and within a round trip after it.
     """
     return _Both(waves, now).kinetic()
 
 
 class _Both:
-    """The two waves in the slab at a moment; times are in s since then, places are travel times (s) from the contact."""
+    """The two waves in the slab at a moment. Times are in s since then, places are travel times (s) from the contact."""
 
     def __init__(self, waves: Waves, now: Epoch) -> None:
         self.waves, self.begun = waves, waves.begun(now)
@@ -43,7 +46,7 @@ class _Both:
         self.origin, self.leaped = (start + store.theta_from[piece])[inside], (row - store.row[piece]).astype(float)[inside]
 
     def kinetic(self) -> float:
-        """J/m^2."""
+        """Return the kinetic energy, J/m^2."""
         half = self.waves.half
         comes = self.waves.inflow.edges(self.begun, self.begun + half) - self.begun
         fronts = np.concatenate([-self.start, self.start + self.waves.round, [self.begun, half - self.begun], comes])
@@ -54,7 +57,7 @@ class _Both:
         return float((both.reshape(away.shape) ** 2 * SHARES * lengths).sum()) / (8.0 * self.waves.body.impedance)
 
     def _left(self, time: Floats) -> Floats:
-        """w plus the reference (Pa) that left the contact at these times."""
+        """Return w plus the reference (Pa) that left the contact at these times."""
         found = -self.waves.slope * (self.begun + time) - self.waves.excess
         known = np.flatnonzero(time > -self.begun) if len(self.start) else np.empty(0, np.intp)
         which = np.maximum(np.searchsorted(self.start, time[known], side="right") - 1, 0)
@@ -65,7 +68,7 @@ class _Both:
         return found
 
     def _coming(self, away: Floats) -> Floats:
-        """Load minus the reference (Pa) that will be at the contact in so much time."""
+        """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s)."""
         since, left = self.begun + away, away - self.waves.round
         of_start = self.waves.excess + self.waves.slope * since
         return np.where(since < self.waves.half, of_start, self.waves.arriving(self._left(left), self.begun + left))

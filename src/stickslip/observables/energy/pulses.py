@@ -1,8 +1,8 @@
-"""The pulses of slip events, and what each spends on weakening the contact: its fracture energy.
+"""Pulses of slip events, and their fracture energy, which is the energy that each spends on weakening the contact.
 
-Fracture energy is Tinti's breakdown work: the work of friction above the smallest traction of the pulse, from its start until that
-is reached. For a contact that weakens with slip to a residual traction it is the area between that and the curve of traction
-against slip. It is a part of the friction heat of the run, not another loss.
+Fracture energy is Tinti's breakdown work: the work of friction above the smallest traction of the pulse, from the start of the
+pulse until that traction is reached. For a contact that weakens with slip to a residual traction it is the area between that
+traction and the curve of traction against slip. It is a part of the friction heat of the run, not another loss.
 Source: Tinti et al. 2005, J. Geophys. Res. 110, B12303; Abercrombie & Rice 2005, Geophys. J. Int. 162, 406.
 """
 
@@ -35,11 +35,13 @@ PULSE_COLUMNS = {
 """Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
 
 GRID = 17
+"""Number of places on a piece at which the traction is compared to find the smallest one."""
 REFINEMENTS = 14
+"""Number of times that the grid is refined, by a factor of 8, around the smallest traction."""
 
 
 class Pulses(NamedTuple):
-    """Pulses in order of time: the event of each, where it begins, weakens most and ends, and its largest slip rate (m/s)."""
+    """Pulses in order of time: the event of each; where it begins, is weakest and ends; and its largest slip rate (m/s)."""
 
     event: NDArray[np.intp]
     begin: Moments
@@ -49,7 +51,7 @@ class Pulses(NamedTuple):
 
     @classmethod
     def of(cls, history: History, events: SlipEvents, threshold: float) -> Pulses:
-        """Of the slip events above a threshold (m/s)."""
+        """Find the pulses of the slip events above a threshold (m/s)."""
         piece, xi, rate, kind = walk(history, threshold)
         starts = np.append(np.flatnonzero(kind == 1), len(kind))
         places = [_starts(rate, begin, past) for begin, past in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)]
@@ -62,7 +64,7 @@ class Pulses(NamedTuple):
         return cls(event, begin, _weakest(history, begin, end), end, peak)
 
     def fracture(self, history: History) -> Floats:
-        """Fracture energy of each, J/m^2 (block: J)."""
+        """Return the fracture energy of each pulse, J/m^2 (block: J)."""
         traction, reference = resistance(history), history.problem.strength
 
         def power(at: Moments) -> Floats:
@@ -72,16 +74,16 @@ class Pulses(NamedTuple):
         return spent - (traction(self.weakest) - reference) * self.weakening_slip(history)
 
     def weakening_slip(self, history: History) -> Floats:
-        """Slip of each until its smallest traction, m."""
+        """Return the slip of each pulse until its smallest traction, m."""
         return np.abs(history.slipped_within(self.begin, self.weakest))
 
     def smallest_traction(self, history: History) -> Floats:
-        """Of each, against its slip (Pa, block: N)."""
+        """Return the smallest traction of each pulse against its slip (Pa, block: N)."""
         return resistance(history)(self.weakest)
 
 
 def pulses_table(history: History, threshold: float) -> pd.DataFrame:
-    """One row a pulse of the slip events above a threshold (m/s); columns as in PULSE_COLUMNS."""
+    """Return a table with one row per pulse of the slip events above a threshold (m/s) and the columns of PULSE_COLUMNS."""
     import pandas as pd
 
     events = SlipEvents.of(history, threshold)
@@ -103,7 +105,10 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
 
 
 def _starts(rate: Floats, begin: int, past: int) -> list[int]:
-    """Where the pulses of an event begin among the turning points of |v|: as `trajectory.slip_events.count_pulses` counts them."""
+    """Return the indices at which the pulses of an event begin among the turning points of |v|.
+
+    The pulses are those that `trajectory.slip_events.count_pulses` counts.
+    """
     found: list[int] = []
     peak, low = 0.0, begin
     for k in range(begin, past):
@@ -120,7 +125,10 @@ def _starts(rate: Floats, begin: int, past: int) -> list[int]:
 
 
 def _weakest(history: History, begin: Moments, end: Moments) -> Moments:
-    """Where the traction against the slip is smallest (the first, of several) between moments: on a grid, and refined."""
+    """Find the moments of the smallest traction against slip (the first, if several are equal) between pairs of moments.
+
+    The search compares places on a grid, and then refines it.
+    """
     count = end.piece - begin.piece + 1
     owner = np.repeat(np.arange(len(count)), count)
     piece = begin.piece[owner] + np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
@@ -138,7 +146,7 @@ def _weakest(history: History, begin: Moments, end: Moments) -> Moments:
 
 
 def _lowest(history: History, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Of each piece, where on a grid from low to high (xi) the traction is smallest, and how much it is there."""
+    """Return the place on a grid from low to high (xi) at which the traction in each piece is smallest, and that traction."""
     xi = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, GRID)
     values = resistance(history)(Moments.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
     chosen = np.arange(len(piece)), np.argmin(values, axis=1)
