@@ -89,7 +89,7 @@ def cache_folder() -> Path:
     except OSError as error:
         reason = f"{error.filename}: {error.strerror}" if error.strerror else str(error)
     tell(
-        f"no cache for compiled code: {ascii(reason)[1:-1]}; this run compiles for itself (a minute or more); "
+        f"no cache for compiled code: {ascii(reason)[1:-1]}; this run compiles for itself (15 s or more); "
         "STICKSLIP_CACHE_DIR names another folder"
     )
     folder = Path(tempfile.mkdtemp(prefix="stickslip-compiled-"))
