@@ -62,6 +62,9 @@ def structure(record: type[Record], name: str = "") -> str:
 def header(writer: FormulaWriter) -> str:
     """law.h: the engine's records as structures, its codes as numbers, and the law."""
     names = {name: value for module in (layout, workspace) for name, value in vars(module).items() if isinstance(value, int)}
+    names |= {
+        code.name: int(code) for codes in (layout.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
+    }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
     defines.append(f"#define GUARDS {len(writer.guards)}")
     records = [structure(record) for record in (layout.Params, layout.State, layout.Counts, layout.Series)]

@@ -9,6 +9,7 @@ from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
 from stickslip.engine.loop import advance
 from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of
 from stickslip.engine.waves.echo_queue import new_echoes
 from stickslip.engine_input.forcing import row_time
@@ -48,7 +49,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
             float(setup.par.ramp),
             case.duration,
         )
-        return Solution(case.problem, case.duration, tolerance, STATUSES[at.FINISHED], history)
+        return Solution(case.problem, case.duration, tolerance, STATUSES[Stop.FINISHED], history)
 
     def slip(times: Floats) -> Floats:
         return solution().slip(times) - case.problem.initial_slip

@@ -10,7 +10,7 @@ import pytest
 
 from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.workspace import Workspace, new_workspace
-from stickslip.engine.state.layout import FINISHED
+from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
 from stickslip.trajectory.status import BAD_PARAMETERS, STATUSES
 
@@ -88,7 +88,7 @@ def test_bad_members_stop_nobody() -> None:
     case = CASES["coulomb"]
     static = np.array([0.6, 0.4, math.nan, 0.7, -1.0])
     members = run_members(case.scenario, {"friction.static": static}, ("slip", "events"), threads=2)
-    assert members.status.tolist() == [FINISHED, BAD_PARAMETERS, BAD_PARAMETERS, FINISHED, BAD_PARAMETERS]
+    assert members.status.tolist() == [Stop.FINISHED, BAD_PARAMETERS, BAD_PARAMETERS, Stop.FINISHED, BAD_PARAMETERS]
     assert np.isnan(members.results["slip"]).tolist() == [False, True, True, False, True]
     assert list(members.reason) == [1, 2, 4]
     assert members.reason[1] == "Coulomb: static must be at least dynamic, got static 0.4 < dynamic 0.5"
@@ -120,11 +120,11 @@ def test_what_a_member_refuses_the_batch_refuses(key: str, value: float) -> None
 def test_far_stress_needs_a_driver_that_gives_way() -> None:
     values = {"body.driver_impedance": np.array([math.inf, 5e6]), "loading.far_stress_rate": np.full(2, 1e5)}
     members = run_members(CASES["far stress"].scenario, values, ("slip",))
-    assert members.status.tolist() == [BAD_PARAMETERS, FINISHED]
+    assert members.status.tolist() == [BAD_PARAMETERS, Stop.FINISHED]
     assert "finite driver_impedance" in members.reason[0]
     values = {"body.driver_impedance": np.full(2, math.inf), "loading.far_stress_rate": np.array([0.0, 1e5])}
     beside = run_members(CASES["far stress"].scenario, values, ("slip",))
-    assert beside.status.tolist() == [FINISHED, BAD_PARAMETERS]
+    assert beside.status.tolist() == [Stop.FINISHED, BAD_PARAMETERS]
 
 
 def test_rigid_and_other_drivers_massless_and_heavy_contacts_mix() -> None:

@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.engine.loop import advance
 from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, state_in
 from stickslip.engine.waves.echo_queue import new_echoes, resized
 from stickslip.engine_input.prepare import prepare
@@ -45,12 +46,12 @@ def by_engine(problem: ss.Problem) -> float:
     count.pause_at = 1
     while True:
         code = advance(memory, 10**9, 1.0, 10**9)
-        if code == at.FULL:
+        if code == Stop.FULL:
             store = at.resized(store, int(count.length), 2 * len(store.whole))
             trees = resized(trees, 0, len(store.whole))
             lend(memory, setup, store, trees)
             continue
-        assert code == at.PAUSED
+        assert code == Stop.PAUSED
         row = slice(int(count.previous_from), int(count.previous_to))
         pieces = row.stop - row.start
         if state.slip_now > GROWN:

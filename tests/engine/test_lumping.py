@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.state.layout import STORM
+from stickslip.engine.state.layout import Stop
 from stickslip.trajectory.status import STATUSES
 from tests.long_runs.problems import differences
 
@@ -23,7 +23,7 @@ YEARS = 30_000.0
 
 def test_without_it_the_run_ends_in_a_storm() -> None:
     run = ss.simulate(SLOW, YEARS * ss.YEAR)
-    assert run.status == STATUSES[STORM]
+    assert run.status == STATUSES[Stop.STORM]
     assert run.history.end[-1] / ss.YEAR == pytest.approx(23_700.0, abs=20.0)
 
 

@@ -13,8 +13,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts
+from stickslip.engine.state.layout import Counts, Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
@@ -68,9 +67,9 @@ def gone_on(path: Path, duration: float) -> ss.Solution:
 def step(run: RunInProgress, last: tuple[int, float]) -> bool:
     """One step of the engine, or one leap; False at the end."""
     code = run.advance(last, 1)
-    if code == at.FULL:
+    if code == Stop.FULL:
         run.grow(10**6)
-    return code in (OUT_OF_BUDGET, at.FULL)
+    return code in (OUT_OF_BUDGET, Stop.FULL)
 
 
 def around_leaps(name: str) -> list[int]:

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import State
+from stickslip.engine.state.layout import State, Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
@@ -33,7 +32,7 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
     run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
     for steps in range(100_000):
         code = run.advance(last, 1)
-        if code == at.FULL:
+        if code == Stop.FULL:
             run.grow(10**6)
         elif code != OUT_OF_BUDGET:
             return steps
@@ -46,7 +45,7 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
-        if run.advance(last, 1) == at.FULL:
+        if run.advance(last, 1) == Stop.FULL:
             run.grow(10**6)
     save_checkpoint(as_solution(run, Orders(duration), UNDER_WAY), path)
     return run.stands()
@@ -71,7 +70,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     for problem, duration in RUNS.values():
         run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
         for _ in range(3000):
-            if run.advance(last, 1) not in (OUT_OF_BUDGET, at.FULL) or run.length > 400:
+            if run.advance(last, 1) not in (OUT_OF_BUDGET, Stop.FULL) or run.length > 400:
                 break
             count, state = run.count, run.state
             met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}

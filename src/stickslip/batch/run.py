@@ -18,7 +18,7 @@ from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.state.layout import PAUSED, Floats, Integers
+from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED
@@ -179,7 +179,7 @@ class _Batch:
                 break
             if work.stage[lane] == AT_END:
                 work = work.with_more_points()
-            elif work.code[lane] != PAUSED and work.capacity < LARGEST_CAPACITY:
+            elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
                 n, work.stage[lane] = work.member[lane], FREE

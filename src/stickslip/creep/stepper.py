@@ -13,8 +13,7 @@ from stickslip.creep.history_writer import Scribe, seen
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Floats
+from stickslip.engine.state.layout import Counts, Floats, Incoming, Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.creep_limits import PATIENCE
 from stickslip.engine_input.forcing import row_time
@@ -80,7 +79,7 @@ class CreepLeaps:
 
     def are_due(self, count: Counts, last_row: int) -> bool:
         """Return True if the engine has paused for an attempt to leap."""
-        return bool(count.ready == 0 and count.source == 0 and count.pause_at <= count.row <= last_row)
+        return bool(count.ready == Incoming.NONE and count.source == 0 and count.pause_at <= count.row <= last_row)
 
     def at_row_end(self, run: RunInProgress, last: tuple[int, float]) -> None:
         """Leap if there is creep, and set when to try again.
@@ -185,7 +184,7 @@ class CreepLeaps:
 
     def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
-        while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, at.FULL):
-            if code == at.FULL:
+        while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, Stop.FULL):
+            if code == Stop.FULL:
                 run.reserve(2 * len(run.store.whole))
-        return code == at.PAUSED and run.count.row == row
+        return code == Stop.PAUSED and run.count.row == row

@@ -17,7 +17,7 @@ from stickslip.engine.contact_step.stick import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip, slip_implicitly
 from stickslip.engine.series.polynomial import fill, maximum, mean_of, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Integers
+from stickslip.engine.state.layout import TERMS, Cause, Incoming, Integers, Stop
 from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
 from stickslip.engine.waves.echo_queue import FOREVER, NOTHING, end_trip, next_echo, pays, plant
 from stickslip.engine.waves.varying_forcing import has_faded, rows_withstood, take_part
@@ -52,11 +52,11 @@ def first_piece(run: Run) -> bool:
     run.state.amplified = (
         math.nan if run.counts.is_block == 1 else 1.0 if run.state.theta_from < 0.5 * run.par.row_time else abs(run.par.reflection)
     )
-    run.counts.arriving = at.NO_CAUSE
+    run.counts.arriving = Cause.NO_CAUSE
     if run.counts.row == 0 and source == 0:
-        run.counts.arriving = at.START
+        run.counts.arriving = Cause.START
     elif run.counts.row == 0 and run.first_jump[source] == 1.0:
-        run.counts.arriving = at.LOADING
+        run.counts.arriving = Cause.LOADING
     return True
 
 
@@ -91,7 +91,7 @@ def echo_piece(run: Run) -> bool:
     run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
     if run.counts.lumped == 1:
         lump(run)
-    run.counts.arriving = at.ECHO if (jumps or run.counts.lumped == 1) and par.reflection != 0.0 else at.NO_CAUSE
+    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and par.reflection != 0.0 else Cause.NO_CAUSE
     return True
 
 
@@ -121,8 +121,8 @@ def next_piece(run: Run) -> bool:
         run.counts.source += 1
     run.state.xi, run.state.exit = 0.0, math.nan
     note_degree(run)
-    run.counts.jump = 1 if run.counts.arriving != at.NO_CAUSE else run.counts.jump
-    run.counts.ready = at.BROUGHT
+    run.counts.jump = 1 if run.counts.arriving != Cause.NO_CAUSE else run.counts.jump
+    run.counts.ready = Incoming.BROUGHT
     return True
 
 
@@ -207,7 +207,7 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
 @kernel
 def ended(run: Run) -> int:
     """What to say at the end of the run."""
-    return at.LOCKED if run.counts.is_locked == 1 else at.FINISHED
+    return Stop.LOCKED if run.counts.is_locked == 1 else Stop.FINISHED
 
 
 @kernel
@@ -242,37 +242,37 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
     run.k.inertia, run.k.stiffness = run.par.inertia, run.par.stiffness
     while True:
         if run.counts.length + ROOM > run.capacity:
-            return at.FULL
+            return Stop.FULL
         if run.counts.stalled > LARGEST_STALL or run.counts.tiny > LARGEST_STORM:
-            return at.STORM
+            return Stop.STORM
         budget -= 1
         if budget < 0:
             return -1
         if run.counts.folds_move == 1:
             if needs_branches(run):
-                return at.NEED_BRANCHES
+                return Stop.NEED_BRANCHES
             if run.counts.leaving == 1:
                 leave_moving_branch(run)
-        if run.counts.ready == 0:
+        if run.counts.ready == Incoming.NONE:
             if run.counts.row > last_row or (run.counts.sparse == 1 and run.counts.is_locked == 1):
                 return ended(run)
             if not next_piece(run):
                 if not end_row(run, rest_limit(run), last_row):
-                    return at.END_AHEAD
+                    return Stop.END_AHEAD
                 if run.counts.row >= run.counts.pause_at:
-                    return at.PAUSED
+                    return Stop.PAUSED
                 continue
             if run.counts.folds_move == 1:
                 continue
-        if run.counts.ready == at.BROUGHT:
+        if run.counts.ready == Incoming.BROUGHT:
             arrive(run)
-            run.counts.ready = at.MET
+            run.counts.ready = Incoming.MET
             if run.counts.folds_move == 1:
                 continue  # a step that the caller may take back stands alone
         is_last = run.counts.row == last_row and run.counts.at_fold == 0 and run.state.theta_to >= last_theta
         is_cut = is_last and run.state.theta_to > last_theta
         if is_cut and run.counts.to_the_end == 0:
-            return at.END_AHEAD
+            return Stop.END_AHEAD
         xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
         if run.state.xi < xi_to:
             length, xi = run.counts.length, run.state.xi
@@ -282,15 +282,15 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
                 slip_implicitly(run, xi_to)
             elif run.counts.waits == 1:
                 run.state.target = xi_to
-                return at.SLIPS
+                return Stop.SLIPS
             else:
                 slip(run, xi_to)
             if run.counts.breach != 0 or not is_finite(run):
                 take_back(run, length, xi)
-                return run.counts.breach if run.counts.breach != 0 else at.FAILED
+                return run.counts.breach if run.counts.breach != 0 else Stop.FAILED
         elif run.counts.at_fold != 0:
             leave_fold_piece(run)
         elif is_last:
             return ended(run)
         else:
-            run.counts.ready = 0
+            run.counts.ready = Incoming.NONE

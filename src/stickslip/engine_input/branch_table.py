@@ -36,7 +36,7 @@ from stickslip.engine.moving_folds.moving_levels import (
 )
 from stickslip.engine.series.polynomial import RECIPROCAL
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, State, Store
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, State, Stop, Store
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 
@@ -196,7 +196,7 @@ class RuleFollower:
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
         """Advance the run as `loop.advance` does, under the selection rule.
 
-        Returns at.STORM if the contact goes to and fro across a level that slip moves against the load.
+        Returns Stop.STORM if the contact goes to and fro across a level that slip moves against the load.
         """
         if not folds_move(self.problem) or self.problem.rule == "perfect-delay":
             return advance(table, *last, budget)
@@ -208,7 +208,7 @@ class RuleFollower:
                 state.exit = state.xi + place * (self.state.xi - state.xi)
                 self.state.numbers[:], self.count.numbers[:] = state.numbers, count.numbers
                 if self._storms():
-                    return at.STORM
+                    return Stop.STORM
             elif code != OUT_OF_BUDGET:
                 return code
         return OUT_OF_BUDGET

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.codegen.records import Record
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Setup, State
+from stickslip.engine.state.layout import Cause, Counts, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import REAL, WHOLE, WORK_ROWS
 from stickslip.engine_input.branch_table import STORM_OF, branch_rows, folds_move, has_levels_to_set
 from stickslip.engine_input.forcing import row_time
@@ -28,7 +28,7 @@ from stickslip.trajectory.history import History
 
 ROUNDING = 1e-9
 """Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
-LAST_CAUSE = at.HEALING
+LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone, so that those in a file must be the same."""
@@ -153,7 +153,7 @@ def _places(record: Record, *names: str) -> Any:
 def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
     """Yield a check of each number that the engine uses as an index."""
     length = int(count.length)
-    begins = count.row == 0 and (count.source == 0 or count.ready != 0)
+    begins = count.row == 0 and (count.source == 0 or count.ready != Incoming.NONE)
     yield "number of pieces", not 0 <= length <= pieces or (length == 0 and not begins)
     if count.sparse == 0:  # otherwise they are not used, and a catalogue that discards history makes them negative
         for name in ("row_from", "previous_from", "previous_to"):
@@ -179,10 +179,10 @@ def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
     yield "engine_count stuck_rows", not -1 <= count.stuck_rows <= at.NEVER
     yield "engine_count creep_in or LUMP_ABOVE", _outside(_places(count, "creep_in", "lump_above"), -at.NEVER, at.NEVER)
     yield "engine_count: a cause", _outside(_places(count, "cause", "arriving"), 0, LAST_CAUSE)
-    yield "engine_count ready", not 0 <= count.ready <= at.BROUGHT
+    yield "engine_count ready", not 0 <= count.ready <= Incoming.BROUGHT
     yield "engine_count at_fold", not 0 <= count.at_fold <= 3
     yield "engine_count waits", count.waits != 0
-    yield "engine_count breach", count.breach not in (0, at.OFF_THE_LAW, at.NEGATIVE_FRICTION)
+    yield "engine_count breach", count.breach not in (0, Stop.OFF_THE_LAW, Stop.NEGATIVE_FRICTION)
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:

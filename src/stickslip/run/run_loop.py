@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Protocol, Self
 
-from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.foundation.errors import InputError
@@ -82,9 +82,9 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
                 stop = watch.look(run, now=code != OUT_OF_BUDGET)
                 if stop is not None:
                     return stop
-                if code == at.END_AHEAD:
+                if code == Stop.END_AHEAD:
                     run.cut_at_end()
-                elif code == at.FULL:
+                elif code == Stop.FULL:
                     if not watch.make_room(run):
                         return FULL_HISTORY
                 elif code != OUT_OF_BUDGET:
@@ -102,7 +102,7 @@ def repeat(run: RunInProgress, since: Checkpoint, duration: float, length: int) 
     last = split_time(duration, row_time(run.problem))
     run.restore(since)
     while run.length < length:
-        if run.advance(last, 1) == at.END_AHEAD:
+        if run.advance(last, 1) == Stop.END_AHEAD:
             run.cut_at_end()
 
 

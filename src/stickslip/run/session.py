@@ -13,7 +13,7 @@ import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Integers, Setup, Store
+from stickslip.engine.state.layout import Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import Echoes, new_echoes, replant
 from stickslip.engine.waves.echo_queue import resized as with_room
@@ -132,12 +132,12 @@ class RunInProgress:
             self.leaps.at_row_end(self, last)
             return OUT_OF_BUDGET
         code = self.step(last, budget)
-        return OUT_OF_BUDGET if code == at.PAUSED else code
+        return OUT_OF_BUDGET if code == Stop.PAUSED else code
 
     def step(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
         code = self.follower.advance(self.memory, self.store, last, budget)
-        if code != at.NEED_BRANCHES:
+        if code != Stop.NEED_BRANCHES:
             return code
         self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
         self._lend()

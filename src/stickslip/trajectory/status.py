@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from stickslip.engine.state.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRICTION, OFF_THE_LAW, STORM
+from stickslip.engine.state.layout import Stop
 
 
 @dataclass(frozen=True)
@@ -41,23 +41,27 @@ BAD_PARAMETERS = -6
 """The parameters of a member of a batch make no valid problem."""
 
 STATUSES = {
-    FINISHED: Status("finished", "the run reached its duration", True),
+    Stop.FINISHED: Status("finished", "the run reached its duration", True),
     ENOUGH_EVENTS: Status("enough events", "the run has had its number of slip events", True),
-    LOCKED: Status("locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True),
-    STORM: Status(
+    Stop.LOCKED: Status(
+        "locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True
+    ),
+    Stop.STORM: Status(
         "event storm",
         "events follow each other without any time between them, or are too short to be resolved: set shortest_event, or try a"
         " contact_mass or another law",
         False,
     ),
-    FAILED: Status("not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False),
-    NEGATIVE_FRICTION: Status(
+    Stop.FAILED: Status(
+        "not finite", "the solution left the range of floating-point numbers: check the units of the scenario", False
+    ),
+    Stop.NEGATIVE_FRICTION: Status(
         "negative friction",
         "the contact has reached a slip, a slip rate or a state at which the law's friction coefficient is below zero, where it"
         " would drive slip: the law is not meant for what this load does",
         False,
     ),
-    OFF_THE_LAW: Status(
+    Stop.OFF_THE_LAW: Status(
         "off the law",
         "no step from here obeys the contact equation, however short: the law may jump here, or be too steep for double precision",
         False,

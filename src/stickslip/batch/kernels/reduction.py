@@ -14,7 +14,7 @@ from stickslip.engine.codegen.compiler import floats, kernel
 from stickslip.engine.contact_step.contact_equation import friction_of
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Store
+from stickslip.engine.state.layout import Floats, Stop, Store
 from stickslip.engine.state.workspace import Run
 from stickslip.trajectory.history import ROUNDING
 from stickslip.trajectory.slip_events import rises_over
@@ -106,7 +106,7 @@ def grown(store: Pieces, piece: int, xi: float) -> float:
 @kernel
 def reached(run_end: float, code: int, row_time: float, store: Pieces, length: int) -> float:
     """Up to where (s) a run that ended with a code has come."""
-    return run_end if code in (at.FINISHED, at.LOCKED) else time_at(store, row_time, length - 1, 1.0)
+    return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(store, row_time, length - 1, 1.0)
 
 
 @kernel

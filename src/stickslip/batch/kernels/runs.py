@@ -19,8 +19,7 @@ from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, 
 from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.engine.state.layout import Floats, Integers, Stop, Store
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.trajectory.slip_events import NOT_YET
@@ -138,8 +137,8 @@ def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> N
     while code == OUT_OF_BUDGET and stop[0] == 0:
         code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
-    lane.waits[0] = FRESH if code == at.SLIPS else AWAY
-    if code != at.SLIPS and code != at.FULL and code != at.PAUSED and code != OUT_OF_BUDGET:
+    lane.waits[0] = FRESH if code == Stop.SLIPS else AWAY
+    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != OUT_OF_BUDGET:
         lane.stage[0] = AT_END
 
 
@@ -177,7 +176,7 @@ def bring_on(
         start_member(borrow(lane.table), setups, n)
         lane.stage[0], lane.member[0] = UNDER_WAY, n
         advance_member(engine, lane, setups, stop)
-    return lane.code[0] == at.SLIPS
+    return lane.code[0] == Stop.SLIPS
 
 
 @kernel

@@ -8,7 +8,7 @@ from stickslip.engine.codegen.compiler import ahead, call_state_value, call_valu
 from stickslip.engine.contact_step.append_segment import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
@@ -161,7 +161,7 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
 @kernel
 def needs_branches(run: Run) -> bool:
     """Whether a choice among branches is due, and the table of branches is that of another slip."""
-    meets_jump = run.counts.ready == at.BROUGHT and run.counts.arriving != at.NO_CAUSE
+    meets_jump = run.counts.ready == Incoming.BROUGHT and run.counts.arriving != Cause.NO_CAUSE
     due = run.counts.leaving == 1 or run.counts.mode == 0 or meets_jump
     return due and run.state.table_slip != run.state.law_slip
 
@@ -224,7 +224,7 @@ def end_branch(run: Run) -> None:
     level = run.keep_to[branch] if upper else run.keep_from[branch]
     leave_branch(run, level)
     if run.counts.mode == 0:
-        note_jump(run, 0.0, at.FOLD)
+        note_jump(run, 0.0, Cause.FOLD)
         run.state.rate_now = 0.0
         if abs(level - rest_limit(run)) <= SAME_LEVEL * run.par.normal:
             run.counts.edge = direction  # rest ends where the branch does: the load goes away from there

@@ -10,7 +10,7 @@ from stickslip.engine.contact_step.append_segment import note_degree, theta_at
 from stickslip.engine.contact_step.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
@@ -67,7 +67,7 @@ def set_aside(run: Run, width: float) -> None:
     copy(numbers_of(run.state), numbers_of(run.kept), at.KEPT)
     run.kept.xi = run.state.xi + width
     if run.state.xi > 0.0:
-        run.counts.arriving = at.NO_CAUSE
+        run.counts.arriving = Cause.NO_CAUSE
 
 
 @kernel

@@ -29,7 +29,7 @@ from stickslip.engine.contact_step.verify import NEGLIGIBLE
 from stickslip.engine.series.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Floats, Stop
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
@@ -319,7 +319,7 @@ def note_negative_friction(run: Run) -> None:
         rate, state = run.stage_rate[0], run.stage_state[0]
     contact_at(run, run.state.law_slip, abs(rate), state)
     if run.par.reference + run.par.normal * run.value[MU] < -NEGLIGIBLE * run.par.normal:
-        run.counts.breach = at.NEGATIVE_FRICTION
+        run.counts.breach = Stop.NEGATIVE_FRICTION
 
 
 @kernel

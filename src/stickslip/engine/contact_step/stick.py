@@ -19,7 +19,7 @@ from stickslip.engine.contact_step.contact_equation import (
 from stickslip.engine.contact_step.radau_step import forgotten, stick_with_state
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
@@ -36,7 +36,7 @@ def arrive(run: Run) -> None:
         return
     limit = rest_limit(run)
     mode = run.counts.mode
-    if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == at.NO_CAUSE:
+    if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == Cause.NO_CAUSE:
         pass  # the load goes on as it was, and so does the slip rate
     elif mode != 0 and run.counts.is_algebraic == 1:
         seen, branch = towards(run, load, mode), run.counts.branch
@@ -93,7 +93,7 @@ def heal(run: Run, load: float) -> None:
         elif beyond > 0.0:
             run.counts.mode = direction
             if run.counts.has_inertia == 0:
-                note_jump(run, direction * beyond / run.par.impedance, at.HEALING)
+                note_jump(run, direction * beyond / run.par.impedance, Cause.HEALING)
 
 
 @kernel

@@ -66,7 +66,7 @@ from stickslip.engine.series.polynomial import (
 )
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Cause, Floats, Stop
 from stickslip.engine.state.workspace import Run
 
 LONGEST_GUESS = 2.0
@@ -241,10 +241,10 @@ def slip(run: Run, xi_to: float) -> None:
 @kernel
 def note_shock(run: Run) -> None:
     """Note the jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
-    if run.state.xi == 0.0 and run.counts.arriving != at.NO_CAUSE:
+    if run.state.xi == 0.0 and run.counts.arriving != Cause.NO_CAUSE:
         note_jump(run, run.counts.mode * run.jet[0], run.counts.arriving)
     elif run.counts.edge != 0 and run.counts.has_inertia == 0:
-        note_jump(run, run.counts.mode * run.jet[0], at.FOLD)
+        note_jump(run, run.counts.mode * run.jet[0], Cause.FOLD)
 
 
 @kernel
@@ -279,7 +279,7 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
         if is_straight(run) or (obeys_contact(run, rate, length * end, grown, rate_end) and not is_negative(run)):
             break
         if halving == HALVINGS:
-            run.counts.breach = at.NEGATIVE_FRICTION if is_negative(run) else at.OFF_THE_LAW
+            run.counts.breach = Stop.NEGATIVE_FRICTION if is_negative(run) else Stop.OFF_THE_LAW
             break
         if run.state.rounded == 0.0:
             note_rounding(run, length)

@@ -11,8 +11,7 @@ from __future__ import annotations
 from stickslip.engine.codegen.compiler import call_value, inlined, kernel
 from stickslip.engine.contact_step.contact_equation import constants_of
 from stickslip.engine.series.polynomial import moment, multiply, powers_of, total
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.layout import TERMS, Floats, Stop
 from stickslip.engine.state.workspace import Run
 
 ALLOWED = 10.0
@@ -147,7 +146,7 @@ def note_rounding(run: Run, length: float) -> None:
     missing, rounding = defect(run, TRIFLE * length, grown, total(run.part), slope_at_end(run.part))
     run.state.rounded = EXTRA * missing
     if missing * ROUNDING > LOST * rounding:
-        run.counts.breach = at.OFF_THE_LAW
+        run.counts.breach = Stop.OFF_THE_LAW
 
 
 @kernel
@@ -175,4 +174,4 @@ def note_unbalanced(run: Run) -> None:
     balance = run.seen[0] - run.par.normal * (run.value[0] + run.offset[piece])
     run.state.unbalanced = balance - run.k.force
     if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.par.tolerance) * run.par.normal:
-        run.counts.breach = at.OFF_THE_LAW  # a massless contact has no force to spare: no solution begins here
+        run.counts.breach = Stop.OFF_THE_LAW  # a massless contact has no force to spare: no solution begins here

@@ -6,6 +6,7 @@ Time is a round trip (`row`) and an offset theta in it; a block has rows too, on
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -160,12 +161,58 @@ class Series(Record):
 NEVER = 2**62
 """No row."""
 
-# ---- READY: what has become of the next piece of load ------------------------------------------------------------------------
-MET, BROUGHT = 1, 2
 
-# ---- causes of shocks, and why `advance` returned ---------------------------------------------------------------------------
-NO_CAUSE, START, FOLD, ECHO, LOADING, HEALING = range(6)
-FULL, FINISHED, LOCKED, STORM, END_AHEAD, FAILED, NEED_BRANCHES, PAUSED, SLIPS, OFF_THE_LAW, NEGATIVE_FRICTION = range(11)
+class Incoming(IntEnum):
+    """State what has become of the next piece of load."""
+
+    NONE = 0
+    """The last one is done with, and none has been brought yet."""
+    MET = 1
+    """The contact has met it and moves on it."""
+    BROUGHT = 2
+    """It is there, and the contact has not answered it."""
+
+
+class Cause(IntEnum):
+    """Name what makes the slip rate jump."""
+
+    NO_CAUSE = 0
+    START = 1
+    """The run begins in motion."""
+    FOLD = 2
+    """A branch of slip rates ends, or slip begins on another one than that next to rest."""
+    ECHO = 3
+    """A jump comes back from the driver."""
+    LOADING = 4
+    """The loading jumps."""
+    HEALING = 5
+    """Rest gives the contact its first strength back."""
+
+
+class Stop(IntEnum):
+    """Say why the engine returned."""
+
+    FULL = 0
+    """The history has no room for another step."""
+    FINISHED = 1
+    LOCKED = 2
+    """Nothing will ever move the contact again."""
+    STORM = 3
+    """Events follow each other without any time between them."""
+    END_AHEAD = 4
+    """What comes next depends on where the run ends: the caller sets `to_the_end`."""
+    FAILED = 5
+    """A number is not finite."""
+    NEED_BRANCHES = 6
+    """The caller must put the branches at the present slip into the tables."""
+    PAUSED = 7
+    """The round trip before which the caller wanted to look has been reached."""
+    SLIPS = 8
+    """An explicit step of slip is left to the caller, who takes it side by side with others."""
+    OFF_THE_LAW = 9
+    """No step from here obeys the contact equation."""
+    NEGATIVE_FRICTION = 10
+    """Friction is below zero from here on."""
 
 
 # ---- rows of Setup's tables -------------------------------------------------------------------------------------------------

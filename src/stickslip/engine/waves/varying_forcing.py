@@ -13,7 +13,7 @@ from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact_step.append_segment import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS
+from stickslip.engine.state.layout import TERMS, Cause
 from stickslip.engine.state.workspace import WHOLE, Run
 
 TIE = 1e-13
@@ -25,10 +25,10 @@ def take_part(run: Run) -> None:
     """Of the source of load just brought, and not yet taken, the part up to the next break of the loading, with what it adds."""
     begin = run.state.taken
     if begin > 0.0:
-        run.counts.arriving = at.NO_CAUSE
+        run.counts.arriving = Cause.NO_CAUSE
     theta = run.state.taken_to_theta if begin > 0.0 else run.state.theta_from
     if enter_segment(run, theta):
-        run.counts.arriving = at.LOADING
+        run.counts.arriving = Cause.LOADING
     end, theta_to = 1.0, run.state.theta_to
     change = next_change(run)
     if change < theta_to - TIE * run.par.row_time:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stickslip.engine.state.layout import FAILED, FINISHED, LOCKED, NEGATIVE_FRICTION, OFF_THE_LAW, STORM
+from stickslip.engine.state.layout import Stop
 from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY
 
@@ -31,14 +31,14 @@ FIRST_FAILURE = 10
 """Smallest code of a failure."""
 
 CODES = {
-    FINISHED: 0,
+    Stop.FINISHED: 0,
     ENOUGH_EVENTS: 1,
-    LOCKED: 2,
-    STORM: 11,
-    FAILED: 12,
+    Stop.LOCKED: 2,
+    Stop.STORM: 11,
+    Stop.FAILED: 12,
     FULL_HISTORY: 13,
-    NEGATIVE_FRICTION: 15,
-    OFF_THE_LAW: 16,
+    Stop.NEGATIVE_FRICTION: 15,
+    Stop.OFF_THE_LAW: 16,
     REFUSED: BAD_PARAMETERS,
 }
 """The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""
