@@ -6,7 +6,8 @@
     problem = ss.Problem(slab, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
     solution = ss.simulate(problem, duration=20.0)
 
-SI units throughout; compression positive. Source: Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96.
+All quantities are in SI units; compression is positive. Source: Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet.
+Inter. 96.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 YEAR = 31_557_600.0
-"""Julian year, s."""
+"""Length of the Julian year, in s."""
 
 _LATER = {
     "Analogy": "stickslip.studies.analogy",
@@ -69,7 +70,7 @@ _LATER = {
     "sweep": "stickslip.sweeps.sweep",
     "uniqueness": "stickslip.contact.uniqueness",
 }
-"""Names that are imported when first used: the compiler and the table libraries take their time to load."""
+"""Module of each public name that is imported on first use, because the compiler and the table libraries are slow to load."""
 
 __all__ = [
     "YEAR",

@@ -1,4 +1,7 @@
-"""The regime along slip: a law of slip and slip rate moves its folds as it slips, and may leave or enter the irregular regime."""
+"""The regime (regular or irregular) as a function of slip.
+
+A law of both slip and slip rate moves its folds as the contact slips, and may enter or leave the irregular regime on the way.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +20,14 @@ from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
 from stickslip.problem.problem import Problem
 
 _POINTS = 65
+"""Number of equally spaced slips at which the regime is sampled; each sample costs a search over all slip rates."""
 _UNKNOWN = 10.0
-"""Reach (m) where the law names no slip: an expression is checked as far."""
+"""Longest slip (m) assumed for a law whose parameters name none; user expressions are checked up to the same slip."""
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """An interval of law slip (m) with one regime."""
+    """An interval of law slip (m) on which the regime does not change."""
 
     slip_from: float
     slip_to: float
@@ -31,12 +35,12 @@ class Stretch:
 
 
 def slip_reach(law: FrictionLaw) -> float:
-    """A slip (m) in which everything that the law says of slip happens: twice its longest slip, or two periods."""
+    """Return a slip (m) that covers all features of the law in slip: twice its longest characteristic slip or period."""
     return 2.0 * max(_slips(law), default=_UNKNOWN)
 
 
 def _slips(law: FrictionLaw) -> Iterator[float]:
-    """The slips (m) among the numbers of a law: those in m, and 2 pi over those in 1/m."""
+    """Yield the characteristic slips (m) of a law: its parameters in m, and 2 pi divided by its parameters in 1/m."""
     for name, (declared, _) in fields_of(type(law)).items():
         value = getattr(law, name)
         if isinstance(declared, Part):
@@ -58,9 +62,10 @@ def _length(value: float, unit: str) -> Iterator[float]:
 
 
 def regimes_along_slip(problem: Problem) -> tuple[Stretch, ...]:
-    """The regime from the start on, over `slip_reach`; changes are found to rounding, two between neighbours of 65 slips are not.
+    """Return the intervals of law slip with one regime each, from the initial slip over the length `slip_reach`.
 
-    One stretch for a law that does not depend on both slip and slip rate. Raises InputError for a block.
+    Changes of regime are found to rounding, but two changes between neighbouring samples (65 slips and the law's knots) are missed.
+    A law that does not depend on both slip and slip rate gives a single interval. Raises InputError for a block.
     """
     start = problem.law_slip
     end = start + slip_reach(problem.friction)

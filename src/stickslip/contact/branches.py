@@ -1,6 +1,7 @@
-"""Branches and folds: where the resistance g(s) = Z s + S mu(u, s) rises, and every slip rate that meets a given load.
+"""Branches and folds of the resistance g(s) = Z s + S mu(u, s), and all slip rates s that solve g(s) = load.
 
-Source: Campillo et al. 1996, section 3 and Fig. 3. A solution of g(s) = load is stable where g rises.
+A branch is an interval of slip rates on which g rises; it ends at folds. A solution of g(s) = load is stable where g rises.
+Source: Campillo et al. 1996, section 3 and Fig. 3.
 """
 
 from __future__ import annotations
@@ -18,18 +19,20 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 _POINTS_PER_DECADE = 64
+"""Density of the geometric part of the search grid: laws vary smoothly with the logarithm of the slip rate."""
 _EVEN_POINTS, _EVEN_REACH = 2001, 10.0
+"""Number of points of the evenly spaced part of the search grid, and its end as a multiple of the fastest scale."""
 _BELOW, _ABOVE = 1e-8, 1e4
-"""How far the search for folds reaches beyond the slowest and the fastest scale of the contact."""
+"""The search grid extends from this multiple of the slowest scale of the contact to this multiple of the fastest one."""
 _ROUNDING = 1e-9
-"""Relative distance by which a fold that is found by rounded values of g' may lie outside an interval that holds it."""
+"""Relative distance by which a fold found from rounded values of g' may lie outside its proven interval."""
 
 
 @dataclass(frozen=True)
 class Branch:
-    """A maximal interval of slip rates (m/s) on which g rises, and the excess over static strength (Pa) at its two ends.
+    """A maximal interval of slip rates (m/s) on which g rises, with the excess over the static strength (Pa) at its two ends.
 
-    The last branch ends at infinity. The first may start at rate 0, with excess_from = g(0+) - S mu_static; every other finite
+    The last branch extends to infinity. The first may start at rate 0, with excess_from = g(0+) - S mu_static. Every other finite
     end is a fold.
     """
 
@@ -40,18 +43,34 @@ class Branch:
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
-    """The stable branches of a slab's contact equation at a law slip (m; default: the start), slowest first.
+    """Return the stable branches of a slab's contact equation, slowest first.
 
-    Raises InputError for a block, and for a law whose friction never stops falling faster than Z s rises.
+    Parameters
+    ----------
+    problem : Problem
+        Problem whose body is a slab.
+    law_slip : float, optional
+        Slip (m) as the law counts it; the initial one by default.
+
+    Returns
+    -------
+    tuple of Branch
+        Intervals of slip rates on which g rises.
+
+    Raises
+    ------
+    InputError
+        If the body is a block, or if friction falls at least as fast as Z s rises even at the fastest rate of the search.
     """
     return branches_of(resistance(problem, law_slip))
 
 
 def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch, ...]:
-    """The stable branches of a resistance, slowest first; folds are polished to rounding.
+    """Return the stable branches of a resistance, slowest first, with folds accurate to rounding.
 
-    They are searched on a grid of slip rates, and compared with `proof` (default: worked out here) unless friction bends one way
-    only, where a grid misses nothing: a fold that the grid has missed is added, one that is only rounding is left out.
+    Folds are searched on a grid of slip rates. If friction is convex or concave in the slip rate, the grid misses none. Otherwise
+    the result is compared with `proof` (computed here by default): folds that the grid missed are added, and folds that are only
+    rounding errors of g' are dropped.
     """
     if not g.law.depends_on_rate:
         return (Branch(0.0, math.inf, g.start, math.inf),)
@@ -67,7 +86,10 @@ def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch
 
 
 def _searched(g: Resistance) -> tuple[bool, list[float]]:
-    """Whether g rises from rest on, and its folds, by a search on a grid. Raises InputError where g falls at the fastest rate."""
+    """Return whether g rises at 0+, and its folds (m/s), from a search on a grid.
+
+    Raises InputError if g still falls at the fastest rate of the grid.
+    """
     rates = _refined_grid(g)
     rising = g.slope(rates) > 0.0
     rising[0] |= bool(g.slope(0.0) == 0.0 and rising[1])
@@ -78,20 +100,20 @@ def _searched(g: Resistance) -> tuple[bool, list[float]]:
 
 
 def _agreed(g: Resistance, proof: Certificate, rising: bool, folds: list[float]) -> tuple[bool, list[float]]:
-    """Return whether g rises from rest on, and its folds: what is proven, and what the search says where nothing is."""
+    """Return whether g rises at 0+, and its folds (m/s): proven results where there are any, otherwise those of the search."""
     if proof.verdict == "searched":
         return rising, folds
     seen, left = _matched(proof, folds)
     found = [_fold(g, *turn) if fold is None else fold for turn, fold in zip(proof.turns, seen, strict=True)]
     found += [fold for fold in left if any(within(fold, one) for one in proof.undecided)]
     starts = rising if proof.rises_at_rest is None else proof.rises_at_rest
-    if starts != (len(found) % 2 == 0):  # what is undecided has been searched in vain: g must rise in the end
+    if starts != (len(found) % 2 == 0):  # g rises at high rates, so this count of folds cannot be right: trust the search
         return rising, folds
     return starts, sorted(found)
 
 
 def _matched(proof: Certificate, folds: list[float]) -> tuple[list[float | None], list[float]]:
-    """Return for each proven turn the fold that the search has found in it, None where it has missed it, and the other folds."""
+    """Return the fold that the search found in each proven interval (None if it missed it), and the folds outside all of them."""
     left = list(folds)
     found: list[float | None] = []
     for turn in proof.turns:
@@ -103,9 +125,10 @@ def _matched(proof: Certificate, folds: list[float]) -> tuple[list[float | None]
 
 
 def scan_rates(g: Resistance) -> NDArray[np.float64]:
-    """Return slip rates (m/s) between which compiled code looks for folds: the search grid, and proven intervals that it misses.
+    """Return the slip rates (m/s) between which compiled code looks for folds: the search grid and proven intervals it misses.
 
-    The intervals are those at the law slip of `g`. Where a law moves a narrow feature out of them as it slips, it is missed again.
+    The intervals hold at the law slip of `g` only. If a narrow feature of the law moves out of them as the contact slips, compiled
+    code misses it.
     """
     rates = search_grid(g)
     if g.law.bends_one_way:
@@ -117,7 +140,7 @@ def scan_rates(g: Resistance) -> NDArray[np.float64]:
 
 
 def within(rate: float, interval: tuple[float, float]) -> bool:
-    """Whether a rate lies in an interval, but for the rounding of a fold."""
+    """Return True if a rate lies in an interval that is widened by the rounding error of a fold."""
     return interval[0] * (1.0 - _ROUNDING) <= rate <= interval[1] * (1.0 + _ROUNDING)
 
 
@@ -126,25 +149,29 @@ def _branch(g: Resistance, low: float, high: float) -> Branch:
 
 
 def search_grid(g: Resistance) -> NDArray[np.float64]:
-    """0 and slip rates (m/s) in geometric progression over every scale, evenly up to the fastest, and where pieces meet.
+    """Return the ascending slip rates (m/s) at which the slope of g is sampled in the search for folds.
 
-    A law's knots in slip rate belong to it, from both sides: no stretch between two of them is overlooked.
+    The grid holds 0, a geometric progression over all scales of the contact, an even spacing up to `_EVEN_REACH` times the fastest
+    scale, and the law's knots in slip rate. Each knot is sampled from both sides, and each interval between two knots in its
+    middle, so that none is overlooked.
     """
     low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
     knots = np.array([0.0, *g.rate_knots])
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
-    even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)  # a law that waves in v does so up to its fastest scale
+    # the geometric points lie too far apart for a law that oscillates in v up to its fastest scale
+    even = np.linspace(0.0, _EVEN_REACH * max(g.scales), _EVEN_POINTS)
     between = 0.5 * (knots[1:] + knots[:-1])
     return np.unique(np.concatenate((even, np.logspace(low, high, count), knots, np.nextafter(knots[1:], 0.0), between)))
 
 
 def _refined_grid(g: Resistance) -> NDArray[np.float64]:
-    """The search grid with more slip rates where g' nearly touches zero between two of them."""
+    """Return the search grid with additional slip rates where g' may touch zero between two grid points."""
     rates = search_grid(g)
     for _ in range(3):
         slope = g.slope(rates)
         left, middle, right = slope[:-2], slope[1:-1], slope[2:]
-        # a parabola through three values of one sign reaches 0 between them only if it bends by 8 times the middle one
+        # a parabola through three values of one sign reaches 0 between them only if its second difference exceeds 8 times the
+        # middle value; half of that is the condition here, for safety
         bend = 4.0 * np.abs(middle) < np.sign(middle) * (left - 2.0 * middle + right)
         near = np.flatnonzero(bend & (left * middle > 0.0) & (middle * right > 0.0)) + 1
         extra = np.linspace(rates[near - 1], rates[near + 1], 17)
@@ -153,7 +180,10 @@ def _refined_grid(g: Resistance) -> NDArray[np.float64]:
 
 
 def _fold(g: Resistance, low: float, high: float) -> float:
-    """The rate between low and high at which g' changes sign, to rounding: sections of 64, so that numpy does the work."""
+    """Return the rate between low and high at which g' changes sign, to rounding.
+
+    The bracket is cut into 64 parts in each round, so that numpy evaluates them all at once.
+    """
     first = bool(g.slope(low) > 0.0)
     for _ in range(40):
         rates = np.linspace(low, high, 65)
@@ -167,9 +197,9 @@ def _fold(g: Resistance, low: float, high: float) -> float:
 
 
 def rate_on(g: Resistance, branch: Branch, excess: float) -> float:
-    """The slip rate (m/s) on a branch at which the resistance exceeds the static strength by `excess` (Pa), to rounding.
+    """Return the slip rate (m/s) on a branch at which the resistance exceeds the static strength by `excess` (Pa), to rounding.
 
-    Raises ValueError where the branch does not exist at that excess.
+    Raises ValueError if the branch does not exist at that excess.
     """
     if not branch.excess_from <= excess <= branch.excess_to:
         raise ValueError(f"branch from {branch.excess_from:g} to {branch.excess_to:g} Pa has no slip rate at {excess:g} Pa")
@@ -178,9 +208,9 @@ def rate_on(g: Resistance, branch: Branch, excess: float) -> float:
 
 
 def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Every slip rate s >= 0 (m/s), stick (0) included, that meets an excess (Pa), ascending; and whether each is stable.
+    """Return all slip rates s >= 0 (m/s) that solve the contact equation at an excess (Pa), ascending, and whether each is stable.
 
-    A fold counts once, and as not stable; stick is stable as long as the static strength holds (excess <= 0).
+    Stick (0) is included. It is stable as long as the static strength holds (excess <= 0). A fold counts once, as not stable.
     """
     found = {0.0: True} if excess <= 0.0 else {}
     rate, level = 0.0, g.start
@@ -198,7 +228,7 @@ def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[
 
 
 def _root(g: Resistance, low: float, high: float, excess: float) -> float:
-    """The rate between low and high, where g is monotone, at which it passes an excess."""
+    """Return the rate (m/s) between low and high at which g passes an excess (Pa); g must be monotone there."""
 
     def miss(rate: float) -> tuple[float, float]:
         value, slope = g.excess_and_slope(rate)

@@ -1,7 +1,7 @@
-"""Critical values: where, along any number of a problem, the contact equation turns from one solution to several.
+"""Critical values: the values of a parameter at which the contact equation changes from one solution to several.
 
-Source: Campillo et al. 1996, section 3: alpha_c is where g'(0) = Z + S mu'(0) vanishes. In general it is where the smallest g'
-does; the laws' own closed forms are in their `critical_value`.
+Source: Campillo et al. 1996, section 3: alpha_c is where g'(0) = Z + S mu'(0) vanishes. In general the critical value is where the
+smallest g' over all slip rates vanishes. Closed forms of the laws are in their method `critical_value`.
 """
 
 from __future__ import annotations
@@ -26,20 +26,23 @@ from stickslip.problem.problem import Problem
 Regime = Literal["regular", "irregular"]
 
 _DECADES, _PER_DECADE = 9, 4
-"""How far from the present value the search goes, both ways, and in which steps."""
+"""Decades that the search covers on either side of the present value, and its steps in each decade."""
 _MISSED = 1e-6
-"""Share of Z by which g' must be lower elsewhere than where the grid has found it: less would cost time at each point of a map."""
+"""Share of Z by which the true minimum of g' must lie below that of the grid to be searched for.
+
+A smaller share would cost time at each point of a regime map.
+"""
 _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
-"""Relative distances from a critical value at which the regimes are proven, the smallest first."""
+"""Relative distances from a critical value at which a proof of the regimes is tried, the smallest first."""
 _LOWEST = 5
-"""How many of the lowest points of g' on the grid are looked at closely."""
+"""Number of local minima of g' on the grid, lowest first, that are refined; any of them may hold the true minimum."""
 
 
 @dataclass(frozen=True)
 class Critical:
-    """Where the regime changes along one number of a problem, all else kept; values in SI, ascending.
+    """Values of one parameter of a problem at which the regime changes, with everything else fixed; in SI units, ascending.
 
-    `regimes` has one more entry than `values`: the regime below the first, between each two, and above the last.
+    `regimes` has one more entry than `values`: the regime below the first value, between neighbours, and above the last.
     """
 
     parameter: str
@@ -48,24 +51,24 @@ class Critical:
     values: tuple[float, ...]
     regimes: tuple[Regime, ...]
     searched: tuple[float, float]
-    """The values between which a change was looked for: outside nothing is known."""
+    """Smallest and largest value that the search has covered; nothing is known outside."""
     certificate: Verdict = "searched"
-    """"proven": interval arithmetic shows that the regime differs on the two sides of each of `enclosures`, and that it is the
-    stated one at the present value. "not decided": it fails to show one of these. "searched": the law has no sure bounds. Whether
-    there are further changes between the values that were looked at is never proven."""
+    """"proven": interval arithmetic shows that the regime differs between the two ends of each of `enclosures`, and that it is the
+    stated one at the present value. "not decided": interval arithmetic fails to show one of these. "searched": the law has no
+    guaranteed bounds. It is never proven that there are no further changes between the values that were examined."""
     enclosures: tuple[tuple[float, float] | None, ...] = ()
-    """For each of `values`, numbers below and above it at which the regime is proven to differ; None where that fails."""
+    """For each of `values`, a number below it and one above it at which the regimes are proven to differ; None if that fails."""
 
     @property
     def value(self) -> float | None:
-        """The critical value nearest to the present one, None where none was found."""
+        """Return the critical value nearest to the present value, or None if none was found."""
         return min(self.values, key=lambda one: abs(one - self.present), default=None)
 
 
 def steepest_fall(g: Resistance) -> tuple[float, float]:
-    """The slip rate (m/s) at which g rises least or falls most steeply, and g' there (Pa s/m), to the rounding of g'.
+    """Return the slip rate (m/s) at which g' is smallest, and g' there (Pa s/m), to the rounding of g'.
 
-    It is searched on a grid. Bounds of g' say where the grid has missed a lower one, and there it is searched again.
+    The minimum is searched on a grid. If guaranteed bounds of g' show that the grid has missed a lower one, it is searched there.
     """
     rate, slope = _searched_fall(g)
     if g.law.bends_one_way:
@@ -79,7 +82,7 @@ def steepest_fall(g: Resistance) -> tuple[float, float]:
 
 
 def _searched_fall(g: Resistance) -> tuple[float, float]:
-    """As `steepest_fall`, by the grid alone."""
+    """Return the same as `steepest_fall`, from the grid alone."""
     rates = search_grid(g)
     slope = g.slope(rates)
     lowest = np.flatnonzero((slope <= np.append(slope[1:], np.inf)) & (slope <= np.append(np.inf, slope[:-1])))
@@ -91,7 +94,7 @@ def _searched_fall(g: Resistance) -> tuple[float, float]:
 
 
 def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, float]:
-    """Smallest g' and where it is, to the rounding of g'."""
+    """Return the smallest g' (Pa s/m) between two slip rates, to the rounding of g', and the rate (m/s) where it lies."""
     while True:
         rates = np.linspace(low, high, 33)
         slope = g.slope(rates)
@@ -102,9 +105,9 @@ def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, floa
 
 
 def margin(problem: Problem, law_slip: float | None = None) -> float:
-    """Smallest g'/Z over all slip rates: negative in the irregular regime; -inf where friction steps down as slip begins.
+    """Return the smallest g'/Z over all slip rates at a law slip (m; default: the initial one).
 
-    At a law slip (m; default: the start). Raises InputError for a block.
+    It is negative in the irregular regime, and -inf if friction steps down as slip begins. Raises InputError for a block.
     """
     g = resistance(problem, law_slip)
     if not g.law.depends_on_rate:
@@ -113,9 +116,10 @@ def margin(problem: Problem, law_slip: float | None = None) -> float:
 
 
 def critical_normal_stress(g: Resistance) -> float | None:
-    """The normal stress (Pa) beyond which any law of the slip rate is irregular: Z / max(-dmu/dv). None where friction never falls.
+    """Return the normal stress (Pa) above which the contact is irregular, Z / max(-dmu/dv), or None if there is none.
 
-    For friction that steps down as slip begins there is none either: it is irregular under every normal stress.
+    There is none if friction never falls with the slip rate, nor if it steps down as slip begins: the contact is then irregular
+    under every normal stress.
     """
     if g.law.static_excess > 0.0 or not g.law.depends_on_rate:
         return None
@@ -124,12 +128,32 @@ def critical_normal_stress(g: Resistance) -> float | None:
 
 
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
-    """Where the regime changes along one number of a problem: "alpha", "rate.alpha", "body.normal_stress", "initial.slip".
+    """Find the values of one parameter at which the contact equation changes between one solution and several.
 
-    Looked for from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 where it is 0), as far as the problem
-    takes them, at a law slip (m; default: the start), then found to rounding. Two changes within a step of 10^(1/4) can
-    hide each other. Raises InputError for a name that is none, for a whole number, and where inertia makes the slip rate a
-    state: the motion is unique then whatever the numbers are.
+    Parameters
+    ----------
+    problem : Problem
+        Problem whose body is a slab without contact mass.
+    name : str
+        Parameter to vary, such as "alpha", "rate.alpha", "body.normal_stress" or "initial.slip".
+    law_slip : float, optional
+        Slip (m) as the law counts it; the initial one by default.
+
+    Returns
+    -------
+    Critical
+        Critical values to rounding, the regimes between them, and what is proven of them.
+
+    Raises
+    ------
+    InputError
+        If the name is not that of a parameter, if the parameter is a whole number, or if the body is a block or has a contact
+        mass: inertia then makes the slip rate a state, and the motion is unique whatever the parameters are.
+
+    Notes
+    -----
+    The search goes from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 if it is 0), as far as the problem
+    accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
     """
     found = parameter(problem, name)
     if getattr(problem.body, "contact_mass", 0.0) > 0.0:
@@ -154,7 +178,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
 
 
 def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | None:
-    """The regime at a value of a parameter, with proof; None where it is not decided."""
+    """Return the proven regime at a value of a parameter, or None if it is not decided."""
     try:
         g = resistance(found.put(value), law_slip)
     except InputError:
@@ -165,7 +189,7 @@ def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | 
 
 
 def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tuple[float, float] | None:
-    """The narrowest interval that was found around a critical value, at the ends of which the regime is proven to differ."""
+    """Return the narrowest tried interval around a critical value whose ends have provably different regimes, or None."""
     for step in _STEPS:
         low, high = sorted((value * (1.0 - step), value * (1.0 + step)))
         regimes = _proven(found, low, law_slip), _proven(found, high, law_slip)
@@ -175,7 +199,7 @@ def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tu
 
 
 def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> list[tuple[float, float]]:
-    """Values and margins on one side of the present value, up to where the problem refuses them."""
+    """Return values and margins on one side of the present value, up to where the problem refuses them."""
     walked: list[tuple[float, float]] = []
 
     def taken(value: float) -> bool:
@@ -186,14 +210,17 @@ def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> li
         return True
 
     refused = next((value for value in _values(found.value, way) if not taken(value)), None)
-    if refused:  # not at 0: the progression has come close enough
+    if refused:  # a refusal at 0 needs no bisection, because the progression has come close enough to it
         last = walked[-1][0] if walked else found.value
         sign_change(lambda value: 1.0 if taken(value) else -1.0, last, refused)
     return walked
 
 
 def _values(present: float, way: int) -> list[float]:
-    """Where to look: a geometric progression away from the present value; from 0 both ways, down to 0 last."""
+    """Return the values to examine on one side: a geometric progression away from the present value.
+
+    A progression towards zero ends with 0 itself. A present value of 0 has progressions of both signs.
+    """
     count = _DECADES * _PER_DECADE
     if present == 0.0:
         return [way * 10.0 ** (k / _PER_DECADE) for k in range(-count, count + 1)]

@@ -1,4 +1,4 @@
-"""Folds between proven bounds, and what is proven of them, in words."""
+"""Folds with proven bounds, and a sentence that says what is proven of them."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from stickslip.contact.folds.certified import Certificate, Interval, sign_of
 from stickslip.contact.folds.slope_bounds import FASTEST, Cells, SlopeBounds
 
 _HALVINGS = np.exp2(np.arange(-52.0, 0.0))
-"""Relative distances from a fold at which the sign of g' is proven, the smallest first."""
+"""Relative distances from a fold at which a proof of the sign of g' is tried, the smallest first."""
 _MOST_SHOWN = 6
-"""Folds that a sentence names."""
+"""Largest number of folds that a sentence names; more would make it unreadable."""
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A slip rate (m/s) at which g turns, and the load (Pa) there."""
+    """A slip rate (m/s) at which g changes between rising and falling, and the load (Pa) there."""
 
     rate: float
     load: float
     enclosure: Interval | None = None
-    """Slip rates (m/s) between which g is proven to turn exactly once; None where that is not decided."""
+    """Slip rates (m/s) between which g is proven to turn exactly once; None if that is not decided."""
 
 
 def enclosure(g: Resistance, proof: Certificate, rate: float) -> Interval | None:
-    """Return the narrowest interval found around a fold in which g is proven to turn exactly once; None where there is none."""
+    """Return the narrowest interval found around a fold in which g is proven to turn exactly once; None if there is none."""
     turn = next((one for one in proof.turns if within(rate, one)), None)
     return None if turn is None else _sharpened(g, turn, rate)
 
 
 def _sharpened(g: Resistance, turn: Interval, rate: float) -> Interval:
-    """Move both ends towards the fold as long as the signs of g' there are proven to stay what they are."""
+    """Move both ends of an interval towards the fold as far as the signs of g' at the ends are proven to stay the same."""
     low, high = turn
     if low == high:
         return turn
@@ -48,7 +48,7 @@ def _sharpened(g: Resistance, turn: Interval, rate: float) -> Interval:
 
 
 def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
-    """Return what is proven of the folds, as a sentence with a space before it; "" where friction does not depend on the rate."""
+    """Return a sentence on what is proven of the folds, with a leading space; "" if friction does not depend on the slip rate."""
     if not g.law.depends_on_rate:
         return ""
     if proof.verdict == "searched":

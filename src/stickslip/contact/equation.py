@@ -1,4 +1,4 @@
-"""The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, kept as an excess over its static strength."""
+"""The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, stored as an excess over the static strength."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from stickslip.friction.formula.expression import Expression, evaluate
 from stickslip.problem.problem import Problem
 
 _FASTEST = 1e9
+"""Largest scale of a law that is kept, as a multiple of S (variation of mu)/Z; at faster rates Z s dominates g."""
 _FLAT = 1e-9
-"""Slope of g, relative to Z, below which a stretch may be flat; its rise must then vanish in the rounding of g, too."""
+"""Slope of g, relative to Z, below which an interval may be flat; its variation must then be within the rounding of g, too."""
 
 
 @dataclass(frozen=True)
 class Plateau:
-    """An interval of slip rates (m/s) on which g does not change, and its excess over the static strength (Pa) there."""
+    """An interval of slip rates (m/s) on which g is constant, and the excess of g over the static strength (Pa) there."""
 
     rate_from: float
     rate_to: float
@@ -34,10 +35,10 @@ class Plateau:
 
 @dataclass(frozen=True)
 class Resistance:
-    """g of one contact at one law slip: impedance Z (Pa s/m), normal stress S (Pa), law_slip (m).
+    """The function g of one contact at one law slip: impedance Z (Pa s/m), normal stress S (Pa), law_slip (m).
 
-    The contact equation, paper eqs (12)-(13), reads excess(s) = load - S mu_static. s >= 0 is the magnitude of the slip rate
-    (m/s); for slip backwards the load changes sign.
+    The contact equation, paper eqs (12)-(13), reads excess(s) = load - S mu_static, where s >= 0 is the magnitude of the slip rate
+    (m/s). For backward slip the load changes sign.
     """
 
     law: FrictionLaw
@@ -47,18 +48,18 @@ class Resistance:
 
     @property
     def strength(self) -> float:
-        """Static strength S mu_static (Pa)."""
+        """Return the static strength S mu_static (Pa)."""
         return self.normal * float(self.law.static_coefficient(self.law_slip))
 
     @property
     def start(self) -> float:
-        """Excess at s = 0+ (Pa): minus the step from static to sliding friction."""
+        """Return the excess at s = 0+ (Pa), which is minus the step from static to sliding friction."""
         return -self.normal * self.law.static_excess if self.law.static_excess else 0.0
 
     def excess_and_slope(self, rate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """g(s) - S mu_static (Pa) and g'(s) (Pa s/m) at slip rates s >= 0 (m/s; 0 means 0+).
+        """Return g(s) - S mu_static (Pa) and g'(s) (Pa s/m) at slip rates s >= 0 (m/s; 0 means 0+).
 
-        Near-equal frictions are not subtracted: the excess keeps its digits down to s = 0.
+        The excess keeps its digits down to s = 0, because nearly equal values of friction are never subtracted.
         """
         rate = np.asarray(rate, float)
         piece = self.law.piece_at(self.law_slip, rate)
@@ -70,7 +71,7 @@ class Resistance:
         return excess, slope
 
     def _by_formula(self, piece: NDArray[np.intp], rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Excess and slope by the formulas of the pieces: those that share a formula at once, whatever their parameters."""
+        """Return excess and slope from the formulas of the pieces; pieces that share a formula are evaluated together."""
         step, slope = np.empty(rate.shape), np.empty(rate.shape)
         first = int(self.law.piece_at(self.law_slip))
         home = self._at_rest(self.trees[first], self.law.numbers(first))
@@ -87,14 +88,15 @@ class Resistance:
 
     @cached_property
     def rate_knots(self) -> tuple[float, ...]:
-        """Slip rates (m/s) above 0 at which the law changes its formula."""
+        """Return the slip rates (m/s) above 0 at which the law changes its formula."""
         return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
 
     @cached_property
     def _levels(self) -> NDArray[np.float64]:
-        """Excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
+        """Return the excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
 
-        Exactly: g varies by no more than its own rounding. Only a piece can be flat, because elsewhere formulas are analytic.
+        "Exactly" means that g varies by no more than its own rounding. Only a whole piece can be flat, because formulas are
+        analytic within a piece.
         """
         levels = np.full(len(self.trees), np.nan)
         if not self.rate_knots:
@@ -112,7 +114,7 @@ class Resistance:
 
     @cached_property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """Where g is flat, slowest first: every slip rate of such an interval solves the contact equation at its load."""
+        """Return the intervals on which g is flat, slowest first: all their slip rates solve the contact equation at one load."""
         found: list[Plateau] = []
         for low, high in pairwise((0.0, *self.rate_knots)):
             level = float(self._levels[int(self.law.piece_at(self.law_slip, low))])
@@ -123,49 +125,49 @@ class Resistance:
         return tuple(found)
 
     def end_excess(self, rate: float) -> float:
-        """Excess (Pa) at the end of a branch: that of the plateau which begins or ends there, if one does."""
+        """Return the excess (Pa) at the end of a branch, taken from the plateau that begins or ends there if one does."""
         level = next((p.excess for p in self.plateaus if rate in (p.rate_from, p.rate_to)), None)
         return float(self.excess(rate)) if level is None else level
 
     @cached_property
     def trees(self) -> tuple[Expression, ...]:
-        """The law's formulas."""
+        """Return the law's formulas, one for each piece."""
         return self.law.trees()
 
     def _at_rest(self, tree: Expression, numbers: Mapping[str, Any]) -> Any:
-        """What the formula of a piece gives at s = 0, even where the piece holds only at higher rates."""
+        """Evaluate the formula of a piece at s = 0, even if the piece applies only at higher rates."""
         return evaluate(tree, numbers, np.float64(self.law_slip), np.float64(0.0))
 
     def excess(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """g(s) - S mu_static (Pa); see `excess_and_slope`."""
+        """Return g(s) - S mu_static (Pa); see `excess_and_slope`."""
         return self.excess_and_slope(rate)[0]
 
     def slope(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """g'(s) (Pa s/m)."""
+        """Return g'(s) (Pa s/m); see `excess_and_slope`."""
         return self.excess_and_slope(rate)[1]
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Slip rates (m/s) at which things happen: S (variation of mu)/Z, and the law's own.
+        """Return the characteristic slip rates (m/s) of the contact: S (variation of mu)/Z and those of the law.
 
-        Not those so fast that S (variation of mu) is nothing against Z s: there g rises whatever the law does.
+        Scales of the law that exceed the first by the factor `_FASTEST` are left out: g rises there whatever the law does.
         """
         own = self.normal * self.law.variation / self.impedance
         found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 
     def fastest(self, excess: float) -> float:
-        """A slip rate (m/s) at which g has surely passed the given excess (Pa), because friction is bounded below."""
+        """Return a slip rate (m/s) at which g certainly exceeds the given excess (Pa), because friction is bounded below."""
         fall = self.strength - self.normal * self.law.range()[0]
         bound = max(excess + fall, 0.0) / self.impedance
         return 2.0 * bound + float(np.finfo(float).tiny)
 
 
 def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
-    """The resistance of a slab's contact at a law slip (m; default: where the problem starts).
+    """Return the resistance of a slab's contact at a law slip (m; default: the initial one).
 
-    A contact mass plays no part in it: g is then what the contact settles to. Raises InputError for a block, whose slip rate
-    is a state and solves no contact equation.
+    A contact mass does not enter: g is then the resistance at which the contact settles. Raises InputError for a block, whose slip
+    rate is a state and solves no contact equation.
     """
     if not isinstance(problem.body, ElasticSlab):
         raise InputError("contact equation: a block has none, its slip rate follows from its inertia")

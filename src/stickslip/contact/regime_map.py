@@ -1,4 +1,4 @@
-"""The regime over two numbers of a problem, with the critical curve between regular and irregular."""
+"""The regime over two parameters of a problem, with the critical curve between regular and irregular."""
 
 from __future__ import annotations
 
@@ -19,14 +19,28 @@ from stickslip.problem.problem import Problem
 Floats = NDArray[np.float64]
 
 MOST_POINTS = 1000
-"""Points of the longest axis."""
+"""Largest number of points on an axis; the cost of a map grows with the product of both."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """A number of a problem (see `stickslip.parameters`) from low to high (SI), at so many points, evenly or in its logarithm.
+    """A parameter of a problem and the values that it takes along one axis of a map.
 
-    Raises InputError where low is not below high, or not above 0 for a logarithm, or there are not 2 to 1000 points.
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter (see `stickslip.parameters`).
+    low, high : float
+        First and last value, in SI units.
+    points : int
+        Number of values, 2 to 1000.
+    log : bool
+        If True, the values are evenly spaced in their logarithm.
+
+    Raises
+    ------
+    InputError
+        If low is not below high, if low is not above 0 on a logarithmic axis, or if there are not 2 to 1000 points.
     """
 
     parameter: str
@@ -45,17 +59,26 @@ class Axis:
 
     @property
     def values(self) -> Floats:
-        """The points."""
+        """Return the values along the axis (SI), ascending, shape (points,)."""
         spaced = np.geomspace if self.log else np.linspace
         return np.asarray(spaced(self.low, self.high, self.points))
 
 
 @dataclass(frozen=True)
 class RegimeMap:
-    """Smallest g'/Z over all slip rates at each point, shape (y, x): negative is irregular, NaN where the problem is refused.
+    """The result of `regime_map`.
 
-    `boundary` holds straight pieces of the critical curve, shape (pieces, end, coordinate): their ends are critical values to
-    rounding. `present` is the problem's own point.
+    Attributes
+    ----------
+    x, y : Axis
+        Axes of the map.
+    margin : ndarray, shape (y.points, x.points)
+        Smallest g'/Z over all slip rates at each point: negative is irregular, NaN where the problem is refused.
+    boundary : ndarray, shape (segments, 2, 2)
+        Straight segments of the critical curve; the axes are segment, end of the segment, and coordinate (x, y). The ends are
+        critical values to rounding.
+    present : tuple of float
+        The point (x, y) of the problem itself.
     """
 
     x: Axis
@@ -66,16 +89,34 @@ class RegimeMap:
 
 
 def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int], None] | None = None) -> RegimeMap:
-    """The regime over two numbers, all else kept; `progress` is told how many points of how many are done.
+    """Compute the regime of a problem over two of its parameters, with everything else fixed.
 
-    Raises InputError for a name that is none, for the same one twice, and for a block or a contact mass, whose motion is unique.
+    Parameters
+    ----------
+    problem : Problem
+        Problem whose body is a slab without contact mass.
+    x, y : Axis
+        The two parameters and their values.
+    progress : callable, optional
+        Called with the number of finished points and the number of all points.
+
+    Returns
+    -------
+    RegimeMap
+        Smallest g'/Z at each point, and the critical curve.
+
+    Raises
+    ------
+    InputError
+        If a name is not that of a parameter, if both axes have the same one, or if the body is a block or has a contact mass, so
+        that the motion is unique.
     """
     names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
     if names[0].name == names[1].name:
         raise InputError(f"regime map: needs two different parameters, got {names[0].name} twice")
     if getattr(problem.body, "contact_mass", 0.0) > 0.0:
         raise InputError("regime map: the contact mass makes the slip rate a state, the motion is unique whatever the law")
-    margin(problem)  # refuses a block
+    margin(problem)  # raises for a block, which `at` would otherwise turn into a map of NaN
 
     def at(x_value: float, y_value: float) -> float:
         pairs = list(zip(names, (x_value, y_value), strict=True))
@@ -95,7 +136,7 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
 
 
 def _boundary(x: Floats, y: Floats, values: Floats, at: Callable[[float, float], float]) -> Floats:
-    """Within each cell of four points, the critical values on its sides, joined by a line."""
+    """Return segments of the critical curve: in each cell of four points, the critical values on its sides, joined by a line."""
     known: dict[tuple[int, int, int, int], tuple[float, float]] = {}
 
     def on_side(a: tuple[int, int], b: tuple[int, int]) -> tuple[float, float] | None:

@@ -1,4 +1,4 @@
-"""Newton's method in a bracket: the one root finder of this package."""
+"""Root finding in a bracket: Newton's method for smooth monotone functions, Chandrupatla's for functions that may jump."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import math
 from collections.abc import Callable
 
 _NEAR = 1e-8
-"""Relative step below which Newton's method, were it exact, would be done after one more step."""
+"""Relative step below which Newton's method, which converges quadratically, is done after one more step."""
 
 
 def bracketed_newton(
     function: Callable[[float], tuple[float, float]], low: float, high: float, start: float, rising: bool
 ) -> float:
-    """The root, to rounding, of a function that returns its value and its slope and is monotone between low and high.
+    """Return the root, to rounding, of a function that returns its value and its slope and is monotone between low and high.
 
-    `rising` says whether the value is negative at low or at high. Bisects where Newton leaves the bracket or hardly gains, and
-    stops where steps no longer make the value smaller: rounding has then taken over.
+    `rising` is True if the value is negative at low and positive at high. The method bisects if Newton's step leaves the bracket or
+    hardly gains, and stops if a step no longer reduces the value: only rounding is then left.
     """
     x, last = start, high - low
     value, slope = function(x)
@@ -35,10 +35,11 @@ def bracketed_newton(
 
 
 def sign_change(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function changes between negative and not negative, to rounding; it may jump there, or be infinite.
+    """Return the place, to rounding, at which a function changes between negative and not negative.
 
-    Chandrupatla's method (1997, Adv. Eng. Softw. 28, 145): inverse quadratic where the function is near a straight line,
-    bisection elsewhere. Returns the end of the last bracket at which the function is not negative.
+    The function may jump there, or be infinite. The result is the end of the last bracket at which the function is not negative.
+    Chandrupatla's method (1997, Adv. Eng. Softw. 28, 145) interpolates by an inverse quadratic where the function is nearly
+    straight, and bisects elsewhere.
     """
     a, b, c = high, low, high
     fa, fb = function(a), function(b)
@@ -60,7 +61,7 @@ def sign_change(function: Callable[[float], float], low: float, high: float) -> 
 
 
 def _next_share(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> float:
-    """Where between a and b to look next, as a share of the way."""
+    """Return the next point to examine, as a share of the way from a to b."""
     if not (math.isfinite(fa) and math.isfinite(fb) and math.isfinite(fc)) or fc in (fa, fb) or fa == fb:
         return 0.5
     xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)

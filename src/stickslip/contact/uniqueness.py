@@ -1,6 +1,6 @@
-"""Whether the contact equation has one solution, what its folds are, and what the chosen rule does there.
+"""Uniqueness of the slip rate: number of solutions of the contact equation, its folds, and the jumps of the selection rule.
 
-Source: Campillo et al. 1996, section 3: the set K of Fig. 3, regular and irregular, and the jumps of Fig. 4.
+Source: Campillo et al. 1996, section 3: the set K of Fig. 3, the terms regular and irregular, and the jumps of Fig. 4.
 """
 
 from __future__ import annotations
@@ -27,64 +27,102 @@ from stickslip.problem.problem import Problem
 
 @dataclass(frozen=True)
 class Uniqueness:
-    """The answer of `uniqueness`. Loads in Pa, slip rates in m/s, all for slip forwards: backwards everything is mirrored."""
+    """The result of `uniqueness`.
+
+    Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
+    """
 
     regime: Literal["regular", "irregular", "continuum"]
-    """regular: one slip rate at every load. irregular: several between the folds. continuum: at one load all those of an interval
-    (there may be folds besides)."""
+    """regular: one slip rate at every load. irregular: several slip rates at loads between the folds. continuum: all slip rates of
+    an interval at one load (there may be folds besides)."""
     rule: str
     summary: str
     critical_parameter: str | None = None
-    """Which number of the problem has a critical value, as `critical_value` takes it: one of the law's own where there is a closed
-    form, else the normal stress."""
+    """Name of the parameter that has a critical value, as `critical_value` takes it: one of the law if there is a closed form,
+    otherwise the normal stress."""
     critical_value: float | None = None
-    """Where along it the regime changes, in SI."""
+    """Value of that parameter at which the regime changes, in SI units."""
     critical_stress_between: tuple[float, float] | None = None
-    """Numbers between which the critical normal stress (Pa) is proven to lie; None where friction is not proven to fall."""
+    """Bounds between which the critical normal stress (Pa) is proven to lie; None if friction is not proven to fall anywhere."""
     certificate: Verdict = "proven"
-    """"proven": `folds` are all there are, by interval arithmetic or because the slip rate is a state. "not decided": the same
-    but for the slip rates in `undecided`, where a search on a grid is taken. "searched": on a grid, without proof."""
+    """"proven": `folds` is complete, by interval arithmetic or because the slip rate is a state. "not decided": it is complete
+    except for the slip rates in `undecided`, where a search on a grid is used. "searched": a search on a grid, without proof."""
     undecided: tuple[tuple[float, float], ...] = ()
-    """Intervals of slip rates (m/s) in which g may turn, or touch a slope of 0, as far as rounding lets one see."""
+    """Intervals of slip rates (m/s) in which rounding hides whether g turns or touches a slope of 0."""
     folds: tuple[Fold, ...] = ()
     jumps: tuple[Jump, ...] = ()
     window: tuple[float, float] | None = None
-    """Loads between which more than one slip rate is admissible, as excess over the static strength (Pa)."""
+    """Range of loads at which more than one slip rate is admissible, as excess over the static strength (Pa)."""
     resistance: Resistance | None = None
-    """The contact equation; None where the slip rate follows from inertia or from a state of the law, not from the load alone."""
+    """The contact equation; None if the slip rate depends on inertia or on a state of the law, and not on the load alone."""
     branches: tuple[Branch, ...] = ()
     loop: Loop | None = None
-    """What the rule walks as the load slowly rises past all folds and comes back; None where the slip rate is a state."""
+    """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state."""
 
     @property
     def loop_area(self) -> float:
-        """Area of the `loop` (Pa m/s); 0 where the slip rate is a state."""
+        """Return the area of the `loop` (Pa m/s), 0 if the slip rate is a state."""
         return self.loop.area if self.loop else 0.0
 
     @property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """Intervals of slip rates on which g is flat: at its load each solves the contact equation, and no rule picks one."""
+        """Return the intervals on which g is flat: at one load all their slip rates solve the equation, and no rule picks one."""
         return self.resistance.plateaus if self.resistance else ()
 
     def g(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """The resistance Z v + S mu(v) (Pa) to slip at rates v (m/s), odd in v; 0 means the limit 0+. Raises like `admissible`."""
+        """Return the resistance Z v + S mu(v) to slip, an odd function of v.
+
+        Parameters
+        ----------
+        rate : array_like
+            Slip rates v (m/s); 0 means the limit 0+.
+
+        Returns
+        -------
+        ndarray
+            Resistance (Pa), of the shape of `rate`.
+
+        Raises
+        ------
+        InputError
+            If the slip rate is a state: a block, a contact with mass, or a law with a state.
+        """
         g, rates = self._equation(), np.asarray(rate, float)
         return np.where(rates < 0.0, -1.0, 1.0) * (g.strength + g.excess(np.abs(rates)))
 
     def admissible(self, load: float) -> NDArray[np.float64]:
-        """Every slip rate (m/s) that solves the contact equation at a load (Pa), stick (0) and backward ones included, ascending.
+        """Return all slip rates that solve the contact equation at a load.
 
-        Where all those of an interval do, its two ends stand for it: see `continuum`. Raises InputError where the slip rate is a
-        state: a block, or a contact with mass.
+        Parameters
+        ----------
+        load : float
+            Load (Pa).
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Slip rates (m/s), ascending, with stick (0) and backward slip. If all slip rates of an interval are solutions, its two
+            ends represent it: see `continuum`.
+
+        Raises
+        ------
+        InputError
+            If the slip rate is a state: a block, a contact with mass, or a law with a state.
         """
         return self._solutions(load)[0]
 
     def stability(self, load: float) -> NDArray[np.bool_]:
-        """Whether each of the `admissible` rates is stable: g rises there, or the contact sticks. Folds and plateaus are not."""
+        """Return True for each `admissible` rate that is stable, shape (n,).
+
+        A rate is stable if g rises there or if the contact sticks. Folds and plateaus are not stable. Raises as `admissible` does.
+        """
         return self._solutions(load)[1]
 
     def continuum(self, load: float) -> tuple[float, float] | None:
-        """The interval of slip rates (m/s) that all solve the contact equation at a load (Pa, to its rounding), if there is one."""
+        """Return the interval of slip rates (m/s) that all solve the contact equation at a load (Pa, to its rounding), or None.
+
+        Raises as `admissible` does.
+        """
         at = self._plateau(load)
         if at is None:
             return None
@@ -102,7 +140,8 @@ class Uniqueness:
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
-        level = {} if plateau is None else {load >= 0.0: plateau.excess}  # to the digit, not to the rounding of the load
+        # the plateau's own excess is exact, while load - strength carries the rounding of the load
+        level = {} if plateau is None else {load >= 0.0: plateau.excess}
         forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
         backward, mirrored = rates_at(g, self.branches, level.get(False, -load - g.strength))
         moving, kept = backward > 0.0, forward > (-1.0 if abs(load) <= g.strength else 0.0)
@@ -118,7 +157,30 @@ class Uniqueness:
 
 
 def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
-    """Is the slip rate unique, at a law slip (m; default: the start)? Raises InputError as `contact.branches` does."""
+    """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
+
+    Parameters
+    ----------
+    problem : Problem
+        Problem to examine. For a block, a contact with mass and a law with a state, the answer is "regular".
+    law_slip : float, optional
+        Slip (m) as the law counts it; the initial one by default.
+
+    Returns
+    -------
+    Uniqueness
+        Regime, critical value, folds, jumps of the rule, and what is proven of the folds.
+
+    Raises
+    ------
+    InputError
+        If friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the selection
+        rule cannot be followed.
+
+    Notes
+    -----
+    Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
+    """
     if not isinstance(problem.body, ElasticSlab):
         return Uniqueness("regular", problem.rule, _INERTIA.format(body="The block", rule=problem.rule))
     if problem.body.contact_mass > 0.0:
@@ -150,7 +212,7 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
 
 
 def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
-    """Parameter and critical value: by the law's closed form, else that of the normal stress."""
+    """Return a parameter and its critical value, from the law's closed form if there is one, otherwise the normal stress."""
     closed = problem.friction.critical_value(g.impedance, g.normal)
     if closed is not None:
         return closed
@@ -171,9 +233,10 @@ def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tup
 
 
 def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:
-    """The loads with several solutions as excess (Pa): from the lowest fold to the highest, stick's end (0) counting as one.
+    """Return the range of loads with several solutions, as excess (Pa), from the lowest fold to the highest.
 
-    None where there is one solution at every load; of no width where only a plateau has several.
+    The end of stick (excess 0) counts as a fold. The result is None if there is one solution at every load, and has no width if
+    only a plateau has several.
     """
     lower = [b.excess_from for b in stable if b.rate_from > 0.0 or b.excess_from < 0.0]
     upper = [b.excess_to for b in stable if b.rate_to < np.inf]
@@ -195,7 +258,7 @@ _STATE = (
 def _summary(
     problem: Problem, g: Resistance, critical: tuple[str, float] | None, window: tuple[float, float] | None, jumps: tuple[Jump, ...]
 ) -> str:
-    """One paragraph for people."""
+    """Return a paragraph that summarises the result for the user."""
     law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
     bound = ""
     if critical:

@@ -1,1 +1,1 @@
-"""What everything else rests on: errors, units, quantities, files that appear whole or not at all."""
+"""The bottom layer: errors, units, physical quantities, and files that are written completely or not at all."""

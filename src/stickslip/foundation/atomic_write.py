@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, files that are read only so far, and locks on names."""
+"""Atomic writing of files, reading of files up to a size limit, and locks on file names."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DRAFT = ".stickslip-draft-"
-"""Prefix of the temporary names under which files and folders are written."""
+"""Prefix of the temporary names (drafts) under which files and folders are written before they get their final name."""
 STALE = 60.0
-"""Age (s) from which a draft that nobody has locked was left by a process that died."""
+"""Age (s) from which an unlocked draft counts as left behind: a living writer locks its draft long before that."""
 STALE_WITHOUT_LOCKS = 86_400.0
-"""The same (s) where the file system or the operating system has no locks: no file takes a day to write."""
+"""Age (s) from which a draft counts as left behind even if no lock on it could be taken: no file takes a day to write."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Error numbers which say that there is no more room."""
+"""Error numbers that mean that there is no space left: full disk, exhausted quota, or a file size limit."""
 
 
 def read_bounded(path: Path, largest: int) -> bytes:
-    """Return what an ordinary file of at most `largest` bytes holds.
+    """Return the content of a regular file of at most `largest` bytes.
 
-    A pipe or a device is not waited for: it may never begin, or never end. Raises OSError, and InputError, the end of a sentence
-    that begins with the file.
+    Pipes and devices are refused at once, because they may never begin or never end. Raises OSError, and InputError with a message
+    that is meant to follow the name of the file.
     """
     with open(path, "rb", opener=_opened_at_once) as stream:
         if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
@@ -49,10 +49,10 @@ def _opened_at_once(path: str, flags: int) -> int:
 
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` fill a temporary file beside `path`, then give it the name: never half a file. Returns the path.
+    """Let `write` fill a temporary file (the draft) beside `path`, rename it to `path`, and return the path.
 
-    The content is on the disk before the name is changed, and the name before this returns. Drafts of writers that were killed
-    are removed. Raises OSError, which names `path` and not the draft.
+    Readers never see half a file. The content is on the disk before the file is renamed, and the new name before the function
+    returns. Drafts of writers that were killed are removed. Raises OSError, which names `path` and not the draft.
     """
     draft = draft_beside(path)
     try:
@@ -75,7 +75,7 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
 
 
 def draft_beside(path: Path) -> Path:
-    """Return a temporary name beside a path, with its suffix, and remove what killed writers have left under such names."""
+    """Return a temporary name beside a path, with the same suffix, and remove drafts that killed writers have left there."""
     with suppress(OSError):
         for old in list(path.parent.glob(f"{DRAFT}*")):
             if _is_stale(old):
@@ -84,7 +84,7 @@ def draft_beside(path: Path) -> Path:
 
 
 def _is_stale(draft: Path) -> bool:
-    """Return True if a draft is old and no living process holds it."""
+    """Return True if a draft is older than `STALE` and unlocked, or, whether locked or not, older than `STALE_WITHOUT_LOCKS`."""
     with suppress(OSError):
         age = time.time() - draft.stat().st_mtime
         if age < STALE or draft.is_symlink():
@@ -96,13 +96,13 @@ def _is_stale(draft: Path) -> bool:
 
 
 def sync(path: Path) -> None:
-    """Have the content of a file on the disk."""
+    """Force the content of a file to the disk."""
     with path.open("rb+") as file:
         os.fsync(file.fileno())
 
 
 def sync_folder(folder: Path) -> None:
-    """Have the names in a folder on the disk, where the operating system can do that."""
+    """Force the names in a folder to the disk, if the operating system supports that."""
     with suppress(OSError):
         number = os.open(folder, os.O_RDONLY)
         try:
@@ -112,7 +112,7 @@ def sync_folder(folder: Path) -> None:
 
 
 def _locked(path: Path) -> int | None:
-    """Lock a file or folder for this process; None where another one has it, or where there are no locks."""
+    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported."""
     try:
         import fcntl
     except ImportError:  # Windows
@@ -133,10 +133,11 @@ def _close(number: int | None) -> None:
 
 @contextmanager
 def held(path: Path, refusal: str) -> Iterator[None]:
-    """Hold a name against other processes, also if there is no such file; the lock ends with the process, however it ends.
+    """Reserve a file name against other processes, even if the file does not exist yet.
 
-    The lock is on the file `.NAME.lock` beside it, which is removed afterwards. Raises InputError with this text where another
-    process holds the name. Where the file system has no locks nothing is held.
+    The lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating system releases the lock when the
+    process ends, however it ends. Raises InputError with the text `refusal` if another process holds the name. If the file system
+    does not support locks, nothing is reserved.
     """
     lock = path.with_name(f".{path.name}.lock")
     number = _lock_of(lock, refusal)
@@ -149,7 +150,10 @@ def held(path: Path, refusal: str) -> Iterator[None]:
 
 
 def _lock_of(lock: Path, refusal: str) -> int | None:
-    """Lock the file of this name, which another process may be about to remove. Raises InputError where that one holds it."""
+    """Lock the file of this name, which another process may be about to remove, and return its descriptor.
+
+    Returns None if locks are not supported. Raises InputError with the text `refusal` if another process holds the lock.
+    """
     try:
         import fcntl
     except ImportError:  # Windows
@@ -161,7 +165,7 @@ def _lock_of(lock: Path, refusal: str) -> int | None:
             with suppress(FileNotFoundError):
                 if os.path.samestat(os.fstat(number), lock.stat()):
                     return number
-            os.close(number)  # it was removed in between: nobody else would meet this lock
+            os.close(number)  # the file was removed in between, so no other process would ever see this lock: try again
         except BlockingIOError:
             os.close(number)
             raise InputError(refusal) from None
@@ -171,9 +175,9 @@ def _lock_of(lock: Path, refusal: str) -> int | None:
 
 
 class Sink(io.RawIOBase):
-    """A binary file for libraries that crash where a write fails: it keeps the first error and pretends that all went well.
+    """A binary file for libraries that crash if a write fails: it stores the first error and reports success.
 
-    What could not be written reads as zeros. Call `check` when the library has closed its file.
+    Bytes that could not be written read back as zeros. Call `check` after the library has closed its file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -198,7 +202,7 @@ class Sink(io.RawIOBase):
         return self._place
 
     def write(self, data: Any, /) -> int:
-        """Write all of it, or keep the error."""
+        """Write all bytes, or store the error; return the full length in both cases."""
         view = memoryview(data).cast("B")
         done = 0
         try:
@@ -212,7 +216,7 @@ class Sink(io.RawIOBase):
         return len(view)
 
     def readinto(self, buffer: Any, /) -> int:
-        """Read as much as was written, or seemed to be."""
+        """Read bytes up to the apparent end of the file; those whose write failed are zeros."""
         view = memoryview(buffer).cast("B")
         wanted = max(min(len(view), self._end - self._place), 0)
         self._file.seek(self._place)
@@ -235,13 +239,16 @@ class Sink(io.RawIOBase):
         super().close()
 
     def check(self) -> None:
-        """Raise the first error."""
+        """Raise the first error that was stored, if there is one."""
         if self.error is not None:
             raise self.error
 
 
 def write_table(path: Path, table: pd.DataFrame, about: Iterable[str]) -> Path:
-    """CSV with every digit, behind lines of comment (`#`) that say where it comes from: `pandas.read_csv(path, comment="#")`."""
+    """Write a table as CSV with all digits, after comment lines (`#`) that say where it comes from, and return the path.
+
+    Read it with `pandas.read_csv(path, comment="#")`.
+    """
     comment = "".join(f"# {line}".rstrip() + "\n" for text in about for line in text.splitlines())
     text = comment + table.to_csv(index=False, lineterminator="\n")
     return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))

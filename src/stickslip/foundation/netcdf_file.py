@@ -1,7 +1,8 @@
-"""netCDF files with a checksum at their end, which is looked at before anything else in them.
+"""netCDF files with a checksum at their end, which is verified before anything else in them is read.
 
-Behind what netCDF readers see, a file ends with the line `stickslip sha256 HEX`, the SHA-256 of every byte before it. Other
-programs ignore it. A file that was damaged, cut off or changed is refused before the HDF5 library, which may crash on it, opens it.
+After the part that netCDF readers see, a file ends with the line `stickslip sha256 HEX`: the SHA-256 of every byte before that
+line. Other programs ignore it. A file that was damaged, cut off or changed is refused before the HDF5 library opens it, because
+that library may crash on it.
 """
 
 from __future__ import annotations
@@ -21,20 +22,26 @@ if TYPE_CHECKING:
     import h5py
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
+"""First bytes of every HDF5 file, and so of every netCDF file of this package."""
 MARK = b"\nstickslip sha256 "
+"""Beginning of the line with the checksum, including the line break before it."""
 SEAL = len(MARK) + 64 + 1
-"""Bytes of the line with the checksum."""
+"""Length of the line with the checksum, in bytes."""
 AT_A_TIME = 2**20
+"""Number of bytes that are read at once for the checksum, so that a large file is never held in memory."""
 
 
 class FullDiskError(InputError):
-    """Raised where there is no room for a file; `solution` is what could not be written, to be saved elsewhere, if there is one."""
+    """Raised if the disk has no space for a file; `solution`, if set, could not be written and can be saved elsewhere."""
 
     solution: Any = None
 
 
 def write(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a netCDF file, whole or not at all. Raises InputError where it cannot be written, FullDiskError if for lack of room."""
+    """Write a netCDF file completely or not at all, and return its path.
+
+    Raises InputError if it cannot be written, and FullDiskError if the reason is a lack of space.
+    """
     from xarray.backends import H5NetCDFStore
 
     encoding = {name: {"_FillValue": None} for name, variable in dataset.variables.items() if variable.dtype.kind == "f"}
@@ -46,7 +53,7 @@ def write(dataset: xr.Dataset, path: Path) -> Path:
 
 
 def write_with(fill: Callable[[Any], object], path: Path) -> Path:
-    """Let `fill` write into an `h5netcdf.File`, else as `write`."""
+    """Let `fill` write into an `h5netcdf.File`, with the guarantees and errors of `write`."""
     try:
         return write_atomically(path, lambda draft: _sealed(draft, fill))
     except OSError as error:
@@ -54,13 +61,13 @@ def write_with(fill: Callable[[Any], object], path: Path) -> Path:
 
 
 def cannot_be_written(path: Path, error: OSError, kept: str = "") -> InputError:
-    """Return the one line for a file that could not be written, with what is kept where the disk is full."""
+    """Return the error for a file that could not be written; `kept` is appended to its message if the disk is full."""
     kind = FullDiskError if error.errno in FULL else InputError
     return kind(f"{path}: cannot be written: {error.strerror or error}{kept if kind is FullDiskError else ''}")
 
 
 def _sealed(draft: Path, fill: Callable[[Any], object]) -> None:
-    """Write the file, then its checksum. The HDF5 library never sees that a write failed: it does not survive that."""
+    """Write the file, then its checksum. Failed writes are hidden from the HDF5 library, which would crash on them."""
     import h5netcdf
 
     sink = Sink(draft)
@@ -69,7 +76,7 @@ def _sealed(draft: Path, fill: Callable[[Any], object]) -> None:
             with h5netcdf.File(sink, "w") as file:
                 fill(file)
         except Exception:
-            sink.check()  # the reason, if HDF5 has read back what was not written
+            sink.check()  # a failed write is the true cause if HDF5 stumbled over zeros that it read back
             raise
         sink.check()
     finally:
@@ -78,7 +85,7 @@ def _sealed(draft: Path, fill: Callable[[Any], object]) -> None:
 
 
 def seal(path: Path) -> None:
-    """Write the checksum behind the end of a file."""
+    """Append the checksum to the end of a file."""
     with path.open("rb+") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0, os.SEEK_END)
@@ -86,7 +93,7 @@ def seal(path: Path) -> None:
 
 
 def check(path: Path, what: str = "a file") -> None:
-    """Refuse a file that is not as it was written. Raises InputError, which names what it should be."""
+    """Raise InputError unless a file is as this package wrote it; `what` names in the message what the file should be."""
     try:
         with path.open("rb") as file:
             size = os.fstat(file.fileno()).st_size
@@ -116,7 +123,7 @@ def _digest(file: Any, size: int) -> bytes:
 
 
 def read(path: Path, what: str = "a file") -> xr.Dataset:
-    """Read a file that `write` wrote. Raises InputError for any other one, and for one that claims more than it holds."""
+    """Read a file that `write` wrote. Raises InputError for any other file, and for one whose tables claim more than its size."""
     check(path, what)
     try:
         _check_sizes(path)
@@ -124,12 +131,12 @@ def read(path: Path, what: str = "a file") -> xr.Dataset:
             return opened.load()
     except InputError:
         raise
-    except Exception as error:  # whatever a library says of a file that was made by hand
+    except Exception as error:  # a file made by hand can carry a valid checksum and still make any library raise anything
         raise InputError(f"{path}: not a netCDF file that can be read: {' '.join(str(error).split())[:200]}") from None
 
 
 def attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of a file that `write` wrote; none of any other one."""
+    """Return the attributes of a file that `write` wrote; return an empty dictionary for any other file."""
     try:
         check(path)
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:
@@ -139,7 +146,10 @@ def attributes(path: Path) -> dict[str, Any]:
 
 
 def _check_sizes(path: Path) -> None:
-    """Refuse a file that leads elsewhere, or whose tables are larger than itself: ours are never compressed. Raises InputError."""
+    """Raise InputError for a file with links to other places, or whose tables are larger than the file.
+
+    Files of this package are never compressed, so that a table larger than the file cannot be genuine.
+    """
     import h5py
 
     size, claimed = path.stat().st_size, 0
@@ -153,7 +163,7 @@ def _check_sizes(path: Path) -> None:
 
 
 def _claimed(found: Any, path: Path) -> int:
-    """Return the bytes that a table claims; the length of an axis without values claims none."""
+    """Return the number of bytes that a table claims to hold; a dimension without values claims none."""
     import h5py
 
     if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:

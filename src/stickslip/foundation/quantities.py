@@ -1,6 +1,6 @@
-"""Physical quantities as dataclass fields: unit, meaning and range stated once, where the field is declared.
+"""Physical quantities as dataclass fields: the unit, meaning and range of each are declared once, with the field.
 
-Laws and bodies check themselves from it, and scenarios, `stickslip new` and the documentation read it.
+Laws and bodies check their values against this declaration; scenarios, `stickslip new` and the documentation read it.
 """
 
 from __future__ import annotations
@@ -15,14 +15,32 @@ from typing import Any
 from stickslip.foundation.errors import InputError
 
 LARGEST_WHOLE = 16
-"""Largest whole quantity: exponents."""
+"""Largest magnitude of a whole-numbered quantity; such quantities are exponents."""
 LARGEST, SMALLEST = 1e50, 1e-50
-"""Sizes (SI) between which quantities lie: products of several of them neither overflow nor vanish."""
+"""Largest magnitude of a quantity, and its smallest distance from an exclusive lower bound (both in SI units).
+
+Within these limits products of several quantities neither overflow nor underflow.
+"""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """Unit (SI), meaning and allowed range of a number."""
+    """Unit (SI), meaning and allowed range of a number.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit, "1" for a pure number.
+    meaning : str
+        Description for people.
+    above, at_least : float, optional
+        Exclusive and inclusive lower bound, in `unit`.
+    infinite : bool
+        If True, infinite values and magnitudes above `LARGEST` are allowed.
+    whole : bool
+        If True, only whole numbers up to `LARGEST_WHOLE` in magnitude are allowed, such as an exponent. In a friction law such a
+        number is written into the formula and is not a parameter of it.
+    """
 
     unit: str
     meaning: str
@@ -30,10 +48,9 @@ class Quantity:
     at_least: float | None = None
     infinite: bool = False
     whole: bool = False
-    """Only whole numbers, such as an exponent; in a friction law it enters the formula as a number, not as a parameter."""
 
     def check(self, owner: str, name: str, value: Any) -> float:
-        """Return the value as a float, or raise InputError naming owner and field."""
+        """Return the value as a float. Raises InputError, which names owner and field, if it is not allowed."""
         where = f"{owner}: {name}"
         if isinstance(value, bool) or not isinstance(value, numbers.Real):
             raise InputError(f"{where} must be a number in {self.label}, got {value!r}")
@@ -54,12 +71,12 @@ class Quantity:
 
     @property
     def label(self) -> str:
-        """The unit as it is shown to people: a pure number shows nothing."""
+        """Return the unit as it is shown to people: "(a pure number)" in place of "1"."""
         return "(a pure number)" if self.unit == "1" else self.unit
 
 
 def as_float(value: Any) -> float:
-    """Return a number as a float: a whole number that is too large for one is infinite."""
+    """Return a number as a float; an integer that is too large for a float becomes infinite, with its sign."""
     try:
         return float(value)
     except OverflowError:
@@ -76,18 +93,34 @@ def quantity(
     whole: bool = False,
     default: Any = dataclasses.MISSING,
 ) -> Any:
-    """Declare a dataclass field that holds a physical quantity in SI."""
+    """Declare a dataclass field that holds a physical quantity in SI units.
+
+    Parameters
+    ----------
+    unit, meaning, above, at_least, infinite, whole
+        Fields of the `Quantity` that describes the field.
+    default : float or None, optional
+        Default value of the field; with None the field is optional.
+
+    Returns
+    -------
+    dataclasses.Field
+        Field with the `Quantity` in its metadata.
+    """
     declared = Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, whole=whole)
     return dataclasses.field(default=default, metadata={"quantity": declared})
 
 
 def quantities_of(kind: type) -> dict[str, Quantity]:
-    """The quantities that a law or body declares, by field name."""
+    """Return the quantities that a law or body declares, keyed by field name."""
     return {f.name: f.metadata["quantity"] for f in dataclasses.fields(kind) if "quantity" in f.metadata}
 
 
 def check_quantities(owner: Any, but: Collection[str] = ()) -> None:
-    """Check the declared quantities of a frozen dataclass, but some, and store them as floats; None stays where it is default."""
+    """Check the declared quantities of a frozen dataclass, except those in `but`, and store them as floats.
+
+    A value of None is left as it is if None is the default of the field. Raises InputError for a value that is not allowed.
+    """
     optional = {f.name for f in dataclasses.fields(owner) if f.default is None}
     for name, declared in quantities_of(type(owner)).items():
         value = getattr(owner, name)

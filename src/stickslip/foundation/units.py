@@ -1,4 +1,7 @@
-"""Text such as "10 km" to a number in SI. Only a number, unit names and small powers are let through; nothing is evaluated."""
+"""Conversion of text such as "10 km" to a number in SI units.
+
+Only a number, unit names and small powers are accepted; nothing is evaluated.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,12 @@ from typing import Any
 from stickslip.foundation.errors import InputError, nearest
 
 LONGEST = 64
-"""Characters allowed in a quantity: units come from untrusted files."""
+"""Largest number of characters in a quantity; a limit is needed because units come from untrusted files."""
 COMMON_UNITS = (
     *("m", "mm", "cm", "km", "s", "ms", "min", "hour", "day", "year", "kg", "tonne", "m/s", "m/year"),
     *("Pa", "kPa", "MPa", "GPa", "bar", "N", "kN", "MN", "GN", "kg/m^3", "g/cm^3", "N/m", "GN/m", "Pa s/m", "1/m", "s/m"),
 )
+"""Units among which the nearest one to an unknown name is looked for; every unit of the unit library is accepted."""
 
 _NAME = r"[A-Za-zµ][A-Za-zµ_]*"
 _FACTOR = rf"{_NAME}(?:\s*(?:\^|\*\*)\s*-?[1-9])?"
@@ -24,15 +28,16 @@ _QUANTITY = re.compile(
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:
-    """Number and unit of a text such as "0.05 m/year", or None where it is not of that form."""
+    """Return number and unit of a text such as "0.05 m/year", or None if the text is not of that form."""
     found = _QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
     return (float(found["number"]), found["unit"]) if found else None
 
 
 def si_factor(unit: str, si: str) -> Fraction:
-    """How many `si` one `unit` is, exactly. A year is the Julian year of 31 557 600 s.
+    """Return the exact factor that converts a value in `unit` to a value in `si`. A year is the Julian year of 31 557 600 s.
 
-    Raises InputError, the end of a sentence that begins with the place, for a name that is no unit and for another dimension.
+    Raises InputError for an unknown unit and for a unit of another dimension; the message is meant to follow the place of the
+    fault.
     """
     import pint
 
@@ -43,7 +48,8 @@ def si_factor(unit: str, si: str) -> Fraction:
         factor = registry.get_root_units(parsed)[0]
         same = parsed.dimensionality == target.dimensionality
     except pint.UndefinedUnitError as error:
-        name = str(error.args[0]).removeprefix("delta_")  # decibels and the like: no factor leads from them to SI
+        # pint looks up decibels and the like as "delta_decibel", which it does not know: no factor converts them to SI units
+        name = str(error.args[0]).removeprefix("delta_")
         raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
     except pint.PintError:
         raise InputError(f"'{unit}' is not a unit; write it like {si}") from None
@@ -53,7 +59,7 @@ def si_factor(unit: str, si: str) -> Fraction:
 
 
 def to_si(number: float, unit: str, si: str) -> float:
-    """`number` times `unit` in `si`: 0.05 m/year is 0.05 / 31557600 to the last digit. Raises InputError like `si_factor`."""
+    """Convert `number` from `unit` to `si`; 0.05 m/year gives 0.05 / 31557600 to the last digit. Raises as `si_factor` does."""
     factor = si_factor(unit, si)
     if max(factor.numerator, factor.denominator) < 2**53:
         return number * factor.numerator / factor.denominator
@@ -61,10 +67,14 @@ def to_si(number: float, unit: str, si: str) -> float:
 
 
 _BASE = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
+"""SI base unit of each dimension that a mechanical quantity can have, by its name in the unit library."""
 
 
 def si_base(text: str) -> tuple[float, str]:
-    """Number in SI and unit in powers of m, kg and s of a text such as "1 mm/s": 0.001, "m s^-1". Raises InputError."""
+    """Return the number in SI units and the unit in powers of m, kg and s of a text: "1 mm/s" gives 0.001 and "m s^-1".
+
+    Raises InputError for a text that is not a number with a unit made of whole powers of m, kg and s.
+    """
     import pint
 
     parts = split_quantity(text)
@@ -88,7 +98,7 @@ def si_base(text: str) -> tuple[float, str]:
 
 
 def _with_one(unit: str) -> str:
-    """ "/ m" as "1/ m": the form that unit parsers know."""
+    """Return a unit that begins with a slash, such as "/ m", as "1/ m", which the unit parser understands."""
     return f"1{unit}" if unit.startswith("/") else unit
 
 
@@ -99,6 +109,6 @@ def _unit_hint(name: str) -> str:
 
 @cache
 def _registry() -> Any:
-    import pint  # 0.3 s: only where a scenario holds a unit
+    import pint  # takes 0.3 s to load, which only a scenario with units should cost
 
     return pint.UnitRegistry(non_int_type=Fraction)

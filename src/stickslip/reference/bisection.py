@@ -1,4 +1,4 @@
-"""Bisection: slow, and hard to get wrong."""
+"""Bisection, which is slow but simple enough to serve as a reference."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Callable
 
 
 def bisect(function: Callable[[float], float], low: float, high: float) -> float:
-    """The sign change of a function between low and high, to the last bit. Raises ValueError where there is none."""
+    """Return the place between low and high at which a function changes sign, to the last bit.
+
+    Raises ValueError if the function has the same sign at both ends.
+    """
     start = function(low) > 0.0
     if (function(high) > 0.0) == start:
         raise ValueError(f"no sign change between {low!r} and {high!r}")

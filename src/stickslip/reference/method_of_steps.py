@@ -1,7 +1,8 @@
-"""A slow and plain second opinion: scipy's DOP853 from one breaking point to the next, history by dense output.
+"""A slow and simple reference integrator: scipy's DOP853 from one breaking point to the next, with its dense output as history.
 
-It shares no code with the engine nor with the analysis of the contact. It knows perfect delay only, keeps every piece in memory
-and looks up the load through all round trips before: right for seconds to minutes of sliding, not for years.
+It shares no code with the engine or with the analysis of the contact. It supports perfect delay only, keeps every piece of the
+history in memory, and evaluates the load through all earlier round trips. It is therefore suited to seconds or minutes of sliding,
+not to years.
 Source of the equations: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(13) for the slab.
 """
 
@@ -23,12 +24,14 @@ from stickslip.problem.problem import Problem
 from stickslip.reference.slab.quadratic import fast_rate, fast_room
 
 Load = Callable[[float, float], float]
+"""Load minus initial strength (Pa or N) as a function of time (s) and of slip since the start (m)."""
 _MAX_PIECES = 20_000
+"""Number of pieces beyond which events are taken to accumulate at a point in time."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Motion between two times (s): slip since the start (m), slip rate (m/s), load minus initial strength (Pa or N)."""
+    """The motion between two times (s): slip since the start (m), slip rate (m/s), and load minus initial strength (Pa or N)."""
 
     start: float
     end: float
@@ -39,21 +42,21 @@ class Piece:
 
 @dataclass(frozen=True)
 class StepsSolution:
-    """The pieces of a run, end to end; evaluated from the right at the joints."""
+    """The adjoining pieces of a run; values at a joint are right limits."""
 
     problem: Problem
     pieces: list[Piece]
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
-        """u(t) in m, absolute; t in s."""
+        """Return the absolute slip u(t) (m) at times t (s), of the shape of t."""
         return self.problem.initial_slip + self._values("slip", t)
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """v(t) in m/s."""
+        """Return the slip rate v(t) (m/s) at times t (s), of the shape of t."""
         return self._values("rate", t)
 
     def load(self, t: ArrayLike) -> NDArray[np.float64]:
-        """beta(t) in Pa, or the block's spring force in N."""
+        """Return the load at times t (s), of the shape of t: beta(t) (Pa) of a slab, or the spring force (N) of a block."""
         return self.problem.strength + self._values("load", t)
 
     def _values(self, name: str, t: ArrayLike) -> NDArray[np.float64]:
@@ -65,10 +68,29 @@ class StepsSolution:
 
 
 def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> StepsSolution:
-    """Integrate a problem over `duration` (s).
+    """Integrate a problem from one breaking point to the next.
 
-    Raises InputError without scipy, for a selection rule other than perfect delay, and for a massless contact whose law depends
-    on the slip rate otherwise than by eq. (15); RuntimeError where events pile up.
+    Parameters
+    ----------
+    problem : Problem
+        Problem with the selection rule "perfect-delay".
+    duration : float
+        Time to integrate over (s).
+    rtol : float
+        Relative tolerance of the integrator.
+
+    Returns
+    -------
+    StepsSolution
+        Slip, slip rate and load as functions of time.
+
+    Raises
+    ------
+    InputError
+        If scipy is not installed, if the selection rule is not perfect delay, if the law changes its formula at slip rates, or if
+        the contact has no mass and the law depends on the slip rate but is neither eq. (15) nor Coulomb's.
+    RuntimeError
+        If events accumulate at a point in time.
     """
     if problem.selection != "perfect-delay":
         raise InputError(f"method_of_steps: knows perfect-delay only, got '{problem.selection}'")
@@ -86,6 +108,12 @@ def _scipy() -> tuple[Any, Any]:
 
 @dataclass
 class _Stepper:
+    """The state of an integration: the pieces so far, and the piece of the law in use.
+
+    `walked` in its methods is the slip (m) that the law has counted since the start, or since the last arrest for a law that heals;
+    `sense` is the direction of slip, 1 or -1, and 0 for stick.
+    """
+
     problem: Problem
     rtol: float
     pieces: list[Piece] = field(default_factory=list)
@@ -111,27 +139,27 @@ class _Stepper:
         self.offsets = [float(law.piece_coefficient(i, start, 0.0)) - here for i in range(len(law.pieces))]
         self.offsets[self.part] = 0.0
 
-    # ---- friction and forces: all as differences from the start ---------------------------------------------------------------
+    # ---- friction and forces, as differences from the initial strength --------------------------------------------------------
 
     def friction(self, walked: float, rate: float) -> float:
-        """S [mu(law slip, rate) - mu(law slip at the start, 0)]."""
+        """Return S [mu(law slip, rate) - mu(law slip at the start, 0)] (Pa or N)."""
         step, _ = difference(self.trees[self.part], self.numbers[self.part], self.problem.law_slip, walked, rate)
         return self.normal * (float(step) + self.offsets[self.part])
 
     def pull(self, sense: int, load: float) -> float:
-        """Load minus initial static strength, in the sense of slip."""
+        """Return the load in the direction of slip, minus the initial static strength (Pa or N)."""
         return load if sense > 0 else -2.0 * self.strength - load
 
     def drive(self, sense: int, load: float, walked: float, rate: float) -> float:
-        """What is left of the load after friction, while slipping."""
+        """Return the load minus sliding friction (Pa or N), in the direction of slip."""
         return self.pull(sense, load) + self.normal * self.problem.friction.static_excess - self.friction(walked, rate)
 
     def beyond(self, sense: int, load: float, walked: float) -> float:
-        """How far the load exceeds the static strength."""
+        """Return the excess of the load over the static strength (Pa or N), in the direction of slip."""
         return self.pull(sense, load) - self.friction(walked, 0.0)
 
     def room(self, sense: int, load: float, walked: float) -> float:
-        """Positive as long as a massless contact can go on slipping."""
+        """Return a number that is positive as long as a massless contact can continue to slip."""
         if self.hyperbolic:
             return fast_room(self.problem, self.pull(sense, load))
         return self.drive(sense, load, walked, 0.0)
@@ -144,7 +172,7 @@ class _Stepper:
     # ---- the load ---------------------------------------------------------------------------------------------------------------
 
     def load_near(self, time: float) -> Load:
-        """The load minus initial strength as a function of time and slip, on the stretch between breaking points around `time`."""
+        """Return the load minus initial strength as a function of time and slip, between the breaking points around `time`."""
         p, body, start = self.problem, self.problem.body, self.problem.excess
         if self.slab is None:
             pulled = _pulled(p.pull_rate, time)
@@ -200,7 +228,7 @@ class _Stepper:
         return next((s for s in (1, -1) if self.beyond(s, excess, 0.0) > 0.0), 0)
 
     def _sense(self, t: float, stop: float, state: NDArray[np.float64], before: int) -> int:
-        """Direction of slip (0: stick) on the stretch that begins at t."""
+        """Return the direction of slip (0: stick) on the interval that begins at t."""
         slip, walked, rate = (float(x) for x in state)
         if self.mass > 0.0 and rate != 0.0:
             return int(math.copysign(1, rate))
@@ -210,7 +238,10 @@ class _Stepper:
         return next((s for s in (1, -1) if self.beyond(s, load, walked) > 0.0), 0)
 
     def _rest(self, t: float, stop: float, state: NDArray[np.float64], load: Load) -> tuple[float, NDArray[np.float64], int | None]:
-        """Stay stuck until the load reaches the strength, or to the next breaking point."""
+        """Stay stuck until the load reaches the strength, or until the next breaking point.
+
+        Returns the end of the rest (s), the state there, and the direction of the slip that begins (None: to be determined).
+        """
         slip, walked, _ = (float(x) for x in state)
         end, after = stop, None
         for sense in (1, -1):
@@ -231,13 +262,16 @@ class _Stepper:
     def _slide(
         self, t: float, stop: float, state: NDArray[np.float64], load: Load, sense: int
     ) -> tuple[float, NDArray[np.float64], int | None]:
-        """Slip one way until the contact stops, the law meets a knot, or the next breaking point comes."""
+        """Slip in one direction until the contact stops, the law reaches a knot, or the next breaking point.
+
+        Returns the end of the slip (s), the state there, and the direction of the motion that follows (None: to be determined).
+        """
         motion = self._with_mass(load, sense) if self.mass > 0.0 else self._without_mass(load, sense)
         events = [motion[1]]
         ahead = self.part if self.path or sense > 0 else self.part - 1
         if 0 <= ahead < len(self.knots):
             events.append(_terminal(lambda x, y: y[1] - (self.knots[ahead] - self.problem.law_slip), 0.0))
-        # from rest, under a load that swings, the first steps would go far beyond what the error estimate sees
+        # without a limit, the first steps from rest under an oscillating load would be too long for the error estimate to notice
         longest = (stop - t) / 50.0 if self.problem.varies else math.inf
         accuracy = {"rtol": self.rtol, "atol": 1e-22, "max_step": longest}
         run = self.solve_ivp(motion[0], (t, stop), state, method="DOP853", events=events, dense_output=True, **accuracy)
@@ -281,7 +315,7 @@ class _Stepper:
 
 
 def _near(history: float | LoadingHistory, time: float) -> Callable[[float], float]:
-    """A pull rate or far stress as a function of time, as it is on the segment around a time (s)."""
+    """Return a pull rate or far stress as a function of time that is valid on the segment around a time (s)."""
     if not isinstance(history, LoadingHistory):
         return lambda t: history
     segment, tone = [s for s in history.segments if s.start <= max(time, 0.0)][-1], history.tone
@@ -289,7 +323,7 @@ def _near(history: float | LoadingHistory, time: float) -> Callable[[float], flo
 
 
 def _pulled(history: float | LoadingHistory, time: float) -> Callable[[float], float]:
-    """How far (m) a pull rate has pulled since 0 s, as a function of time, on the segment around a time (s)."""
+    """Return the displacement (m) of a driver since 0 s as a function of time that is valid on the segment around a time (s)."""
     if not isinstance(history, LoadingHistory):
         return lambda t: history * t
     past, tone = [s for s in history.segments if s.start <= max(time, 0.0)], history.tone

@@ -1,1 +1,1 @@
-"""Studies: many runs of one problem, and what they say together."""
+"""Studies that run a problem several times and compare the runs."""

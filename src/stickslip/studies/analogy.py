@@ -1,9 +1,10 @@
-"""When does a block stand for a slab? The first slip event of both under the same law, over two numbers of a problem.
+"""Comparison of a slab with its equivalent block: the first slip event of both under one law, over two parameters.
 
-The block is the slab's slow limit (`ElasticSlab.equivalent_block`): it is right where motion takes many travel times. Two pure
-numbers say how far a problem is from there: how fast friction weakens with slip against the slab's stiffness, alpha_w h =
--S (dmu/du) h/G, and with slip rate against its impedance, -S (dmu/dv)/Z, which is alpha/alpha_c under law (15).
-Source: the comparison of Campillo et al. 1996, Figs 5-7, at every point instead of three.
+The block is the slow limit of the slab (`ElasticSlab.equivalent_block`), valid for motion that takes many travel times. Two pure
+numbers measure the distance of a problem from this limit: the weakening of friction with slip relative to the slab's stiffness,
+alpha_w h = -S (dmu/du) h/G, and its weakening with slip rate relative to the impedance, -S (dmu/dv)/Z, which is alpha/alpha_c
+under law (15).
+Source: Campillo et al. 1996, Figs 5-7, who compare both bodies at three points; here the comparison is made on a grid of points.
 """
 
 from __future__ import annotations
@@ -32,20 +33,35 @@ if TYPE_CHECKING:
 
 Quantity = Literal["slip", "peak_rate", "duration"]
 QUANTITIES: tuple[Quantity, ...] = ("slip", "peak_rate", "duration")
+"""Quantities of the first slip event that are compared: columns of `Solution.events` in m, m/s and s."""
 WITHIN = 0.1
-"""The block stands for the slab where its answers are within this share of the slab's."""
+"""Default tolerance: the block represents the slab if the ratio of slab to block differs from 1 by no more than this."""
 RTOL = 1e-8
+"""Default relative tolerance of the runs, far below `WITHIN`."""
 REFUSED, NO_EVENT = "refused", "no slip event"
+"""Status at points at which the problem is not valid, and of runs in which nothing slips."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analogy:
-    """What `analogy` found: `table` has a row a point, x fastest.
+    """The result of `analogy`.
 
-    Columns: the two numbers of the problem (SI); weakening_slip = -S (dmu/du) h/G at the start and weakening_rate =
-    -S (dmu/dv)/Z where it is largest; for the first slip event slip_ (m), peak_rate_ (m/s), duration_ (s), pulses_, shocks_ and
-    status_ of the slab and of the block; slip_ratio, peak_rate_ratio and duration_ratio, slab over block; `stands`. NaN where
-    there is no event, or it does not end in the run.
+    Attributes
+    ----------
+    problem : Problem
+        Problem that was varied.
+    duration : float
+        Duration of each run (s).
+    x, y : Axis
+        The two parameters and their values.
+    within : float
+        Tolerance of the ratios in the column `stands`.
+    table : pandas.DataFrame
+        One row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at the start,
+        and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event slip_ (m),
+        peak_rate_ (m/s), duration_ (s), pulses_, shocks_ and status_, each for slab and block; slip_ratio, peak_rate_ratio and
+        duration_ratio, slab over block; stands, True if the block represents the slab. Values are NaN if there is no event, and
+        the duration also if the event does not end in the run.
     """
 
     problem: Problem
@@ -56,16 +72,16 @@ class Analogy:
     table: pd.DataFrame
 
     def ratio(self, quantity: Quantity) -> Floats:
-        """Slab over block, shape (y, x)."""
+        """Return the ratio of slab to block for a quantity, shape (y, x)."""
         return self.grid(f"{quantity}_ratio")
 
     def grid(self, column: str) -> Floats:
-        """A column of the table, shape (y, x)."""
+        """Return a column of the table as an array of shape (y, x)."""
         return self.table[column].to_numpy(float).reshape(self.y.points, self.x.points)
 
     @cached_property
     def text(self) -> str:
-        """Where the block stands for the slab, and how far it is off elsewhere."""
+        """Summarise where the block represents the slab, and how far it deviates elsewhere."""
         table, percent = self.table, f"{100 * self.within:g} %"
         known, good = table.dropna(subset=[f"{one}_ratio" for one in QUANTITIES]), table[table.stands]
         count = f"at {len(good)} of {len(known)} points with an event (slip, peak rate and duration within {percent}, same pulses)"
@@ -81,7 +97,7 @@ class Analogy:
         return f"{where}; slab over block: {', '.join(ranges).replace('_', ' ')}"
 
     def plot(self) -> Figure:
-        """The three ratios, and where the block stands for the slab."""
+        """Plot the three ratios, and the points at which the block represents the slab."""
         from stickslip.figures.studies.analogy import data, draw
 
         return draw(data(self))
@@ -95,7 +111,23 @@ def _range(values: pd.Series[float]) -> tuple[float, float]:
 
 
 def block_for(problem: Problem) -> Problem:
-    """The same problem for the slab's equivalent block, for each m^2 of contact. Raises InputError where there is none."""
+    """Return the same problem for the slab's equivalent block.
+
+    Parameters
+    ----------
+    problem : Problem
+        Problem whose body is a slab under a rigid driver.
+
+    Returns
+    -------
+    Problem
+        Problem of the block that represents 1 m^2 of contact.
+
+    Raises
+    ------
+    InputError
+        If the body is a block, or if the driver of the slab is not rigid.
+    """
     if not isinstance(problem.body, ElasticSlab):
         raise InputError("analogy: needs a slab: a block has no other block that stands for it")
     return replace(problem, body=problem.body.equivalent_block())
@@ -111,10 +143,35 @@ def analogy(
     within: float = WITHIN,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Analogy:
-    """The first slip event of a slab and of its equivalent block over two numbers of the problem, all else kept.
+    """Compare the first slip event of a slab with that of its equivalent block, over two parameters of the problem.
 
-    duration (s) is how long to wait for its end. `progress` is told how many points of how many are done. Ctrl-C raises
-    KeyboardInterrupt. Raises InputError for a block, a driver that is not rigid, and names that are no numbers of the problem.
+    Parameters
+    ----------
+    problem : Problem
+        Problem whose body is a slab under a rigid driver; everything except the two parameters is fixed.
+    duration : float
+        Longest time to wait for the end of the event (s).
+    x, y : Axis
+        The two parameters and their values.
+    rtol : float
+        Relative tolerance of the runs.
+    within : float
+        Largest difference of the ratios from 1 at which the block represents the slab, between 0 and 1.
+    progress : callable, optional
+        Called with the number of finished points and the number of all points.
+
+    Returns
+    -------
+    Analogy
+        The events at all points, and their ratios.
+
+    Raises
+    ------
+    InputError
+        If the body is a block, if the driver is not rigid, if a name is not that of a parameter or is given twice, or if `within`
+        is out of range.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
     """
     names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
     if names[0].name == names[1].name:
@@ -134,7 +191,7 @@ def analogy(
 
 
 def _point(names: tuple[Parameter, Parameter], values: tuple[float, float], duration: float, rtol: float) -> dict[str, Any]:
-    """What both bodies do at a point."""
+    """Return the columns of the table that describe both bodies at a point."""
     problem = _put(names, values)
     blank = {"weakening_slip": np.nan, "weakening_rate": np.nan}
     events = dict.fromkeys(("slab", "block"), _nothing(REFUSED))
@@ -146,9 +203,9 @@ def _point(names: tuple[Parameter, Parameter], values: tuple[float, float], dura
 
 
 def _put(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
-    """The problem at a point, None where it is refused."""
+    """Return the problem at a point, or None if the values are refused."""
     pairs = list(zip(names, values, strict=True))
-    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one alone may be refused where both together are not
+    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be invalid although both together are valid
         try:
             return parameter(first.put(one), second.name).put(other)
         except InputError:
@@ -157,7 +214,10 @@ def _put(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Pro
 
 
 def weakening(problem: Problem) -> dict[str, float]:
-    """weakening_slip = -S (dmu/du) h/G where the problem starts, at 0+; weakening_rate = -S (dmu/dv)/Z, the largest there."""
+    """Return -S (dmu/du) h/G at the initial slip and rate 0+, and the largest -S (dmu/dv)/Z over all slip rates there.
+
+    The keys are "weakening_slip" and "weakening_rate".
+    """
     body = problem.body
     assert isinstance(body, ElasticSlab)
     by_slip, _ = slopes(problem.friction, problem.law_slip)

@@ -1,4 +1,4 @@
-"""Runs side by side: what each of them is, what came of it, in one table and one figure."""
+"""Comparison of several runs: their settings and results in one table and one figure."""
 
 from __future__ import annotations
 
@@ -46,19 +46,22 @@ COLUMNS = {
     "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
     "status": ("", "what ended the run"),
 }
-"""Columns of the table: unit ("load" is what `load_unit` says) and meaning."""
+"""Columns of the table, each with its unit and meaning; the unit "load" stands for the one in the column `load_unit`."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """Something to compare or to export: its name, and how to come by its solution."""
+    """A run to compare or to export: its name, and a function that returns its solution.
+
+    `finished` is True if the solution exists already, so that a status "interrupted" in it does not come from Ctrl-C now.
+    """
 
     name: str
     run: Callable[[Progress | None], Solution]
     finished: bool = True
 
     def solution(self, progress: Progress | None = None) -> Solution:
-        """Its solution. Raises KeyboardInterrupt where Ctrl-C ends its run."""
+        """Run it, or read it, and return the solution. Raises KeyboardInterrupt if Ctrl-C ends the run."""
         found = self.run(progress)
         if not self.finished and found.status.name == "interrupted":
             raise KeyboardInterrupt
@@ -66,10 +69,10 @@ class Source:
 
 
 def read_source(source: str | Path | Scenario | Solution, until: float | None = None, rtol: float | None = None) -> Source:
-    """A bundled scenario by its name, a scenario file, a solution's file (.nc), a scenario or a solution.
+    """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
 
-    until (s) and rtol stand for those of a scenario. Raises InputError for what is none of these, and for until or rtol with a
-    solution.
+    `until` (s) and `rtol` replace those of a scenario. Raises InputError if `source` is none of these, and if `until` or `rtol` is
+    given with a solution, which has been run already.
     """
     finished = isinstance(source, Solution) or Path(str(source)).suffix == ".nc"
     if finished and (until is not None or rtol is not None):
@@ -90,7 +93,20 @@ def _shown(source: Any) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison:
-    """Finished runs by their names. With `event` the figure shows that slip event of each, in local time (rows of `events`)."""
+    """The result of `compare`.
+
+    Attributes
+    ----------
+    runs : dict of Solution
+        Finished runs, keyed by name.
+    event : int or None
+        Row of `Solution.events`: the figure shows this slip event of each run, in time since its start. None shows whole runs.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two runs, or if a run has no such event.
+    """
 
     runs: dict[str, Solution]
     event: int | None = None
@@ -105,11 +121,14 @@ class Comparison:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row a run; columns and units in `stickslip.studies.compare.COLUMNS`."""
+        """Return the table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
         return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
 
     def save(self, path: str | Path) -> Path:
-        """Write the table as CSV, behind comment lines (#) with the version, the columns' units and every scenario in SI."""
+        """Write the table as CSV and return its path.
+
+        Comment lines (#) before the table give the version, the units of the columns, and every scenario in SI units.
+        """
         return write_table(Path(path), self.table, self._about())
 
     def _about(self) -> Iterator[str]:
@@ -121,7 +140,7 @@ class Comparison:
             yield Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted).to_toml()
 
     def plot(self) -> Figure:
-        """Slip, slip rate and traction against time, one line a run."""
+        """Plot slip, slip rate and traction against time, with one line for each run."""
         from stickslip.figures.studies.compare import data, draw
 
         return draw(data(self.runs, self.event))
@@ -138,11 +157,36 @@ def compare(
     rtol: float | None = None,
     progress: Callable[[str], Any] | None = None,
 ) -> Comparison:
-    """Runs side by side: scenarios (bundled names, files, `Scenario`s) are run; solutions, also from files (.nc), are taken.
+    """Compare two or more runs in one table and one figure.
 
-    names: what to call them, in the same order. event: show this slip event of each (0 the first, -1 the last) in local time.
-    until (s) and rtol stand for those of the scenarios; `progress` is told the name of each run as it begins. Ctrl-C raises
-    KeyboardInterrupt. Raises InputError for less than two runs, for what is no scenario, and for an event that there is not.
+    Parameters
+    ----------
+    *sources : str, Path, Scenario or Solution
+        Scenarios (names of bundled ones, files, or `Scenario` objects) are run; solutions, also from files (.nc), are used as they
+        are.
+    names : sequence of str, optional
+        Names of the runs, in the same order.
+    event : int, optional
+        Slip event of each run to show in the figure (0 the first, -1 the last), in time since its start.
+    until : float, optional
+        Duration of the runs (s), in place of that of the scenarios.
+    rtol : float, optional
+        Relative tolerance, in place of that of the scenarios.
+    progress : callable, optional
+        Called with the name of each run as it begins.
+
+    Returns
+    -------
+    Comparison
+        The runs, with their table and figure.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two runs, if a source is not a scenario or solution, if the number of names is wrong, if `until` or
+        `rtol` is out of range or given with a solution, or if a run has no such event.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
     """
     if len(sources) < 2:
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
@@ -163,7 +207,7 @@ def compare(
 
 
 def distinct(names: Sequence[str]) -> list[str]:
-    """Names with (2), (3) ... behind those that came before."""
+    """Return the names, with (2), (3) ... appended to repeated ones."""
     seen: dict[str, int] = {}
     found = []
     for name in names:

@@ -1,4 +1,4 @@
-"""Small disturbances of a problem's initial load."""
+"""Small random disturbances of a problem's initial load."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import Floats
 
 SMALLEST, LARGEST = 1e-15, 1e-2
-"""Sizes between which a disturbance is one."""
+"""Allowed sizes of a disturbance, as shares of the strength: rounding hides smaller ones, and larger ones make another problem."""
 MOST_MEMBERS = 1000
+"""Largest number of members of an ensemble; each is a full run."""
 
 
 def disturbed(problem: Problem, push: float) -> Problem:
-    """The problem with an initial load that is larger by a push (Pa; block: N)."""
+    """Return the problem with `push` (Pa; block: N) added to its initial load, and with the same far stress."""
     far = problem.load if problem.far_stress is None and is_lossy(problem) else problem.far_stress
     if not problem.friction.sticks:
         return replace(problem, initial_load=problem.load + push, far_stress=far)
@@ -25,12 +26,15 @@ def disturbed(problem: Problem, push: float) -> Problem:
 
 
 def is_lossy(problem: Problem) -> bool:
-    """Whether the slab has a driver of finite impedance, whose far stress is the initial load by default."""
+    """Return True if the slab has a driver of finite impedance; its far stress is the initial load by default."""
     return not math.isinf(getattr(problem.body, "driver_impedance", math.inf))
 
 
 def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:
-    """Disturbances of the initial load (Pa or N). Raises InputError."""
+    """Draw disturbances of the initial load (Pa; block: N), shape (members,). Raises InputError for arguments out of range.
+
+    Their magnitudes lie between size/2 and size times the static strength, or the initial load for a law that never sticks.
+    """
     if not (isinstance(members, int) and 1 <= members <= MOST_MEMBERS):
         raise InputError(f"ensemble: members must be a whole number from 1 to {MOST_MEMBERS}, got {members!r}")
     if not SMALLEST <= size <= LARGEST:
@@ -45,7 +49,11 @@ def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:
 
 
 def _kept_going(problem: Problem, pushes: Floats) -> Floats:
-    """None may hold back a contact that begins at its strength or beyond: from rest it would do the same a little later."""
-    ahead, behind = problem.excess, -problem.excess - 2.0 * problem.strength  # of the strength forwards, and backwards
+    """Return the pushes, with their sign changed where they would hold back a contact that starts at its strength or beyond.
+
+    A contact that is held back starts from rest, and its run is the same one a little later.
+    """
+    # excess of the load over the strength for forward and for backward slip
+    ahead, behind = problem.excess, -problem.excess - 2.0 * problem.strength
     held_back = ahead + pushes < 0.0 if ahead >= 0.0 else (behind >= 0.0) & (behind - pushes < 0.0)
     return np.where(held_back, -pushes, pushes)

@@ -1,4 +1,4 @@
-"""How far can a run be trusted? The same problem again and again, each time with its initial load disturbed by next to nothing."""
+"""Ensembles: a problem run several times with tiny disturbances of its initial load, to see how far a run can be trusted."""
 
 from __future__ import annotations
 
@@ -27,16 +27,29 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_PIECES, MAX_TOTAL = 200_000, 2_000_000
-"""Pieces of history of one run, and of all runs together (some 400 bytes each), unless more are allowed."""
+"""Default limits on the pieces of history of one run and of all runs together, which are held in memory (some 400 bytes each)."""
 Report = Callable[[str], Any]
+"""A function that is called with a line of text on the progress of a study."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble:
-    """What `ensemble` found: the undisturbed run (`reference`) and one of each member that was finished.
+    """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
-    `pushes` (Pa; block: N) were added to the initial load. All is compared from t = 0 to `until` (s), which every run has
-    reached. `wanted` members were asked for.
+    Attributes
+    ----------
+    reference : Solution
+        The undisturbed run.
+    runs : tuple of Solution
+        The runs of the members that were finished.
+    pushes : ndarray, shape (len(runs),)
+        Disturbances added to the initial load (Pa; block: N).
+    size : float
+        Largest magnitude of a disturbance, as a share of the static strength.
+    wanted : int
+        Number of members that were asked for.
+    event_rate : float or None
+        Slip rate (m/s) above which slip counts as an event; None for the default of `Solution.catalogue`.
     """
 
     reference: Solution
@@ -48,17 +61,17 @@ class Ensemble:
 
     @property
     def problem(self) -> Problem:
-        """The problem that was disturbed."""
+        """Return the problem without disturbance."""
         return self.reference.problem
 
     @cached_property
     def until(self) -> float:
-        """Time (s) up to which runs are compared: where the first of them ended."""
+        """Return the time (s) up to which runs are compared: the earliest end of a run."""
         return min(run.history.span[1] for run in (self.reference, *self.runs))
 
     @property
     def note(self) -> str:
-        """Where a disturbance of the initial load cannot do anything but make all earlier or later; else empty."""
+        """Return a warning if a disturbance of the initial load can only shift the whole run in time; otherwise ""."""
         problem = self.problem
         shifted = problem.friction.state is None and not is_lossy(problem) and not problem.varies
         if not (shifted and -2.0 * problem.strength < problem.excess < 0.0):
@@ -67,12 +80,12 @@ class Ensemble:
 
     @property
     def ok(self) -> bool:
-        """Whether every run reached its end."""
+        """Return True if every run reached its end."""
         return all(run.status.ok for run in (self.reference, *self.runs))
 
     @property
     def stopped(self) -> str:
-        """Why there are fewer members, or a shorter time, than asked for; empty if all is there."""
+        """Return the reason why there are fewer members or a shorter time than asked for; "" if nothing is missing."""
         early = [run for run in (self.reference, *self.runs) if not run.status.ok]
         reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
         parts = [f"interrupted: {len(self.runs)} of {self.wanted} members"] if len(self.runs) < self.wanted else []
@@ -85,7 +98,7 @@ class Ensemble:
 
     @cached_property
     def catalogues(self) -> tuple[pd.DataFrame, ...]:
-        """Slip events that start up to `until`: of the undisturbed run, then of each member."""
+        """Return the slip events that start up to `until`: those of the undisturbed run, then those of each member."""
         return tuple(table[table.start <= self.until] for table in self._all_events)
 
     @cached_property
@@ -94,39 +107,54 @@ class Ensemble:
 
     @property
     def table(self) -> pd.DataFrame:
-        """One row an event of the undisturbed run: start, recurrence (s), slip (m); `members` that still have it; start_spread,
-        recurrence_spread (s), slip_spread (m): root mean square of their differences from it; the predicted amplification.
+        """Return a table with one row for each event of the undisturbed run.
 
-        A member has an event if it has had all before it and starts it at the same time, within a tenth of the time to the nearer
-        of the undisturbed events beside it.
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: start, recurrence (s) and slip (m) of the event; members, the number of members that still have it;
+            start_spread, recurrence_spread (s) and slip_spread (m), the root mean square difference of these members from the
+            undisturbed run; amplification, the predicted one.
+
+        Notes
+        -----
+        A member has an event if it has all earlier ones and starts this one at the same time, to within a tenth of the time from
+        the undisturbed event to the nearer of its two neighbours.
         """
         return self._shared[0]
 
     @property
     def has(self) -> NDArray[np.bool_]:
-        """Whether each member (row) still has each event of the undisturbed run (column)."""
+        """Return whether each member (row) still has each event of the undisturbed run (column), shape (members, events)."""
         return self._shared[1]
 
     @property
     def first_lost(self) -> int | None:
-        """Row of `table` from which on sequences differ; None if every member has every event."""
+        """Return the first row of `table` that some member lacks; None if every member has every event."""
         lost = np.flatnonzero(self.table.members < len(self.runs))
         return int(lost[0]) if lost.size else None
 
     @property
     def horizon(self) -> float:
-        """Start (s) of the first event that not all members have; inf if there is none."""
+        """Return the start (s) of the first event that some member lacks; inf if there is none."""
         return math.inf if self.first_lost is None else float(self.table.start.iloc[self.first_lost])
 
     @cached_property
     def separation(self) -> Separation:
-        """How far the loads of the members are from that of the undisturbed run."""
+        """Return the separation of the members' loads from that of the undisturbed run."""
         return separation(self.reference, self.runs, self.until)
 
     @cached_property
     def growth(self) -> pd.DataFrame:
-        """At `time` (s), how many times its push the load of a member is away: median, least and most of the members; `small`,
-        while that is far from everything; and what is predicted (the largest so far; NaN where it is not known)."""
+        """Return the growth of the disturbances with time.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each interval of time. Columns: time (s), its end; growth, least and most, the separation of a member's load
+            divided by its push: median, smallest and largest of the members; small, True until a separation first leaves the
+            range between rounding and saturation; predicted, the largest predicted growth so far (NaN if it is not known).
+        """
         import pandas as pd
 
         times = self.separation.apart / np.abs(self.pushes)[:, None]
@@ -142,7 +170,7 @@ class Ensemble:
 
     @cached_property
     def prediction(self) -> Predictability | None:
-        """What is known beforehand of the growth of the largest push; None for a block, a slip law, a state, a contact mass."""
+        """Return the predicted growth of the largest push; None for a block, a contact mass, and a law of slip or with a state."""
         if not is_followed(self.problem):
             return None
         found, lost = predictability(self.reference), self.separation.saturation
@@ -152,35 +180,40 @@ class Ensemble:
 
     @property
     def exponent(self) -> float:
-        """Measured growth rate (1/s) of a disturbance, an estimate of the largest Lyapunov exponent.
+        """Return the measured growth rate (1/s) of a disturbance, an estimate of the largest Lyapunov exponent.
 
-        Slope of the straight line through ln(growth) against time while the separation is small; NaN where that is not long
-        enough. 0 for what stays as it was, negative for what is forgotten.
+        It is the slope of the straight line fitted to ln(growth) against time while the separation is small, and NaN if there are
+        fewer than three such times. It is 0 for a disturbance that persists, and negative for one that decays.
         """
         small = self.growth[self.growth.small]
         return slope(small.time.to_numpy(), small.growth.to_numpy())
 
     @property
     def predicted_exponent(self) -> float:
-        """The same slope of the predicted growth, at the same times while it is small too; NaN where it is not known."""
+        """Return the slope (1/s) of the predicted growth, at those times of `exponent` at which it is small too; NaN if unknown."""
         largest = self.separation.saturation / np.abs(self.pushes).max()
         small = self.growth[self.growth.small & (self.growth.predicted < largest)]
         return slope(small.time.to_numpy(), small.predicted.to_numpy())
 
     @cached_property
     def statistics(self) -> pd.DataFrame:
-        """What statistics keep: one row each for recurrence (s), slip (m) and peak_rate (m/s).
+        """Return how far the statistics of the members differ.
 
-        `count`, `mean` and `variation` of the undisturbed run (see `stickslip.catalogue_statistics`); mean and standard deviation
-        over the members of their own `mean` and `variation`; and `chance`, deviation / sqrt(count): how far means of so many
-        independent events are apart anyway. A mean_deviation no larger than that says that statistics are stable.
+        Returns
+        -------
+        pandas.DataFrame
+            One row each for recurrence (s), slip (m) and peak_rate (m/s). Columns: count, mean and variation of the undisturbed run
+            (see `stickslip.catalogue_statistics`); mean_members, variation_members and mean_deviation, variation_deviation, the
+            mean and standard deviation over the members of their own mean and variation; chance, deviation / sqrt(count), the
+            standard deviation of the mean of as many independent events. Statistics are stable if mean_deviation is no larger
+            than chance.
         """
         own, *others = self.catalogues
         return statistics_spread(own, others)
 
     @property
     def text(self) -> str:
-        """What was found, in a few words."""
+        """Summarise how many events the members share."""
         events, lost, members = len(self.table), self.first_lost, len(self.runs)
         if not events:
             return "no slip event"
@@ -193,7 +226,7 @@ class Ensemble:
 
     @property
     def growth_text(self) -> str:
-        """Measured growth beside the predicted one, in a few words."""
+        """Summarise the measured and the predicted growth of a disturbance."""
         if math.isnan(self.exponent):
             return "growth not measured: the loads are too soon too far apart, or not more than rounding"
         largest = float(self.growth.growth[self.growth.small].iloc[-1])
@@ -205,7 +238,10 @@ class Ensemble:
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
 
     def save(self, path: str | Path) -> Path:
-        """Write the table of events (.csv), or all that is drawn with its provenance (.nc). Raises InputError for other names."""
+        """Write the table of events (.csv), or all data of the figure with their provenance (.nc), and return the path.
+
+        Raises InputError if the name ends otherwise, or if an .nc file cannot be written.
+        """
         from stickslip.figures.studies.ensemble import data
         from stickslip.foundation.atomic_write import write_atomically
         from stickslip.foundation.netcdf_file import write
@@ -219,7 +255,7 @@ class Ensemble:
         return write(data(self).assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), path)
 
     def plot(self) -> Figure:
-        """Events of every member, the growth of the disturbance, and the distribution of slips."""
+        """Plot the events of every member, the growth of the disturbance, and the distribution of slips."""
         from stickslip.figures.studies.ensemble import data, draw
 
         return draw(data(self))
@@ -244,16 +280,50 @@ def ensemble(
     progress: Report | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
-    """Run a problem undisturbed, and `members` times with its initial load disturbed, and compare.
+    """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
 
-    Each member's initial load (slab: the uniform stress tau0; block: the force of its spring) is larger or smaller by `size`/2 to
-    `size` times the static strength S mu_s (of a law that never sticks: times the initial load); nothing else changes, not the
-    slip, nor a state of the law, nor the far stress. Signs and sizes are drawn from `seed`; where the contact begins at its
-    strength or beyond, no member is held back (begun from rest, another load makes the same run earlier or later, see `note`).
+    Parameters
+    ----------
+    problem : Problem
+        Problem to disturb.
+    duration : float
+        Duration of each run (s).
+    members : int
+        Number n of disturbed runs.
+    size : float
+        Largest disturbance, as a share of the static strength S mu_s (for a law that never sticks, of the initial load).
+    rtol : float
+        Relative tolerance of the runs.
+    events : int, optional
+        Number of slip events after which each run ends.
+    seed : int
+        Seed of the random numbers from which signs and sizes of the disturbances are drawn.
+    event_rate : float, optional
+        Slip rate (m/s) above which slip counts as an event, as in `Solution.catalogue`.
+    progress : callable, optional
+        Called with a line of text as each run begins.
+    max_pieces : int, optional
+        Largest number of pieces of history of one run; default 200 000, and 2 000 000 for all runs together. A run that needs more
+        ends early, and all runs are compared up to that time.
 
-    A run that needs more than max_pieces (default: 200 000, and 2 000 000 of all runs together) ends early, and all are compared
-    up to there. event_rate (m/s) is that of `Solution.catalogue`. Ctrl-C keeps the members that are finished, KeyboardInterrupt
-    if there is none. Raises InputError for an argument out of range.
+    Returns
+    -------
+    Ensemble
+        The runs, and how far they differ. After Ctrl-C it holds the members that are finished.
+
+    Raises
+    ------
+    InputError
+        If an argument is out of range.
+    KeyboardInterrupt
+        If the user presses Ctrl-C before the first member is finished.
+
+    Notes
+    -----
+    The initial load of each member (slab: the uniform stress tau0; block: the force of its spring) is larger or smaller by size/2
+    to size times the strength. Nothing else changes: not the slip, a state of the law, or the far stress. If the contact starts at
+    its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
+    `Ensemble.note`.
     """
     check_run("ensemble", duration, rtol, events, 0.0)
     pushes = drawn(problem, members, size, seed)
@@ -275,7 +345,8 @@ def ensemble(
 
 
 def _run(problem: Problem, duration: float, rtol: float, events: int | None, max_pieces: int) -> Solution:
-    exact: dict[str, Any] = {"creep_rtol": 0.0, "shortest_event": 0.0}  # leaps and lumps would hide the differences looked for
+    # leaps over creep and lumped events would hide the small differences between the runs
+    exact: dict[str, Any] = {"creep_rtol": 0.0, "shortest_event": 0.0}
     solution = simulate(problem, duration, rtol, events=events, max_pieces=max_pieces, **exact)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt

@@ -1,8 +1,9 @@
-"""Three ways to give a massless contact some of the physics that its selection rule stands for, each with one small time.
+"""Regularisations: three ways to give a massless contact the physics that its selection rule replaces, each with a small time.
 
-The time, the *size* of a regularisation, is how long the slip rate takes to settle (s). A contact mass of Z size and a lag of
-`size` obey the same equation, Z size dy/dt = load - g(y), for the slip rate v and for the rate w that friction has caught up
-with: their sizes can be compared. Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.
+This time, the *size* of a regularisation (s), is the time in which the slip rate settles. A contact mass of Z size and a lag of
+`size` obey the same equation, Z size dy/dt = load - g(y), with y the slip rate v for the mass, and the delayed rate w on which
+friction depends for the lag. Their sizes can therefore be compared.
+Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.
 """
 
 from __future__ import annotations
@@ -17,12 +18,15 @@ from stickslip.friction import LaggedFriction
 from stickslip.problem.problem import Problem
 
 FADES = 1e-6
-"""Slip rate below which the direct effect fades, as a share of the smallest slip rate at which the law itself does something."""
+"""Slip rate below which the direct effect fades, as a share of the smallest characteristic slip rate of the contact."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """How to regularise: what to call it, what its own parameter is, and the problem with it at a size (s)."""
+    """A kind of regularisation: its title, its parameter with unit, and functions of a problem and a size (s).
+
+    `value` returns the parameter, and `apply` the regularised problem.
+    """
 
     title: str
     parameter: str
@@ -49,7 +53,10 @@ def _with_lag(problem: Problem, size: float) -> Problem:
 
 
 def _direct(problem: Problem, size: float) -> float:
-    """All the law's variation at a size of a round trip, and with the size to nothing: at R/50 some 0.01, as in laboratories."""
+    """Return the direct effect of a size (s): the variation of the friction coefficient times size over the two-way travel time.
+
+    It vanishes with the size; at R/50 it is about 0.01, as measured in laboratories.
+    """
     return problem.friction.variation * size / _slab(problem).two_way_time
 
 
@@ -64,18 +71,18 @@ KINDS = {
     "lag": Kind("lagged friction", "time", "s", lambda problem, size: size, _with_lag),
     "direct-effect": Kind("lag and direct effect", "direct", "1", _direct, _with_direct_effect),
 }
-"""Every kind by its name: `by` of `stickslip.regularise`."""
+"""All kinds of regularisation, keyed by the argument `by` of `stickslip.regularise`."""
 
 
 def kind_of(by: str) -> Kind:
-    """The kind of that name. Raises InputError."""
+    """Return the kind of regularisation with a given name. Raises InputError if there is none."""
     if by not in KINDS:
         raise InputError(f"regularise: there is no regularisation '{by}'; {nearest(by, KINDS)}")
     return KINDS[by]
 
 
 def check_massless(problem: Problem) -> ElasticSlab:
-    """The problem's slab, or InputError where inertia or a state already makes the slip rate unique."""
+    """Return the slab of a problem. Raises InputError if inertia or a state of the law already makes the slip rate unique."""
     if not isinstance(problem.body, ElasticSlab):
         raise InputError("regularise: a block has inertia, which makes its slip rate unique: there is nothing to regularise")
     if problem.body.contact_mass > 0.0:
@@ -90,7 +97,7 @@ def check_massless(problem: Problem) -> ElasticSlab:
 
 
 def regularised(problem: Problem, by: str, size: float) -> Problem:
-    """The problem with a regularisation of a size (s). Raises InputError where the kind does not suit the law."""
+    """Return the problem with a regularisation of a size (s). Raises InputError if the kind is unknown or does not suit the law."""
     kind = kind_of(by)
     try:
         return kind.apply(problem, size)

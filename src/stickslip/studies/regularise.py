@@ -1,7 +1,7 @@
-"""To which selection rule does physics converge? Runs with a regularisation of shrinking size against the rules' exact answers.
+"""Convergence to a selection rule: runs with a regularisation of decreasing size, compared with the exact solution of each rule.
 
-The paper (Campillo et al. 1996, section 3) needs a rule because the contact has no inertia and no memory. Give it a little of
-either and the slip rate is unique; let it shrink, and see which rule is left.
+The paper (Campillo et al. 1996, section 3) needs a selection rule because its contact has neither inertia nor memory. A little of
+either makes the slip rate unique. The limit of vanishing size shows which rule, if any, the physics selects.
 """
 
 from __future__ import annotations
@@ -32,20 +32,38 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_PIECES = 200_000
+"""Default limit on the pieces of history of one run, which are held in memory."""
 LARGEST_SHARE, FACTOR, COUNT = 30.0, 4.0, 8
-"""Default sizes: from a 30th of the round trip down, each a quarter of the one before."""
+"""Default sizes: the largest is the two-way travel time over LARGEST_SHARE; each of COUNT is the one before over FACTOR."""
 RESOLVED = 100.0
-"""Differences below this many rtol of the slip are not looked at."""
+"""Differences below this multiple of rtol times the range of slip count as numerical error."""
 FIRST_JUMPS = 12
+"""Largest number of jumps that are timed."""
 
 Report = Callable[[str], Any]
+"""A function that is called with a line of text on the progress of a study."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Regularisation:
-    """What `regularise` found. `exact`: the massless run under each rule; `runs` and `seconds` (of computing): one for each size.
+    """The result of `regularise`, which compares all runs from t = 0 to `until` (s).
 
-    Everything is compared from t = 0 to `until` (s), which all runs have reached.
+    Attributes
+    ----------
+    problem : Problem
+        Problem without regularisation.
+    by : str
+        Kind of regularisation.
+    sizes : ndarray, shape (n,)
+        Sizes of the regularisation (s), descending.
+    rtol : float
+        Relative tolerance of the runs.
+    exact : dict of Solution
+        Run of the massless contact under each selection rule.
+    runs : tuple of Solution, length n
+        Regularised run for each size.
+    seconds : tuple of float, length n
+        Computing time of each regularised run (s).
     """
 
     problem: Problem
@@ -58,18 +76,18 @@ class Regularisation:
 
     @cached_property
     def until(self) -> float:
-        """Time (s) up to which runs are compared: where the first of them ended."""
+        """Return the time (s) up to which runs are compared: the earliest end of a run."""
         return min(float(run.breaks[-1]) for run in (*self.exact.values(), *self.runs))
 
     @cached_property
     def floor(self) -> float:
-        """Mean slip difference (m) below which runs are the same to their accuracy."""
+        """Return the mean slip difference (m) below which runs are equal to within their accuracy."""
         first = next(iter(self.exact.values()))
         return RESOLVED * self.rtol * max(float(np.ptp(first.slip(np.linspace(0.0, self.until, 101)))), 1e-300)
 
     @cached_property
     def groups(self) -> tuple[tuple[str, ...], ...]:
-        """The rules, those with the same answer together."""
+        """Return the rules in groups that have the same exact solution."""
         return tuple(groups(tuple(self.exact), self._apart, self.floor))
 
     @cached_property
@@ -79,11 +97,11 @@ class Regularisation:
 
     @cached_property
     def differences(self) -> dict[tuple[str, ...], list[Difference]]:
-        """Of the slip (m) of each run from the exact answer of each group of rules."""
+        """Return, for each group of rules, the difference in slip (m) of each run from their exact solution."""
         return {group: [difference(run, self.exact[group[0]], self.until) for run in self.runs] for group in self.groups}
 
     def errors(self, rule: str) -> Floats:
-        """Mean magnitude of the slip difference (m) from the exact answer of a rule, for each size."""
+        """Return the mean magnitude of the slip difference (m) from the exact solution of a rule, for each size, shape (n,)."""
         return np.array([found.mean for found in self.differences[self._group(rule)]])
 
     def _group(self, rule: str) -> tuple[str, ...]:
@@ -93,25 +111,25 @@ class Regularisation:
 
     @cached_property
     def changes(self) -> Floats:
-        """Mean magnitude of the slip difference (m) between each run and the one before; NaN for the first."""
+        """Return the mean magnitude of the slip difference (m) between each run and the one before, shape (n,); NaN first."""
         pairs = zip(self.runs[1:], self.runs[:-1], strict=True)
         return np.array([np.nan, *(difference(run, before, self.until).mean for run, before in pairs)])
 
     @cached_property
     def verdict(self) -> Verdict:
-        """To which rule the runs tend, and with what order."""
+        """Return the rule to which the runs converge, and the order of convergence."""
         against = {group: self.errors(group[0]) for group in self.groups}
         apart = {a: min([math.inf, *(self._apart[a[0], b[0]] for b in self.groups if b != a)]) for a in self.groups}
         return judge(Errors(self.sizes, against, self.changes, apart, self.floor))
 
     @property
     def target(self) -> str:
-        """The rule against which jumps are timed: the one the runs tend to, else the one they come nearest to."""
+        """Return the rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
         return self.verdict.rules[0] if self.verdict.rules else min(self.exact, key=lambda rule: float(self.errors(rule)[-1]))
 
     @property
     def stopped(self) -> str:
-        """Why the comparison ends before the duration that was asked for; empty if it does not."""
+        """Return the reason why the comparison ends before the duration that was asked for; "" if it does not."""
         early = [run for run in (*self.exact.values(), *self.runs) if not run.status.ok]
         reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
         years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
@@ -119,23 +137,30 @@ class Regularisation:
 
     @cached_property
     def jumps(self) -> pd.DataFrame:
-        """Jumps of the target's exact answer: time (s), cause, rate_before, rate_after (m/s), the order with which their delay
-        falls, and what theory expects: "2/3" at a fold, "1 (log)" out of rest, where the load has jumped "1"."""
+        """Return the jumps in the exact solution of the target rule.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: time (s), cause, rate_before and rate_after (m/s); order, with which the delay of the regularised runs
+            decreases; expected, the order from theory: "2/3" at a fold, "1 (log)" for a jump out of rest under a ramp of load,
+            and "1" for a jump caused by a jump of the load.
+        """
         from stickslip.studies.tables import jumps_table
 
         return jumps_table(self)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """The first shocks of the target's exact answer, up to `until`: see `Solution.shocks`."""
+        """Return the first shocks of the target's exact solution before `until` (at most FIRST_JUMPS): see `Solution.shocks`."""
         shocks = self.exact[self.target].shocks
         return shocks[shocks.time < self.until].head(FIRST_JUMPS)
 
     @cached_property
     def delays(self) -> Floats:
-        """How much later (s) than in the exact answer each run (row) does each of the `jumps` (column); NaN where it does not.
+        """Return the delay (s) of each run (row) at each of the `jumps` (column), relative to the exact solution.
 
-        A jump is done when the slip rate passes the middle between the rates before and after.
+        A run makes a jump when its slip rate passes the middle between the rates before and after; NaN if it does not.
         """
         shocks = self.shocks
         times = shocks.time.to_numpy(float)
@@ -148,22 +173,29 @@ class Regularisation:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """One row a size: size (s), the kind's own parameter; for each rule mean_, largest_ and end_ (slip difference, m) and
-        order_ between neighbouring sizes; change (m); delay_ of each jump (s); pieces, seconds (of computing) and status."""
+        """Return a table with one row for each size.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: size (s); the parameter of the kind of regularisation; for each rule mean_, largest_ and end_, the slip
+            difference (m) from its exact solution, and order_, between neighbouring sizes; change, the mean difference (m) from the
+            size before; delay_ of each jump (s); pieces of history; seconds of computing time; status.
+        """
         from stickslip.studies.tables import sizes_table
 
         return sizes_table(self)
 
     def delay_order(self, jump: int) -> Order:
-        """Order with which the delay of a jump (a row of `jumps`) falls."""
+        """Return the order with which the delay of a jump (a row of `jumps`) decreases with the size."""
         return order_of(self.sizes, self.delays[:, jump])
 
     def local_orders(self, rule: str) -> Floats:
-        """Order of the errors against a rule between each size and the one before."""
+        """Return the order of the errors relative to a rule between each size and the one before, shape (n,); NaN first."""
         return local_orders(self.sizes, self.errors(rule))
 
     def plot(self) -> Figure:
-        """Errors against size, and the runs approaching a jump."""
+        """Plot the errors against size, and the runs near a jump."""
         from stickslip.figures.studies.regularise import data, draw
 
         return draw(data(self))
@@ -174,7 +206,7 @@ class Regularisation:
 
 
 def default_sizes(two_way_time: float) -> tuple[float, ...]:
-    """R / 30, R / 120, ... R / 491 520, in s."""
+    """Return the default sizes R / 30, R / 120, ... R / 491 520 (s)."""
     return tuple(two_way_time / LARGEST_SHARE / FACTOR**k for k in range(COUNT))
 
 
@@ -189,14 +221,40 @@ def regularise(
     progress: Report | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
-    """Run a massless contact under each rule, then with a contact mass, a lag or a direct effect of each size, and compare.
+    """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.
 
-    by: "contact-mass" (Z size), "lag" (LaggedFriction of time `size`) or "direct-effect" (the same with
-    direct = variation of mu * size / R). sizes: times (s), three or more; default R/30 to R/491 520. A run that needs more than
-    max_pieces ends early, and all are compared up to there. Ctrl-C raises KeyboardInterrupt.
+    Parameters
+    ----------
+    problem : Problem
+        Problem with a slab without contact mass and a law without a state.
+    duration : float
+        Duration of each run (s).
+    by : str
+        Kind of regularisation: "contact-mass" (Z size), "lag" (LaggedFriction of time `size`) or "direct-effect" (the same with
+        direct = variation of mu * size / R).
+    sizes : sequence of float, optional
+        Three or more different times (s); R/30 to R/491 520 by default.
+    rules : sequence of str
+        Selection rules to compare with.
+    rtol : float
+        Relative tolerance of the runs.
+    progress : callable, optional
+        Called with a line of text as each run begins.
+    max_pieces : int
+        Largest number of pieces of history of one run. A run that needs more ends early, and all runs are compared up to that time.
 
-    Raises InputError where there is nothing to regularise: a block, a contact with mass, a law with a state; for a law that the
-    kind does not suit; for sizes that are not positive, different and three at least.
+    Returns
+    -------
+    Regularisation
+        The runs, their differences, and the rule to which they converge.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to regularise (a block, a contact with mass, a law with a state), if the kind is unknown or does not
+        suit the law, if a rule is unknown or none is given, or if the sizes are not three or more different positive times.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
     """
     slab = check_massless(problem)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
@@ -214,7 +272,7 @@ def regularise(
 
 
 def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tuple[Solution, float]:
-    """A run, and the seconds that it took, compilation aside."""
+    """Run a problem, and return the solution and the seconds that it took, without compilation."""
     prepare(problem, rtol)
     start = time.perf_counter()
     solution = simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0)

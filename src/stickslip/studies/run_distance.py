@@ -1,4 +1,4 @@
-"""How far two runs are apart, and when a run does what another one does in a jump."""
+"""Distance between two runs in slip, and the time at which a run passes a slip rate that another one jumps over."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import Floats
 
 UNIFORM = 2001
-"""Times at which runs are compared at least; more where either of them varies."""
+"""Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""
 INSIDE = np.linspace(0.0, 1.0, 5)[:-1]
-"""Where in each piece of a history, as shares of its length."""
+"""Positions of the times within each piece of a history, as shares of its length."""
 HALVINGS = 80
+"""Largest number of bisections, more than the digits of a time need."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Of the slip of two runs (m): mean and largest magnitude over time, and the difference at the end."""
+    """A difference in slip between two runs (m): mean and largest magnitude over time, and signed value at the end."""
 
     mean: float
     largest: float
@@ -27,7 +28,7 @@ class Difference:
 
 
 def difference(one: Solution, other: Solution, until: float) -> Difference:
-    """Slip of `one` minus slip of `other` from t = 0 to `until` (s)."""
+    """Return the slip of `one` minus that of `other`, from t = 0 to `until` (s)."""
     time = np.unique(np.concatenate([np.linspace(0.0, until, UNIFORM), _inside(one, 0.0, until), _inside(other, 0.0, until)]))
     gap = one.slip(time) - other.slip(time)
     mean = float(np.trapezoid(np.abs(gap), time)) / until
@@ -35,14 +36,17 @@ def difference(one: Solution, other: Solution, until: float) -> Difference:
 
 
 def _inside(solution: Solution, start: float, end: float) -> Floats:
-    """Times from start to end (s), some in every piece of the history."""
+    """Return times from start to end (s), four in every piece of the history, and the end."""
     breaks = solution.breaks
     times = (breaks[:-1, None] + np.diff(breaks)[:, None] * INSIDE).ravel()
     return np.append(times[(times >= start) & (times <= end)], min(end, float(breaks[-1])))
 
 
 def passage(solution: Solution, level: float, rising: bool, near: float, start: float, end: float) -> float:
-    """When the slip rate passes a level (m/s) up- or downwards between start and end (s): the time nearest to `near`, or NaN."""
+    """Return the time (s) between start and end at which the slip rate passes a level (m/s), upwards if `rising`.
+
+    If there are several such times, the result is the one nearest to `near`; it is NaN if there is none.
+    """
     time = _inside(solution, start, end)
     beyond = (solution.slip_rate(time) > level) == rising
     steps = np.flatnonzero(beyond[1:] & ~beyond[:-1])

@@ -1,4 +1,4 @@
-"""What becomes of a small disturbance: how far the loads of runs move apart, which events they share, and what statistics keep."""
+"""Growth of small disturbances: separation of the loads of runs, the events that they share, and the spread of their statistics."""
 
 from __future__ import annotations
 
@@ -15,23 +15,29 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import Floats
 
 WINDOWS, SAMPLES = 40, 64
-"""Stretches of time in which separations are looked at, no shorter than a round trip (period), and times in each."""
+"""Largest number of intervals of time for which separations are given, and number of times sampled in each.
+
+No interval is shorter than the two-way travel time (block: its period).
+"""
 LATE = 0.1
-"""Share of the times of a stretch that may be spoilt by shocks that come a little earlier or later."""
+"""Share of the times of an interval that is discarded, because shocks that come a little earlier or later spoil them."""
 ROUNDING = 16.0 * float(np.finfo(float).eps)
-"""Separations below this share of the largest load (as a difference from the strength) are noise."""
+"""Share of the largest load (as a difference from the strength) below which separations are rounding noise."""
 SAME_SHARE = 0.1
-"""Events are the same if they start no further apart than this share of the time to the nearer of the events beside."""
+"""Largest difference in start of two equal events, as a share of the time to the nearer of the neighbouring events."""
 SPREADS = ("start", "slip", "recurrence")
+"""Columns of a catalogue whose spread over the members is given."""
 DESCRIBED = ("recurrence", "slip", "peak_rate")
+"""Columns of a catalogue whose statistics are compared."""
 
 
 class Separation(NamedTuple):
-    """Of the loads of members from the undisturbed run: `apart` (Pa or N), one row a member, one column a stretch of time.
+    """Separation of the loads of members from that of the undisturbed run.
 
-    Each value is what a tenth of the times of its stretch exceed: almost the largest, but not that while a shock is late.
-    `time` (s) is where a stretch ends. From `saturation`, a tenth of the range of the undisturbed load, on a separation is not
-    small any more; up to `noise` it is rounding.
+    `apart` (Pa or N) has one row for each member and one column for each interval of time. Each value is exceeded at a tenth of the
+    times in its interval: it is close to the largest one, but leaves out the times at which a shock is late. `time` (s) is the end
+    of each interval. A separation of `saturation` (Pa or N), a tenth of the range of the undisturbed load, or more is no longer
+    small; one up to `noise` (Pa or N) is rounding.
     """
 
     time: Floats
@@ -41,13 +47,13 @@ class Separation(NamedTuple):
 
     @property
     def small(self) -> NDArray[np.bool_]:
-        """Stretches before the first in which a member is too far away, or not more than rounding."""
+        """Return True for the intervals before the first in which the separation of a member is saturated or only rounding."""
         fine = ((self.apart < self.saturation) & (self.apart > self.noise)).all(axis=0)
         return np.logical_and.accumulate(fine)
 
 
 def separation(reference: Solution, runs: Sequence[Solution], until: float) -> Separation:
-    """Of loads, from t = 0 to `until` (s)."""
+    """Return the separation of the loads of runs from that of the reference, from t = 0 to `until` (s)."""
     count = int(np.clip(until / reference.history.row_time, 1, WINDOWS))
     share = (np.arange(SAMPLES) + 0.5) / SAMPLES
     times = (np.arange(count)[:, None] + share) * (until / count)
@@ -59,13 +65,13 @@ def separation(reference: Solution, runs: Sequence[Solution], until: float) -> S
 
 
 def _load(run: Solution, times: Floats) -> Floats:
-    """Load minus the reference strength, which keeps the digits that the load itself has no room for."""
+    """Return the load minus the reference strength (Pa or N), a difference that keeps digits which the load itself would lose."""
     history = run.history
     return history.excess(history.find(times.ravel(), "right")).reshape(times.shape)
 
 
 def slope(time: Floats, growth: Floats) -> float:
-    """Slope (1/s) of the straight line that fits ln(growth) best; NaN for fewer than three points, or where one is unknown."""
+    """Return the slope (1/s) of the straight line fitted to ln(growth); NaN for fewer than three points, or if one is unknown."""
     if time.size < 3:
         return np.nan
     away = time - time.mean()
@@ -75,10 +81,10 @@ def slope(time: Floats, growth: Floats) -> float:
 def shared_events(
     reference: pd.DataFrame, members: Sequence[pd.DataFrame], row_time: float, until: float
 ) -> tuple[pd.DataFrame, NDArray[np.bool_]]:
-    """For each event of the undisturbed catalogue how many members still have it, and how far apart (see `Ensemble.table`).
+    """Return the table of shared events (see `Ensemble.table`), and whether each member (row) has each event (column).
 
-    Also whether each member (row) has each event (column): as many events before it, all of which it has, and the same start.
-    Events so near `until` (s) that nobody knows are left out.
+    A member has an event of the undisturbed catalogue if it has all earlier ones, and its event of the same number starts at the
+    same time. Events so close to `until` (s) that a member may start them later are left out, unless all members have them.
     """
     allowed = SAME_SHARE * _nearest(reference, until)
     late = np.array([_later(reference, member, row_time) for member in members])
@@ -94,7 +100,7 @@ def shared_events(
 
 
 def _nearest(table: pd.DataFrame, until: float) -> Floats:
-    """Time (s) from each event to the nearer of those beside it; all the time there is where there is no other."""
+    """Return the time (s) from each event to the nearer of its two neighbours; `until` (s) if there is no other event."""
     before = table.recurrence.to_numpy(float)
     after = np.append(before[1:], np.nan)
     nearest: Floats = np.fmin(before, after)
@@ -102,12 +108,12 @@ def _nearest(table: pd.DataFrame, until: float) -> Floats:
 
 
 def _later(reference: pd.DataFrame, member: pd.DataFrame, row_time: float) -> Floats:
-    """How much later (s) each event starts, without the rounding of either time; NaN where there is none."""
+    """Return how much later (s) each event of a member starts, without the rounding of either time; NaN if there is no event."""
     return _gaps(reference.start_row, member.start_row) * row_time + _gaps(reference.start_offset, member.start_offset)
 
 
 def _gaps(reference: pd.Series, member: pd.Series) -> Floats:
-    """Values of a member minus those of the undisturbed run, event by event; NaN where the member has too few."""
+    """Return the values of a member minus those of the undisturbed run, event by event; NaN if the member has no such event."""
     found = np.full(len(reference), np.nan)
     count = min(len(reference), len(member))
     found[:count] = member.to_numpy(float)[:count] - reference.to_numpy(float)[:count]
@@ -115,14 +121,14 @@ def _gaps(reference: pd.Series, member: pd.Series) -> Floats:
 
 
 def _root_mean_square(values: Floats) -> Floats:
-    """Over the first axis, of what is there; NaN where nothing is."""
+    """Return the root mean square of the finite values over the first axis; NaN if there are none."""
     count = np.isfinite(values).sum(axis=0)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.sqrt(np.nansum(values**2, axis=0) / count))
 
 
 def statistics_spread(reference: pd.DataFrame, members: Sequence[pd.DataFrame]) -> pd.DataFrame:
-    """How far statistics of the members are apart (see `Ensemble.statistics`)."""
+    """Return how far the statistics of the members differ (see `Ensemble.statistics`)."""
     own = catalogue_statistics(reference)
     others = [catalogue_statistics(member) for member in members]
     rows = {}

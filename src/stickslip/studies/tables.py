@@ -1,4 +1,4 @@
-"""Tables of a study: a row for each size, a row for each jump."""
+"""The tables of a study of regularisations: one row for each size, or one row for each jump."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def sizes_table(study: Regularisation) -> pd.DataFrame:
-    """See `Regularisation.table`."""
+    """Return the table with one row for each size (see `Regularisation.table`)."""
     kind = kind_of(study.by)
     columns: dict[str, object] = {"size": study.sizes}
     if kind.parameter != "time":
@@ -35,7 +35,7 @@ def sizes_table(study: Regularisation) -> pd.DataFrame:
 
 
 def jumps_table(study: Regularisation) -> pd.DataFrame:
-    """See `Regularisation.jumps`."""
+    """Return the table with one row for each jump (see `Regularisation.jumps`)."""
     shocks = study.shocks
     table = shocks[["time", "cause", "rate_before", "rate_after"]].copy()
     table["order"] = [study.delay_order(j).power for j in range(len(shocks))]

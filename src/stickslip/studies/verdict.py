@@ -1,4 +1,4 @@
-"""To which rule a sequence of runs converges, and with what order: read off their differences, and nothing else."""
+"""The rule to which a sequence of runs converges, and the order of convergence, from the differences between the runs alone."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ import numpy as np
 from stickslip.trajectory.history import Floats
 
 CLEARLY = 0.25
-"""A run is clearly nearer to a rule than to the next one within this share of their distance."""
+"""A run is clearly nearer to a rule than to any other if its error is below this share of the distance to the nearest other."""
 FALLING = 0.1
-"""Errors that fall more slowly than with this power of the size do not tend to anything."""
+"""Order (power of the size) that errors must exceed to count as convergent."""
 FEWEST = 3
+"""Smallest number of points to which an order is fitted."""
 
 
 @dataclass(frozen=True)
 class Order:
-    """A power of the size, fitted to the smallest sizes whose errors are above the runs' accuracy: so many `points`.
+    """An order of convergence: the power of the size, fitted to the smallest sizes whose errors exceed the accuracy of the runs.
 
-    first, last: the order between the two largest and between the two smallest of them. Where they differ the power still drifts.
+    `points` is the number of these sizes; `first` and `last` are the orders between the two largest and between the two smallest of
+    them. If these differ, the power still drifts.
     """
 
     power: float
@@ -38,7 +40,10 @@ NO_ORDER = Order(np.nan, np.nan, np.nan, 0)
 
 
 def order_of(sizes: Floats, errors: Floats, floor: float = 0.0) -> Order:
-    """Fit errors = constant size^power to the smaller half of the sizes, three at least, leaving out errors below the floor."""
+    """Fit errors = constant size^power to the smallest sizes whose errors exceed the floor, at most half of all sizes or three.
+
+    Returns NO_ORDER if fewer than three errors exceed the floor.
+    """
     kept = np.flatnonzero(np.isfinite(errors) & (np.abs(errors) > floor))[-max(FEWEST, (len(sizes) + 1) // 2) :]
     if kept.size < FEWEST:
         return NO_ORDER
@@ -49,7 +54,7 @@ def order_of(sizes: Floats, errors: Floats, floor: float = 0.0) -> Order:
 
 
 def local_orders(sizes: Floats, errors: Floats) -> Floats:
-    """Order between each size and the one before; NaN for the first."""
+    """Return the order between each size and the one before; NaN for the first."""
     with np.errstate(divide="ignore", invalid="ignore"):
         steps = np.diff(np.log(np.abs(errors))) / np.diff(np.log(sizes))
     return np.concatenate([[np.nan], np.where(np.isfinite(steps), steps, np.nan)])
@@ -57,7 +62,10 @@ def local_orders(sizes: Floats, errors: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Verdict:
-    """rules: those whose answer the runs tend to (several with the same answer, none if there is none), and the order."""
+    """The rules to whose solution the runs converge, the order, and a sentence.
+
+    `rules` holds several rules if they have the same solution, and none if the runs converge to none of them.
+    """
 
     rules: tuple[str, ...]
     order: Order
@@ -66,19 +74,22 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Errors:
-    """What a verdict rests on, in m of mean slip difference: sizes (s, falling), the error of each run against the answer of each
-    group of rules, the change from run to run (NaN first), the distances between the groups' answers, and the runs' accuracy."""
+    """The data of a verdict, as mean slip differences (m).
+
+    `sizes` (s) is descending; `against` holds the error of each run relative to the solution of each group of rules; `changes` is
+    the difference between each run and the one before (NaN first); `floor` is the accuracy of the runs.
+    """
 
     sizes: Floats
     against: Mapping[tuple[str, ...], Floats]
     changes: Floats
     apart: Mapping[tuple[str, ...], float]
-    """Distance from each group's answer to the nearest other one; inf where there is only one."""
+    """Distance (m) from the solution of each group of rules to the nearest other one; inf if there is only one."""
     floor: float
 
 
 def judge(found: Errors) -> Verdict:
-    """The verdict on a sequence."""
+    """Decide to which group of rules, if any, a sequence of runs converges."""
     best = min(found.against, key=lambda group: float(found.against[group][-1]))
     errors = found.against[best]
     order = order_of(found.sizes, errors, found.floor)
@@ -98,7 +109,7 @@ def judge(found: Errors) -> Verdict:
 
 
 def groups(rules: Sequence[str], apart: Mapping[tuple[str, str], float], floor: float) -> list[tuple[str, ...]]:
-    """Rules with the same answer (apart by no more than the floor, m) together, in the order of `rules`."""
+    """Group the rules whose solutions differ by no more than the floor (m), in the order of `rules`."""
     found: list[list[str]] = []
     for rule in rules:
         home = next((group for group in found if apart[group[0], rule] <= floor), None)

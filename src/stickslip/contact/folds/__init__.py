@@ -1,1 +1,1 @@
-"""Folds with proof, by interval arithmetic."""
+"""Proven folds and bounds of the slope of the resistance, by interval arithmetic."""

@@ -1,7 +1,8 @@
-"""Folds with proof: every slip rate at which g' = Z + S dmu/dv changes its sign, by interval arithmetic and bisection.
+"""Proof of the folds: all slip rates at which g' = Z + S dmu/dv changes sign, by interval arithmetic and bisection.
 
-A cell of slip rates is done when the bounds of g' on it leave out 0, or when g'' keeps one sign on it and g' has opposite signs at
-its ends: then it holds exactly one root. Other cells are cut into parts. What rounding leaves open is reported, not guessed.
+A cell (an interval of slip rates) is settled if the bounds of g' on it exclude 0: it then holds no root. It is also settled if g''
+keeps one sign on it and g' has opposite signs at its ends: it then holds exactly one root. Other cells are subdivided. Cells that
+remain open because of rounding are reported as undecided.
 
 Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, ch. 8 (bisection with the mean value form).
 """
@@ -19,40 +20,40 @@ from stickslip.contact.folds.slope_bounds import Cells, Floats, SlopeBounds, joi
 from stickslip.friction.formula.enclosure import NotEnclosedError
 
 Verdict = Literal["proven", "not decided", "searched"]
-"""proven: by interval arithmetic. not decided: so but for some intervals of slip rates. searched: on a grid, without proof."""
+"""proven: by interval arithmetic. not decided: proven except on some intervals of slip rates. searched: on a grid, unproven."""
 
 MOST_EVALUATIONS = 200_000
-"""Cells and single rates at which g' is bounded before the rest is left undecided: some 0.2 s."""
+"""Largest number of cells and single rates at which g' is bounded, about 0.2 s; cells that remain are left undecided."""
 _AT_A_TIME = 256
-"""Cells that a round of cutting aims at: up to here the cost of a round hardly grows with their number."""
+"""Number of cells that one round of subdivision aims at; the cost of a round hardly grows up to this number."""
 _MOST_PARTS, _FEWEST_PARTS = 16, 2
-"""Parts into which a cell is cut in one round."""
+"""Largest and smallest number of parts into which a cell is cut in one round."""
 
 Interval = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is proven of the roots of g' at slip rates from 0 to 1e100 m/s. Intervals are of slip rates (m/s), ascending."""
+    """A proof of the roots of g' at slip rates from 0 to 1e100 m/s; intervals are of slip rates (m/s), ascending."""
 
     verdict: Verdict
     turns: tuple[Interval, ...] = ()
-    """Each holds exactly one rate at which g' changes its sign; outside them and `undecided` it never does."""
+    """Intervals that hold exactly one change of sign of g' each; outside them and `undecided` there is none."""
     undecided: tuple[Interval, ...] = ()
-    """Where neither a root nor its absence is proven."""
+    """Intervals in which neither a root nor its absence is proven."""
     rises_at_rest: bool | None = None
-    """Whether g rises at 0+; None where that is not decided."""
+    """True if g rises at 0+, None if that is not decided."""
     evaluations: int = 0
-    """Cells and single rates at which g' was bounded."""
+    """Number of cells and single rates at which g' was bounded."""
 
     @property
     def always_rises(self) -> bool:
-        """Whether it is proven that g rises from rest on: there is one branch, and nothing to search."""
+        """Return True if g is proven to rise at all rates above 0: there is then one branch and nothing to search."""
         return self.verdict == "proven" and not self.turns and self.rises_at_rest is True
 
 
 def certificate(g: Resistance) -> Certificate:
-    """Prove where g' changes its sign."""
+    """Prove where g' changes sign; the verdict is "searched" if the law has no guaranteed bounds."""
     bounds = SlopeBounds(g)
     try:
         return _certified(bounds)
@@ -62,7 +63,10 @@ def certificate(g: Resistance) -> Certificate:
 
 @dataclass(frozen=True)
 class _Signs:
-    """Signs on cells, 0 where not known: of g' at the ends and all over, of g'' all over; and whether to give a cell up."""
+    """Signs on cells (0: not known) of g' at both ends and on the whole cell and of g'' on the whole cell, and a flag.
+
+    The flag `hopeless` marks cells that are not worth subdividing.
+    """
 
     at_low: NDArray[np.int8]
     at_high: NDArray[np.int8]
@@ -75,7 +79,7 @@ class _Signs:
 
     @property
     def turns(self) -> NDArray[np.bool_]:
-        """Whether each cell holds exactly one root."""
+        """Return True for each cell that holds exactly one root of g'."""
         return np.asarray((self.bend != 0) & (self.at_low * self.at_high < 0))
 
 
@@ -113,7 +117,7 @@ def _intervals(cells: Cells) -> list[Interval]:
 
 
 def _merged(intervals: list[Interval]) -> tuple[Interval, ...]:
-    """Join intervals that touch."""
+    """Join intervals that touch or overlap, and return them ascending."""
     found: list[Interval] = []
     for low, high in sorted(intervals):
         if found and low <= found[-1][1]:
@@ -124,12 +128,12 @@ def _merged(intervals: list[Interval]) -> tuple[Interval, ...]:
 
 
 def sign_of(bounds: Floats) -> NDArray[np.int8]:
-    """Return the sign that all numbers between two bounds have, 0 where they do not share one."""
+    """Return the sign that all numbers between two bounds share, or 0 if they do not share one."""
     return np.asarray((bounds[0] > 0.0).astype(np.int8) - (bounds[1] < 0.0).astype(np.int8))
 
 
 def _signs(bounds: SlopeBounds, cells: Cells) -> _Signs:
-    """Return what the bounds of g' and g'' say of the signs on cells."""
+    """Return the signs on cells that follow from the bounds of g' and g''."""
     seen = bounds.look(cells)
     low, high, bend, inside = (sign_of(one) for one in (seen.at_low, seen.at_high, seen.second, seen.inside))
     monotone = np.where((bend != 0) & (low * high > 0), low, 0)
@@ -138,10 +142,10 @@ def _signs(bounds: SlopeBounds, cells: Cells) -> _Signs:
 
 
 def _unions(cells: Cells, signs: _Signs) -> tuple[Cells, NDArray[np.bool_]]:
-    """Settle rows of cells that touch, on which g'' keeps one sign, and at whose outer ends g' is decided.
+    """Settle chains of adjacent cells on which g'' keeps one sign and at whose outer ends the sign of g' is known.
 
-    A root at the edge of two cells leaves both of them open: together they hold it. Returns those unions that hold one root, and
-    which of the cells are settled by a union, with a root or without.
+    A root at the common edge of two cells leaves both of them open, while their union can be settled. Returns the unions that hold
+    one root, and for each cell whether a union has settled it, with or without a root.
     """
     order = np.argsort(cells.low)
     one, two = order[:-1], order[1:]
@@ -160,8 +164,8 @@ def _unions(cells: Cells, signs: _Signs) -> tuple[Cells, NDArray[np.bool_]]:
 def _at_knots(bounds: SlopeBounds, cells: Cells) -> tuple[bool | None, list[Interval], list[Interval]]:
     """Compare the signs of g' on the two sides of each knot.
 
-    Returns whether g rises at 0+, the knots at which g' changes its sign, and those at which that is not decided; at the rate up
-    to which g' is bounded it must rise.
+    Returns whether g rises at 0+ (None: not decided), the knots at which g' changes sign, and the intervals left undecided. The
+    last cell is one of these if g is not proven to rise at its upper end.
     """
     knots = np.array(bounds.g.rate_knots)
     first = bounds(Cells(np.zeros(1), np.zeros(1), cells.piece[:1]))[0]

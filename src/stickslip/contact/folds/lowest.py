@@ -1,4 +1,4 @@
-"""The smallest g' = Z + S dmu/dv over all slip rates, between proven bounds: branch and bound with interval arithmetic.
+"""Proven bounds of the smallest g' = Z + S dmu/dv over all slip rates, by branch and bound with interval arithmetic.
 
 Source: Moore, Kearfott & Cloud 2009, Introduction to Interval Analysis, ch. 11.
 """
@@ -18,19 +18,22 @@ from stickslip.contact.folds.slope_bounds import Cells, Floats, Looks, SlopeBoun
 from stickslip.friction.formula.enclosure import NotEnclosedError
 
 _AT_A_TIME, _FEWEST_PARTS, _MOST_PARTS = 256, 2, 16
-"""Cells that a round of cutting aims at, and between how many parts each of them is cut into."""
+"""Number of cells that one round of subdivision aims at, and smallest and largest number of parts of a cell in one round."""
 _TOLERANCE = 1e-12
-"""Distance of the two bounds, relative to Z or to g' there, at which the search ends: cells are then its root times the scale."""
+"""Distance of the two bounds, relative to the larger of Z and |g'|, at which the search ends.
+
+The minimum is quadratic, so the cells are then as wide as the square root of this number times the scale of the slip rate.
+"""
 _NEAR = 1e3
-"""Rounding may keep the two bounds apart by this multiple of the tolerance, and the smallest g' still counts as proven."""
+"""Multiple of the tolerance by which rounding may keep the two bounds apart while the smallest g' still counts as proven."""
 
 
 @dataclass(frozen=True)
 class Lowest:
-    """Between which numbers (Pa s/m) the smallest g' lies at slip rates up to 1e100 m/s, and a cell (m/s) with the upper one.
+    """Bounds (Pa s/m) of the smallest g' at slip rates up to 1e100 m/s, and a cell (m/s) in which the upper bound is reached.
 
-    The verdict is "not decided" where the lower bound could not be brought near to the upper one, and "searched" where there are
-    no sure bounds: they are infinite then.
+    The verdict is "not decided" if the lower bound could not be brought close to the upper one, and "searched" if the law has no
+    guaranteed bounds; both bounds are then infinite.
     """
 
     verdict: Verdict
@@ -41,7 +44,7 @@ class Lowest:
 
 
 def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
-    """Enclose the smallest g', to a tolerance relative to Z or to itself, whichever is larger."""
+    """Enclose the smallest g' to a tolerance relative to the larger of Z and its own magnitude."""
     bounds = SlopeBounds(g)
     try:
         return _lowest(bounds, tolerance)
@@ -50,7 +53,7 @@ def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
 
 
 def bounded(g: Resistance) -> bool:
-    """Return True if there are sure bounds of g' at all."""
+    """Return True if the law has guaranteed bounds of g'."""
     bounds = SlopeBounds(g)
     try:
         bounds(bounds.first_cells())
@@ -88,14 +91,14 @@ def _parts(count: int) -> int:
 
 
 def _least(seen: Looks) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return a lower bound of g' on each cell, and whether cutting the cell would not raise it."""
+    """Return a lower bound of g' on each cell, and True for cells whose bound would not rise by subdivision."""
     monotone = (seen.second[0] > 0.0) | (seen.second[1] < 0.0)
     ends = np.minimum(seen.at_low[0], seen.at_high[0])
     return np.where(monotone, np.fmax(ends, seen.inside[0]), seen.inside[0]), monotone | seen.hopeless
 
 
 def proven_regime(g: Resistance) -> Literal["regular", "irregular"] | None:
-    """Return whether g' is above 0 at every slip rate, or below 0 at one, with proof; None where that is not decided."""
+    """Return "regular" if g' is proven positive at every slip rate, "irregular" if proven negative at one, None if undecided."""
     bounds = SlopeBounds(g)
     cells, spent = bounds.first_cells(), 0
     open_: list[Cells] = []
@@ -117,7 +120,10 @@ def proven_regime(g: Resistance) -> Literal["regular", "irregular"] | None:
 
 
 def normal_stress_between(g: Resistance, lowest: Lowest) -> tuple[float, float] | None:
-    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) by the bounds of the smallest g'; None where nothing follows."""
+    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) from the bounds of the smallest g'.
+
+    Returns None if friction is not proven to fall anywhere, or if there are no finite bounds.
+    """
     if lowest.verdict == "searched":
         return None
     steepest, at_least = ((g.impedance - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
@@ -127,4 +133,4 @@ def normal_stress_between(g: Resistance, lowest: Lowest) -> tuple[float, float] 
 
 
 _ROUNDING = 8.0 * float(np.finfo(float).eps)
-"""Relative error allowed to three operations."""
+"""Relative rounding error allowed for three operations."""

@@ -1,4 +1,4 @@
-"""Sure bounds of g' = Z + S dmu/dv and of g'' on cells of slip rates, for every piece of a law at once."""
+"""Guaranteed bounds of g' = Z + S dmu/dv and of g'' on cells (intervals) of slip rates, for all pieces of a law at once."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from stickslip.friction.formula.enclosure import enclose
 Floats = NDArray[np.float64]
 
 FASTEST = 1e100
-"""Slip rate (m/s) up to which g' is bounded: beyond it squares overflow, and nothing moves."""
+"""Slip rate (m/s) up to which g' is bounded; beyond it squares overflow, and no contact is that fast."""
 _BELOW, _ABOVE = 1e-4, 1e4
-"""Between these multiples of the slowest and the fastest scale of a contact the first cells are one for each factor of 2."""
+"""The first cells have ends in the ratio 2 between these multiples of the slowest and the fastest scale of a contact."""
 _SLOWEST = 1e-100
-"""Slip rate (m/s) below which one cell is enough, and products of rates underflow."""
+"""Slip rate (m/s) below which a single cell is used, because products of rates underflow there."""
 _FAR = 1e12
-"""Ratio of the ends of the first cells beyond the fastest scale."""
+"""Ratio of the ends of the first cells beyond the fastest scale, where g' hardly changes."""
 _JUST_ABOVE_ONE = 1.0 + 8.0 * float(np.finfo(float).eps)
-"""Covers the rounding of the half widths of cells."""
+"""Factor that covers the rounding of the half widths of cells."""
 _NOISE = 4.0
-"""A cell is given up when g' changes on it by less than this multiple of the rounding of its bounds."""
+"""A cell is hopeless if g' changes on it by no more than this multiple of the rounding of its bounds."""
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Intervals of slip rates (m/s), each within one piece of the law."""
+    """Intervals of slip rates (m/s), shape (n,), each within one piece of the law."""
 
     low: Floats
     high: Floats
@@ -44,21 +44,21 @@ class Cells:
         return Cells(self.low[chosen], self.high[chosen], self.piece[chosen])
 
     def at(self, rate: Floats) -> Cells:
-        """Return cells of one rate each, in the pieces of these."""
+        """Return cells that consist of one rate each, in the same pieces of the law."""
         return Cells(rate, rate, self.piece)
 
     @property
     def middle(self) -> Floats:
-        """A rate inside each cell."""
+        """Return the middle of each cell (m/s)."""
         return self.low + 0.5 * (self.high - self.low)
 
     @property
     def at_rounding(self) -> NDArray[np.bool_]:
-        """Whether hardly another number lies in each cell."""
+        """Return True for each cell that is only a few floating-point numbers wide."""
         return self.high - self.low <= 4.0 * np.spacing(self.high)
 
     def split(self, parts: int) -> Cells:
-        """Cut each cell into parts: of equal width, or of equal ratio where its ends lie far apart."""
+        """Cut each cell into parts of equal width, or of equal ratio if its upper end exceeds 4 times its lower one."""
         share = np.arange(parts + 1) / parts
         low, high = self.low[:, None], self.high[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -70,13 +70,16 @@ class Cells:
 
 
 def joined(parts: list[Cells]) -> Cells:
-    """Return all the cells of several."""
+    """Return the cells of several sets as one set."""
     return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("low", "high", "piece")))
 
 
 @dataclass(frozen=True)
 class Looks:
-    """Bounds on cells, each of shape (2, n): of g' all over and at three rates, of g'' all over; and whether to give a cell up."""
+    """Bounds on n cells, each of shape (2, n): g' on the whole cell, at its ends and in its middle, and g'' on the whole cell.
+
+    The flag `hopeless`, shape (n,), marks cells that are not worth subdividing, because rounding dominates.
+    """
 
     inside: Floats
     at_low: Floats
@@ -88,7 +91,7 @@ class Looks:
 
 @dataclass(frozen=True)
 class SlopeBounds:
-    """Bounds of g' and g'' of one resistance by interval arithmetic. Impedance, normal stress and parameters are taken as exact."""
+    """Bounds of g' and g'' of one resistance by interval arithmetic; impedance, normal stress and parameters count as exact."""
 
     g: Resistance
 
@@ -98,9 +101,9 @@ class SlopeBounds:
         return np.array([law.piece_values(i) for i in range(len(self.g.trees))])
 
     def __call__(self, cells: Cells) -> tuple[Floats, Floats]:
-        """Bound g' (Pa s/m) and g'' (Pa s2/m2) on cells: two arrays of shape (2, n), lower and upper bounds.
+        """Return lower and upper bounds of g' (Pa s/m) and of g'' (Pa s^2/m^2) on n cells, each of shape (2, n).
 
-        Raises NotEnclosedError for a law whose formula has no sure bounds.
+        Raises NotEnclosedError for a law whose formula has no guaranteed bounds.
         """
         first, second = np.empty((2, len(cells))), np.empty((2, len(cells)))
         trees = self.g.trees
@@ -116,10 +119,10 @@ class SlopeBounds:
         return first, second
 
     def look(self, cells: Cells) -> Looks:
-        """Bound g' and g'' on cells, at their ends and in their middle, all at once.
+        """Return bounds of g' and g'' on cells, and of g' at their ends and in their middle, in one evaluation.
 
-        All over a cell g' is within the bounds of its formula, and within those of the mean value form: g' in the middle plus
-        g'' times the distance from there.
+        On a cell g' lies within the bounds of its formula and within those of the mean value form: g' in the middle plus g'' times
+        the distance from the middle. The result is the intersection of both.
         """
         middle = cells.middle
         first, second = self(joined([cells, cells.at(cells.low), cells.at(cells.high), cells.at(middle)]))
@@ -134,13 +137,13 @@ class SlopeBounds:
         return Looks(np.stack((least, most)), at_low, at_high, at_middle, second, hopeless)
 
     def _stress(self, friction: Floats, added: float) -> Floats:
-        """Return `added` plus the normal stress times bounds of a derivative of friction."""
+        """Return bounds of `added` plus the normal stress times a derivative of friction."""
         with np.errstate(invalid="ignore", over="ignore"):
             product = iv.multiply(iv.exact(self.g.normal), iv.interval(*friction))
             return np.stack(iv.ends(iv.add(iv.exact(added), product) if added else product))
 
     def first_cells(self) -> Cells:
-        """Return cells that cover all slip rates from 0 to `FASTEST`: geometric over the scales of the contact, cut at knots."""
+        """Return cells that cover the slip rates from 0 to `FASTEST`: geometric over the scales of the contact, cut at knots."""
         low, high = max(min(self.g.scales) * _BELOW, _SLOWEST), min(max(self.g.scales) * _ABOVE, FASTEST)
         count = math.ceil(math.log2(high / low))
         inner = low * np.exp2(np.arange(count + 1))
@@ -149,5 +152,5 @@ class SlopeBounds:
         return Cells(cuts[:-1], cuts[1:], self.piece_from(cuts[:-1]))
 
     def piece_from(self, rates: Floats) -> NDArray[np.intp]:
-        """Return the piece that holds at each rate; at a knot the one above it."""
+        """Return the piece of the law that applies at each rate; at a knot, the one above it."""
         return np.broadcast_to(self.g.law.piece_at(self.g.law_slip, rates), rates.shape)

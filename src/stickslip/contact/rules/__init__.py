@@ -1,1 +1,1 @@
-"""The built-in selection rules, and what they do as the load slowly passes."""
+"""The built-in selection rules, and their jumps as the load slowly rises and falls."""

@@ -1,4 +1,4 @@
-"""What a selection rule does as the load slowly passes: its jumps, and the loop that it walks up and down.
+"""The jumps of a selection rule as the load slowly rises and falls, and the loop that it follows.
 
 Source: Campillo et al. 1996, Fig. 4: the paths ODABE and EBCDO of perfect delay.
 """
@@ -23,7 +23,7 @@ from stickslip.problem.selection_rule import SelectionTable
 
 @dataclass(frozen=True)
 class Jump:
-    """What the rule does as the load (Pa) slowly passes a level: slip rates (m/s) and tractions (Pa) before and after."""
+    """A jump of the slip rate at a load (Pa): slip rates (m/s) and tractions (Pa) before and after it."""
 
     rate_before: float
     rate_after: float
@@ -35,12 +35,12 @@ class Jump:
 
 @dataclass(frozen=True)
 class Loop:
-    """The way of a load that slowly rises from far below the folds to far above them, and back.
+    """The path of the slip rate under a load that slowly rises from far below the folds to far above them, and back.
 
-    `branches` are those walked, in order (-1 is stick, others count from the slowest); `jumps` are the jumps between them.
-    `area` (Pa m/s) is what the loop encloses in the plane of load and slip rate: the integral of (v on the way down - v on the
+    `branches` lists the branches followed, in order (-1 is stick, the others count from the slowest), and `jumps` the jumps between
+    them. `area` (Pa m/s) is the area enclosed in the plane of load and slip rate: the integral of (v on the way down - v on the
     way up) over the load. For a load that rises and falls at the constant rate b (Pa/s), area / b is the slip (m) by which the
-    way down exceeds the way up. It is a power per area by its unit only: heat depends on the time that the load takes.
+    way down exceeds the way up. The area has the unit of a power per area but is none: heat depends on how long the load takes.
     """
 
     branches: tuple[int, ...]
@@ -49,7 +49,10 @@ class Loop:
 
 
 def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> tuple[Jump, ...]:
-    """Every jump that the rule can make, from stick and from each branch that it keeps; handing over without a jump is none."""
+    """Return every jump that the rule can make from stick and from each branch that it keeps.
+
+    A change of branch at which the slip rate is continuous does not count as a jump.
+    """
     found: list[Jump] = []
     for i in range(-1, len(stable)):
         low, high = (-np.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
@@ -63,7 +66,7 @@ def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -
 
 
 def _jump(g: Resistance, stable: tuple[Branch, ...], way: tuple[int, int], excess: float) -> Jump:
-    """From one branch to another at an excess (Pa)."""
+    """Return the jump from one branch to another (-1: stick) at an excess (Pa)."""
     before, after = (0.0 if i < 0 else rate_on(g, stable[i], excess) for i in way)
     load = g.strength + excess
     sides = (load - g.impedance * before, load - g.impedance * after)
@@ -71,9 +74,10 @@ def _jump(g: Resistance, stable: tuple[Branch, ...], way: tuple[int, int], exces
 
 
 def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> Loop:
-    """The loop that the rule walks. Between jumps the way up and the way down follow the same g, so that only jumps enclose area.
+    """Return the loop that the rule follows.
 
-    Each jump from a to b adds the integral of (load - g) dv from a to b: negative where the rule jumps against it.
+    Between jumps the way up and the way down follow the same g, so that only jumps enclose area. A jump from rate a to rate b adds
+    the integral of (load - g) dv from a to b, which is negative if the rule jumps against the sign of load - g.
     """
     walked, levels = [-1], []
     while walked[-1] < len(stable) - 1:
@@ -88,13 +92,16 @@ def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) ->
 
 
 def _against(g: Resistance, jump: Jump, excess: float) -> float:
-    """Integral of (load - g) dv along a jump (Pa m/s)."""
+    """Return the integral of (load - g) dv along a jump (Pa m/s)."""
     low, high = sorted((jump.rate_before, jump.rate_after))
     return -area(g, low, high, excess) if jump.direction == "up" else area(g, low, high, excess)
 
 
 def first_rate(problem: Problem) -> float:
-    """The slip rate (m/s) to which a massless contact jumps forwards at t = 0+; 0 where it is stuck, has inertia or a state."""
+    """Return the slip rate (m/s) to which a massless contact jumps forwards at t = 0+.
+
+    The result is 0 for a contact that is stuck, has inertia, or whose law has a state.
+    """
     body = problem.body
     if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0 or problem.friction.state is not None:
         return 0.0

@@ -1,8 +1,8 @@
-"""Maxwell's rule: at each load the stable slip rate with the smallest phi(s) = integral from 0 to s of (g - load) ds.
+"""Maxwell's rule: at each load take the stable slip rate with the smallest phi(s) = integral from 0 to s of (g - load) ds.
 
-Source: Campillo et al. 1996, section 3. Stick has phi = 0. The faster a branch, the faster its phi falls as the load grows, so
-each branch is the best one on a single interval of loads, and two neighbours change hands where the areas between g and the
-load line are equal. Loads are excesses over the static strength, in Pa.
+Source: Campillo et al. 1996, section 3. Stick has phi = 0. The faster a branch, the faster its phi falls as the load grows.
+Therefore each branch has the smallest phi on a single interval of loads, and the change between two neighbours is at the load at
+which the areas between g and the load line are equal. Loads are excesses over the static strength, in Pa.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
 
 
 def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[float, float]]:
-    """Interval of excess on which each branch has the smallest phi, by its index (-1: stick); the others are left out."""
+    """Return the interval of excess (Pa) on which each branch has the smallest phi, keyed by its index (-1: stick).
+
+    Branches that never have the smallest phi are left out.
+    """
     candidates = {-1: _STICK, **dict(enumerate(stable))}
     levels = {end for b in candidates.values() for end in (b.excess_from, b.excess_to) if math.isfinite(end)}
     levels |= {level for a, b in combinations(candidates.values(), 2) if (level := equal_area_level(g, a, b)) is not None}
@@ -34,21 +37,21 @@ def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[
 
 
 def _between(low: float, high: float) -> float:
-    """An excess inside an interval that may be infinite on one side."""
+    """Return an excess inside an interval that may be infinite on one side."""
     if math.isinf(low):
         return high - 1.0 - abs(high)
     return low + 1.0 + abs(low) if math.isinf(high) else low + 0.5 * (high - low)
 
 
 def _winner(g: Resistance, candidates: dict[int, Branch], excess: float) -> int:
-    """Index of the candidate with the smallest phi among those that exist at this excess."""
+    """Return the index of the candidate with the smallest phi among those that exist at this excess."""
     alive = {i: b for i, b in candidates.items() if b.excess_from <= excess <= b.excess_to}
     potential = {i: area(g, 0.0, _rate(g, b, excess), excess) for i, b in alive.items()}
     return min(potential, key=potential.__getitem__)
 
 
 def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | None:
-    """The excess (Pa) at which two branches have the same phi, to rounding; None where one is the better wherever both exist."""
+    """Return the excess (Pa) at which two branches have the same phi, to rounding; None if there is no such excess."""
     low, high = max(slower.excess_from, faster.excess_from), min(slower.excess_to, faster.excess_to)
     if not low < high or _gap(g, slower, faster, low)[0] <= 0.0 or _gap(g, slower, faster, high)[0] >= 0.0:
         return None
@@ -56,7 +59,7 @@ def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | N
 
 
 def _gap(g: Resistance, slower: Branch, faster: Branch, excess: float) -> tuple[float, float]:
-    """phi of the faster branch minus phi of the slower one, and its derivative with respect to the excess."""
+    """Return phi of the faster branch minus phi of the slower one, and its derivative with respect to the excess."""
     start, end = _rate(g, slower, excess), _rate(g, faster, excess)
     return area(g, start, end, excess), start - end
 
@@ -66,10 +69,10 @@ def _rate(g: Resistance, branch: Branch, excess: float) -> float:
 
 
 def area(g: Resistance, start: float, end: float, excess: float) -> float:
-    """Integral from start to end (m/s) of g - load, in Pa m/s.
+    """Return the integral of g - load from start to end (m/s), in Pa m/s.
 
-    Gauss's rule on panels that double in width away from rate 0, and end at kinks: a friction law that is smooth in log s between
-    its kinks is met to rounding.
+    Gauss-Legendre quadrature on panels that about double in width away from rate 0 and end at kinks of the law. It is accurate to
+    rounding for a law that is smooth in log s between its kinks.
     """
     if end <= start:
         return 0.0

@@ -1,7 +1,7 @@
-"""Selection rules as data: which branch the slip rate takes where several solve the contact equation.
+"""Selection rules as data: the branch that the slip rate takes if several solve the contact equation.
 
-Source: Campillo et al. 1996, section 3 (perfect delay: paths ODABE and EBCDO of Fig. 4; Maxwell: equal areas). A rule looks at
-the branches of one resistance and says at which loads each of them is kept; the engine only reads the table.
+A rule receives the branches of one resistance and returns a table of the loads at which each of them is kept; the engine only
+reads this table. Source: Campillo et al. 1996, section 3 (perfect delay: paths ODABE and EBCDO of Fig. 4; Maxwell: equal areas).
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ Branches = tuple[Branch, ...]
 
 
 def perfect_delay(g: Resistance, stable: Branches, /) -> SelectionTable:
-    """Keep the branch as long as it exists, then take the nearest one in the direction in which the load has left it."""
+    """Keep the branch as long as it exists, then take the nearest one in the direction of the change of load."""
     return SelectionTable(0.0, tuple(b.excess_from for b in stable), tuple(b.excess_to for b in stable))
 
 
 def minimal(g: Resistance, stable: Branches, /) -> SelectionTable:
-    """The smallest stable slip rate: a branch is left as soon as stick or a slower branch exists."""
+    """Take the smallest stable slip rate: a branch is left as soon as stick or a slower branch exists."""
     slower = [max([0.0, *(b.excess_to for b in stable[:i])]) for i in range(len(stable))]
     keep_from = tuple(max(b.excess_from, below) for b, below in zip(stable, slower, strict=True))
     return SelectionTable(0.0, keep_from, tuple(b.excess_to for b in stable))
 
 
 def maximal(g: Resistance, stable: Branches, /) -> SelectionTable:
-    """The largest stable slip rate: stick or a branch is left as soon as a faster branch exists."""
+    """Take the largest stable slip rate: stick or a branch is left as soon as a faster branch exists."""
     faster = [min([math.inf, *(b.excess_from for b in stable[i + 1 :])]) for i in range(len(stable))]
     keep_to = tuple(min(b.excess_to, above) for b, above in zip(stable, faster, strict=True))
     return SelectionTable(min([0.0, *(b.excess_from for b in stable)]), tuple(b.excess_from for b in stable), keep_to)
 
 
 def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
-    """The stable slip rate with the smallest integral of (g - load) ds: branches change hands at equal areas."""
+    """Take the stable slip rate with the smallest integral of (g - load) ds: branches change at loads of equal areas."""
     kept = best_branches(g, stable)
     never = (math.inf, -math.inf)
     intervals = [kept.get(i, never) for i in range(len(stable))]
@@ -46,11 +46,11 @@ def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
 
 
 RULES: dict[str, SelectionRule] = {rule.__name__.replace("_", "-"): rule for rule in (perfect_delay, maxwell, minimal, maximal)}
-"""The built-in rules by their names in problems and scenarios (`stickslip.selection.SELECTION_RULES`)."""
+"""The built-in rules, keyed by their names in problems and scenarios (`stickslip.selection.SELECTION_RULES`)."""
 
 
 def rule_of(problem: Problem) -> SelectionRule:
-    """The selection rule of a problem. Raises InputError for a name that has been forgotten since."""
+    """Return the selection rule of a problem. Raises InputError for a name that is not registered in this process."""
     if not isinstance(problem.selection, str):
         return problem.selection
     known = RULES | registered
@@ -60,9 +60,9 @@ def rule_of(problem: Problem) -> SelectionRule:
 
 
 def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Branches, SelectionTable]:
-    """Branches of the problem's contact at a law slip (m; default: the start) and the table of its selection rule.
+    """Return the branches of the problem's contact at a law slip (m; default: the initial one), and the table of its rule.
 
-    Raises InputError for a block, which has no contact equation of its own, and for a rule whose table cannot be followed.
+    Raises InputError for a block, which has no contact equation, and for a rule whose table cannot be followed.
     """
     g = resistance(problem, law_slip)
     stable = branches_of(g)
@@ -70,7 +70,7 @@ def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Br
 
 
 def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTable:
-    """The table of the problem's rule, checked. Raises InputError where it cannot be followed: see `flaw`."""
+    """Return the table of the problem's rule. Raises InputError if it cannot be followed: see `flaw`."""
     table = rule_of(problem)(g, stable)
     wrong = flaw(table, stable)
     if wrong:
@@ -79,10 +79,11 @@ def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTabl
 
 
 def flaw(table: SelectionTable, stable: Branches) -> str:
-    """What is wrong with a table, "" where nothing is.
+    """Return a description of what is wrong with a table, "" if nothing is.
 
-    Stick cannot be kept beyond the static strength, nor a branch where it does not exist; and wherever the load leaves a branch,
-    the one that is taken next must be kept at that load: else the contact would have nowhere to go, or would go back and forth.
+    Stick cannot be kept beyond the static strength, nor a branch at loads at which it does not exist. At each load at which a
+    branch is left, the branch taken next must be kept; otherwise the contact would have no branch to take, or would switch back
+    and forth.
     """
     if not isinstance(table, SelectionTable):
         return f"it must return a SelectionTable, got {type(table).__name__}"
@@ -106,11 +107,11 @@ def _dead_end(branch: int, up: bool) -> str:
 
 
 def _leads_on(table: SelectionTable, branch: int, up: bool) -> bool:
-    """Whether every load above (below) what a branch keeps is kept by the branch that the table then takes."""
+    """Return True if at all loads above (or below) those at which a branch is kept, the branch that is taken next is kept."""
     if up:
         level = table.stick_to if branch < 0 else table.keep_to[branch]
         for low, high in zip(table.keep_from[branch + 1 :], table.keep_to[branch + 1 :], strict=True):
-            if level < high and low <= high:  # a branch that is never taken is passed over
+            if level < high and low <= high:  # low > high marks a branch that is never taken
                 if low > level:
                     return False
                 level = high

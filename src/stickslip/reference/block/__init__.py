@@ -1,1 +1,1 @@
-"""Closed forms for the spring-block."""
+"""Closed-form solutions for the spring-block."""

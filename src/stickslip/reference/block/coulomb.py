@@ -1,6 +1,7 @@
-"""Coulomb friction on the spring-block: a sine that ends where the slip rate returns to zero.
+"""The spring-block under Coulomb friction: a sinusoidal slip rate, until it returns to zero.
 
-Source: Campillo et al. 1996, eqs (4)-(6). From the static strength m u'' + K u = (static - dynamic) S + K V t, u(0) = u'(0) = 0.
+Source: Campillo et al. 1996, eqs (4)-(6). A block released at its static strength obeys
+m u'' + K u = (static - dynamic) S + K V t with u(0) = u'(0) = 0.
 """
 
 from __future__ import annotations
@@ -14,7 +15,21 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True)
 class CoulombBlock:
-    """Mass (kg), stiffness (N/m), normal force (N), two coefficients, pull rate (m/s; 0 means its limit 0+)."""
+    """One slip event of a spring-block under Coulomb friction.
+
+    Parameters
+    ----------
+    mass : float
+        Mass m (kg).
+    stiffness : float
+        Stiffness K (N/m).
+    normal_force : float
+        Normal force S (N).
+    static, dynamic : float
+        Friction coefficients at rest and while slipping.
+    pull_rate : float
+        Pull rate V (m/s); 0 means the limit 0+.
+    """
 
     mass: float
     stiffness: float
@@ -25,41 +40,41 @@ class CoulombBlock:
 
     @property
     def frequency(self) -> float:
-        """sqrt(K / m), in rad/s."""
+        """Return the angular frequency sqrt(K / m) (rad/s)."""
         return math.sqrt(self.stiffness / self.mass)
 
     @property
     def swing(self) -> float:
-        """(static - dynamic) S / sqrt(K m), in m/s: the peak rate for pull_rate 0."""
+        """Return (static - dynamic) S / sqrt(K m) (m/s), the peak slip rate for pull_rate 0."""
         return (self.static - self.dynamic) * self.normal_force / math.sqrt(self.stiffness * self.mass)
 
     @property
     def duration(self) -> float:
-        """Time from onset to arrest (s): pi sqrt(m / K) for pull_rate 0."""
+        """Return the time from onset to arrest (s); it is pi sqrt(m / K) for pull_rate 0."""
         return 2.0 * (math.pi - math.atan2(self.swing, self.pull_rate)) / self.frequency
 
     @property
     def peak_time(self) -> float:
-        """Time of the largest slip rate (s)."""
+        """Return the time from onset to the largest slip rate (s)."""
         return (math.pi - math.atan2(self.swing, self.pull_rate)) / self.frequency
 
     @property
     def peak_rate(self) -> float:
-        """Largest slip rate (m/s)."""
+        """Return the largest slip rate (m/s)."""
         return self.pull_rate + math.hypot(self.swing, self.pull_rate)
 
     @property
     def total_slip(self) -> float:
-        """Slip of the event (m): 2 (static - dynamic) S / K for pull_rate 0."""
+        """Return the slip of the event (m); it is 2 (static - dynamic) S / K for pull_rate 0."""
         return float(self.slip(self.duration))
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Slip since onset (m), t in s after onset."""
+        """Return the slip since onset (m) at times t (s) after onset, of the shape of t."""
         phase = self.frequency * np.clip(t, 0.0, self.duration)
         return (2.0 * self.swing * np.sin(0.5 * phase) ** 2 + self.pull_rate * (phase - np.sin(phase))) / self.frequency
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """v(t) in m/s."""
+        """Return the slip rate v(t) (m/s) at times t (s) after onset, of the shape of t; 0 before onset and from arrest on."""
         phase = self.frequency * np.clip(t, 0.0, self.duration)
         moving = (np.asarray(t) >= 0.0) & (np.asarray(t) < self.duration)
         return np.where(moving, self.swing * np.sin(phase) + 2.0 * self.pull_rate * np.sin(0.5 * phase) ** 2, 0.0)

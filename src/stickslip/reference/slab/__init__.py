@@ -1,1 +1,1 @@
-"""Closed forms for the elastic slab."""
+"""Closed-form solutions for the elastic slab."""

@@ -1,7 +1,7 @@
-"""Coulomb friction on the elastic slab under a rigid driver: one pulse that lasts a round trip.
+"""The elastic slab under Coulomb friction and a rigid driver: one pulse that lasts one round trip.
 
-Source: Campillo et al. 1996, eqs (12)-(13) with the limit alpha -> infinity of (15). Slip starts at the static strength; until
-the first echo Z v = (static - dynamic) S + G V t / h, and the echo of that start puts the contact to rest.
+Source: Campillo et al. 1996, eqs (12)-(13) with the limit alpha -> infinity of (15). Slip starts at the static strength. Until
+the first echo Z v = (static - dynamic) S + G V t / h; the echo of the start then arrests the contact.
 """
 
 from __future__ import annotations
@@ -14,9 +14,25 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True)
 class CoulombSlab:
-    """Density (kg/m^3), wave speed (m/s), thickness (m), normal stress (Pa), two coefficients, pull rate (m/s; 0: its limit 0+).
+    """One slip event of an elastic slab under Coulomb friction.
 
-    The echo arrests the contact as long as pull_rate <= slip_rate_at_start / 2 and the load stays within the static strength.
+    The echo arrests the contact as long as pull_rate is at most half the slip rate at the start and the load stays within the
+    static strength.
+
+    Parameters
+    ----------
+    density : float
+        Density (kg/m^3).
+    wave_speed : float
+        Wave speed c (m/s).
+    thickness : float
+        Thickness h (m).
+    normal_stress : float
+        Normal stress S (Pa).
+    static, dynamic : float
+        Friction coefficients at rest and while slipping.
+    pull_rate : float
+        Pull rate V (m/s); 0 means the limit 0+.
     """
 
     density: float
@@ -29,41 +45,41 @@ class CoulombSlab:
 
     @property
     def impedance(self) -> float:
-        """Z = rho c (Pa s/m)."""
+        """Return the impedance Z = rho c (Pa s/m)."""
         return self.density * self.wave_speed
 
     @property
     def duration(self) -> float:
-        """Time from onset to arrest: one round trip R = 2 h / c (s)."""
+        """Return the time from onset to arrest (s), which is the two-way travel time R = 2 h / c."""
         return 2.0 * self.thickness / self.wave_speed
 
     @property
     def drop(self) -> float:
-        """Static minus dynamic strength (Pa)."""
+        """Return the static minus the dynamic strength (Pa)."""
         return (self.static - self.dynamic) * self.normal_stress
 
     @property
     def loading_rate(self) -> float:
-        """G V / h (Pa/s)."""
+        """Return the loading rate G V / h (Pa/s)."""
         return self.density * self.wave_speed**2 * self.pull_rate / self.thickness
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """v(t) in m/s, t in s after onset; right limits."""
+        """Return the slip rate v(t) (m/s) at times t (s) after onset, of the shape of t; right limits at jumps."""
         t = np.asarray(t, float)
         moving = (t >= 0.0) & (t < self.duration)
         return np.where(moving, (self.drop + self.loading_rate * t) / self.impedance, 0.0)
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Slip since onset, in m."""
+        """Return the slip since onset (m) at times t (s) after onset, of the shape of t."""
         t = np.clip(t, 0.0, self.duration)
         return (self.drop * t + 0.5 * self.loading_rate * t**2) / self.impedance
 
     @property
     def total_slip(self) -> float:
-        """Slip of the event (m); 2 (static - dynamic) S h / G for pull_rate 0."""
+        """Return the slip of the event (m); it is 2 (static - dynamic) S h / G for pull_rate 0."""
         return float(self.slip(self.duration))
 
     @property
     def end_load(self) -> float:
-        """Load right after arrest (Pa): S (2 dynamic - static) + 2 Z V."""
+        """Return the load right after arrest (Pa), S (2 dynamic - static) + 2 Z V."""
         return (2.0 * self.dynamic - self.static) * self.normal_stress + 2.0 * self.impedance * self.pull_rate

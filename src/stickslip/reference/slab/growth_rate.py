@@ -1,6 +1,6 @@
 """Linear growth of slip on a slab that weakens with slip, from rest.
 
-A perturbation u = exp(lambda t) sinh(lambda (h - x) / c) of a slab under a rigid driver meets the friction at x = 0 when
+A perturbation u = exp(lambda t) sinh(lambda (h - x) / c) of a slab under a rigid driver satisfies the friction law at x = 0 if
 
     lambda coth(lambda h / c) = c alpha_w,    alpha_w = -S mu'(u) / G
 
@@ -15,9 +15,25 @@ from stickslip.reference.bisection import bisect
 
 
 def growth_rate(wave_speed: float, thickness: float, shear_modulus: float, normal_stress: float, weakening: float) -> float:
-    """lambda (1/s) for a weakening -mu'(u) in 1/m; wave speed m/s, thickness m, modulus and normal stress Pa.
+    """Return the growth rate lambda of a perturbation of a slab that weakens with slip.
 
-    0 where the slab is stable.
+    Parameters
+    ----------
+    wave_speed : float
+        Wave speed c (m/s).
+    thickness : float
+        Thickness h (m).
+    shear_modulus : float
+        Shear modulus G (Pa).
+    normal_stress : float
+        Normal stress S (Pa).
+    weakening : float
+        Weakening -mu'(u) of the law (1/m).
+
+    Returns
+    -------
+    float
+        Growth rate (1/s); 0 if the slab is stable.
     """
     target = normal_stress * weakening / shear_modulus * thickness
     if target <= 1.0:
@@ -27,7 +43,7 @@ def growth_rate(wave_speed: float, thickness: float, shear_modulus: float, norma
 
 
 def _excess(x: float) -> float:
-    """x coth x - 1, by its series where the difference would lose digits."""
+    """Return x coth x - 1, from its series if the difference would lose digits."""
     if x < 0.05:
         return x**2 / 3 - x**4 / 45 + 2 * x**6 / 945 - x**8 / 4725
     return x / math.tanh(x) - 1.0

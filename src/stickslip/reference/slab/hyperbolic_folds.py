@@ -1,6 +1,7 @@
-"""Folds and jumps of the hyperbolic rate law (15) on the massless contact of a slab: Campillo et al. 1996, section 3.
+"""Folds and jumps of the hyperbolic rate law (15) on the massless contact of a slab.
 
-With q = sqrt(alpha / alpha_c), alpha_c = Z / (S (muS - muD)): g(v) = Z v + S mu(v) falls up to v1 = (q - 1) / alpha.
+With q = sqrt(alpha / alpha_c) and alpha_c = Z / (S (muS - muD)), the resistance g(v) = Z v + S mu(v) falls up to the fold
+v1 = (q - 1) / alpha. Source: Campillo et al. 1996, section 3.
 """
 
 from __future__ import annotations
@@ -14,9 +15,23 @@ from stickslip.reference.bisection import bisect
 
 @dataclass(frozen=True)
 class HyperbolicFolds:
-    """Impedance (Pa s/m), normal stress (Pa), coefficients at rest and at high rate, alpha (s/m) > alpha_c.
+    """Folds and jumps of the hyperbolic rate law on a slab.
 
-    Raises InputError where the contact is regular (alpha <= alpha_c): there are no folds.
+    Parameters
+    ----------
+    impedance : float
+        Impedance Z (Pa s/m).
+    normal_stress : float
+        Normal stress S (Pa).
+    static, dynamic : float
+        Friction coefficients muS at rest and muD at high slip rate.
+    alpha : float
+        Parameter alpha of eq. (15) (s/m), above alpha_c.
+
+    Raises
+    ------
+    InputError
+        If the contact is regular (alpha <= alpha_c), so that there are no folds.
     """
 
     impedance: float
@@ -31,48 +46,48 @@ class HyperbolicFolds:
 
     @property
     def drop(self) -> float:
-        """S (muS - muD), in Pa."""
+        """Return the strength drop S (muS - muD) (Pa)."""
         return self.normal_stress * (self.static - self.dynamic)
 
     @property
     def critical_value(self) -> float:
-        """alpha_c (s/m)."""
+        """Return the critical value alpha_c = Z / (S (muS - muD)) (s/m)."""
         return self.impedance / self.drop
 
     @property
     def q(self) -> float:
-        """sqrt(alpha / alpha_c)."""
+        """Return the pure number sqrt(alpha / alpha_c)."""
         return math.sqrt(self.alpha / self.critical_value)
 
     @property
     def fold_rate(self) -> float:
-        """v1 (m/s), the lower end of the fast branch."""
+        """Return the slip rate v1 of the fold (m/s), the lower end of the fast branch."""
         return (self.q - 1.0) / self.alpha
 
     @property
     def fold_load(self) -> float:
-        """g(v1) = S mu1 = S muD + (Z / alpha) (2 q - 1), in Pa: down-jump under perfect delay."""
+        """Return g(v1), called S mu1 in the paper, S muD + (Z / alpha) (2 q - 1) (Pa): perfect delay jumps down there."""
         return self.normal_stress * self.dynamic + self.impedance / self.alpha * (2.0 * self.q - 1.0)
 
     @property
     def jump_rate(self) -> float:
-        """v_B (m/s): slip rate right after the jump at the static strength."""
+        """Return the slip rate v_B right after the jump at the static strength (m/s)."""
         return (self.q**2 - 1.0) / self.alpha
 
     @property
     def maxwell_rate(self) -> float:
-        """v_M (m/s), where equal areas end: x = alpha v solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
+        """Return the slip rate v_M of equal areas (m/s): x = alpha v_M solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
         return bisect(lambda x: _imbalance(x, self.q), 0.0, 4.0 * self.q**2) / self.alpha
 
     @property
     def maxwell_load(self) -> float:
-        """beta_M (Pa), at which Maxwell's rule jumps both ways."""
+        """Return the load beta_M at which Maxwell's rule jumps, both up and down (Pa)."""
         rate = self.maxwell_rate
         return self.normal_stress * self.dynamic + self.impedance * rate + self.drop / (1.0 + self.alpha * rate)
 
 
 def _imbalance(x: float, q: float) -> float:
-    """1 / (2 q^2) - [ln(1 + x) - x / (1 + x)] / x^2, which grows with x; by its series where it would lose digits."""
+    """Return 1 / (2 q^2) - [ln(1 + x) - x / (1 + x)] / x^2, which grows with x, from its series if it would lose digits."""
     if x < 0.1:
         return -sum((-x) ** k * (k + 1) / (k + 2) for k in range(1, 18)) - 0.5 * (q - 1.0) * (q + 1.0) / q**2
     return 0.5 / q**2 - (math.log1p(x) - x / (1.0 + x)) / x**2

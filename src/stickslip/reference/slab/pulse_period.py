@@ -1,4 +1,4 @@
-"""The sinusoidal slip law under a constant load above every strength: slip in pulses, for ever.
+"""The sinusoidal slip law under a constant load that exceeds the largest strength: endless slip in pulses.
 
 Source: Campillo et al. 1996, eqs (12) and (14): Z u' = (beta - mu0 S) - a S sin(omega u), whose solution is elementary in
 tan(omega u / 2).
@@ -17,9 +17,27 @@ from stickslip.foundation.errors import InputError
 
 @dataclass(frozen=True)
 class PulseTrain:
-    """Impedance (Pa s/m), load beta (Pa), normal stress (Pa), the law's mean, amplitude > 0 and wavenumber > 0 (1/m), u(0) (m).
+    """Slip in pulses under a constant load and the sinusoidal slip law.
 
-    Raises InputError unless beta exceeds (mean + amplitude) S: otherwise slip ends at a strength it cannot pass.
+    Parameters
+    ----------
+    impedance : float
+        Impedance Z (Pa s/m).
+    load : float
+        Load beta (Pa).
+    normal_stress : float
+        Normal stress S (Pa).
+    mean, amplitude : float
+        Mean mu0 and amplitude a > 0 of the friction coefficient.
+    wavenumber : float
+        Wavenumber omega > 0 of the law (1/m).
+    initial_slip : float
+        Slip u(0) (m).
+
+    Raises
+    ------
+    InputError
+        If beta does not exceed (mean + amplitude) S: slip would end at a strength that it cannot overcome.
     """
 
     impedance: float
@@ -38,12 +56,12 @@ class PulseTrain:
 
     @property
     def surplus(self) -> float:
-        """beta - mu0 S (Pa)."""
+        """Return the mean driving stress beta - mu0 S (Pa)."""
         return self.load - self.mean * self.normal_stress
 
     @property
     def wave(self) -> float:
-        """a S (Pa)."""
+        """Return the amplitude a S of the strength (Pa)."""
         return self.amplitude * self.normal_stress
 
     @property
@@ -52,21 +70,24 @@ class PulseTrain:
 
     @property
     def period(self) -> float:
-        """Time between pulses (s): 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2))."""
+        """Return the time between pulses (s), 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2))."""
         return 2.0 * math.pi * self.impedance / (self.wavenumber * self._root)
 
     @property
     def peak_rate(self) -> float:
-        """Largest slip rate (m/s)."""
+        """Return the largest slip rate (m/s)."""
         return (self.surplus + self.wave) / self.impedance
 
     @property
     def least_rate(self) -> float:
-        """Smallest slip rate (m/s)."""
+        """Return the smallest slip rate (m/s)."""
         return (self.surplus - self.wave) / self.impedance
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
-        """u(t) in m, t in s: B tan(omega u / 2) = A + W tan(phi), phi linear in t, with A = a S, B = beta - mu0 S."""
+        """Return the slip u(t) (m) at times t (s), of the shape of t.
+
+        It satisfies B tan(omega u / 2) = A + W tan(phi) with phi linear in t, A = a S, B = beta - mu0 S and W^2 = B^2 - A^2.
+        """
         turn, start = np.divmod(0.5 * self.wavenumber * self.initial_slip + 0.5 * math.pi, math.pi)
         begin = math.atan((self.surplus * math.tan(start - 0.5 * math.pi) - self.wave) / self._root)
         phase = begin + math.pi * np.asarray(t, float) / self.period
@@ -75,5 +96,5 @@ class PulseTrain:
         return np.asarray((half + math.pi * (turns + turn)) * 2.0 / self.wavenumber)
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """v(t) in m/s, from the governing equation at the exact slip."""
+        """Return the slip rate v(t) (m/s) at times t (s), from the governing equation at the exact slip."""
         return (self.surplus - self.wave * np.sin(self.wavenumber * self.slip(t))) / self.impedance

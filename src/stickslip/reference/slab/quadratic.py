@@ -1,6 +1,7 @@
-"""The hyperbolic rate law (15) on a massless contact, solved as the quadratic that it is.
+"""Slip rate of a massless contact under the hyperbolic rate law (15), as the root of a quadratic equation.
 
-With e the load minus S muS, Z v - S (muS - muD) alpha v / (1 + alpha v) = e is alpha Z v^2 + (Z - alpha drop - alpha e) v - e = 0.
+Let e be the load minus S muS, and drop = S (muS - muD). Then Z v - drop alpha v / (1 + alpha v) = e is equivalent to
+alpha Z v^2 + (Z - alpha drop - alpha e) v - e = 0.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from stickslip.problem.problem import Problem
 
 
 def _coefficients(problem: Problem, excess: float) -> tuple[float, float, float]:
-    """alpha Z, minus the linear coefficient, and the discriminant."""
+    """Return alpha Z, minus the linear coefficient, and the discriminant of the quadratic."""
     law, body = problem.friction, problem.body
     assert isinstance(law, HyperbolicRate)
     assert isinstance(body, ElasticSlab)
@@ -23,7 +24,7 @@ def _coefficients(problem: Problem, excess: float) -> tuple[float, float, float]
 
 
 def fast_rate(problem: Problem, excess: float) -> float:
-    """The stable (larger) root in m/s for an excess in Pa, or the fold's rate where there is none (0 at the smallest)."""
+    """Return the stable (larger) root (m/s) at an excess (Pa), or the rate of the fold if there is no root, but not below 0."""
     square, linear, discriminant = _coefficients(problem, excess)
     root = math.sqrt(max(discriminant, 0.0))
     if linear <= 0.0:
@@ -32,6 +33,6 @@ def fast_rate(problem: Problem, excess: float) -> float:
 
 
 def fast_room(problem: Problem, excess: float) -> float:
-    """Positive where the stable root exists and is positive, falling through 0 where it ends: at the fold, or at excess 0."""
+    """Return a number that is positive while a positive stable root exists, and passes 0 where it ends: at the fold or excess 0."""
     _, linear, discriminant = _coefficients(problem, excess)
     return discriminant if linear > 0.0 else excess

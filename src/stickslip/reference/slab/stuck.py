@@ -1,10 +1,11 @@
 """The load on a contact that stays stuck, under a driver of any impedance.
 
-With v = 0 the recursion of the slab, paper eq. (13) and its extension to a driver of finite impedance Zd, is
+With v = 0 the recursion of the slab, which is paper eq. (13) extended to a driver of finite impedance Zd, is
 
     beta(t) = -r beta(t - R) + 2 Z [Zd V + s(t - h/c)] / (Z + Zd),    r = (Z - Zd) / (Z + Zd),    s(t) = far_stress + rate t
 
-and sums to a geometric series: linear in time for a rigid driver (r = -1), otherwise towards far_stress + Zd V and its drift.
+and sums to a geometric series. The load is linear in time for a rigid driver (r = -1); otherwise it tends to far_stress + Zd V,
+and follows the drift of the far stress.
 """
 
 from __future__ import annotations
@@ -18,8 +19,25 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True)
 class StuckSlab:
-    """Density (kg/m^3), wave speed (m/s), thickness (m), driver impedance (Pa s/m, inf allowed), initial load (Pa),
-    pull rate (m/s), far stress (Pa) and its rate (Pa/s); the far side only counts for a finite driver impedance."""
+    """A slab whose contact stays stuck.
+
+    Parameters
+    ----------
+    density : float
+        Density (kg/m^3).
+    wave_speed : float
+        Wave speed c (m/s).
+    thickness : float
+        Thickness h (m).
+    driver_impedance : float
+        Impedance Zd of the driver (Pa s/m), inf for a rigid one.
+    initial_load : float
+        Initial load tau0 (Pa).
+    pull_rate : float
+        Pull rate V (m/s).
+    far_stress, far_stress_rate : float
+        Far stress (Pa) and its rate (Pa/s); they have no effect under a rigid driver.
+    """
 
     density: float
     wave_speed: float
@@ -32,28 +50,28 @@ class StuckSlab:
 
     @property
     def impedance(self) -> float:
-        """Z = rho c (Pa s/m)."""
+        """Return the impedance Z = rho c (Pa s/m)."""
         return self.density * self.wave_speed
 
     @property
     def two_way_time(self) -> float:
-        """R = 2 h / c (s)."""
+        """Return the two-way travel time R = 2 h / c (s)."""
         return 2.0 * self.thickness / self.wave_speed
 
     @property
     def loading_rate(self) -> float:
-        """G V / h (Pa/s)."""
+        """Return the loading rate G V / h (Pa/s)."""
         return self.density * self.wave_speed**2 * self.pull_rate / self.thickness
 
     def load(self, t: ArrayLike) -> NDArray[np.float64]:
-        """beta(t) in Pa, t >= 0 in s; right limits."""
+        """Return the load beta(t) (Pa) at times t >= 0 (s), of the shape of t; right limits at jumps."""
         t = np.asarray(t, float)
         if math.isinf(self.driver_impedance):
             return self.initial_load + self.loading_rate * t
         trips = np.floor(t / self.two_way_time)
         factor = -self._reflection
         power = factor**trips
-        # the sum over k < trips of factor^k (a - b k R), factor < 1
+        # `ones` and `indices` are the sums over k < trips of factor^k and of k factor^k; factor < 1
         ones = (1.0 - power) / (1.0 - factor)
         indices = (factor - trips * power + (trips - 1.0) * power * factor) / (1.0 - factor) ** 2
         forcing = self._forcing(t) * ones - self._forcing_rate * self.two_way_time * indices
@@ -73,7 +91,7 @@ class StuckSlab:
         return constant + self._forcing_rate * (t - 0.5 * self.two_way_time)
 
     def _first_trip(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
-        """beta for 0 <= t < R: the uniform ramp until h/c, then what the start w(-y) = G V y / h - tau0 brings back."""
+        """Return beta for 0 <= t < R: the uniform ramp until h/c, then the reflection of the start w(-y) = G V y / h - tau0."""
         early = self.initial_load + self.loading_rate * t
         late = self._reflection * (self.loading_rate * (self.two_way_time - t) - self.initial_load) + self._forcing(t)
         return np.where(t < 0.5 * self.two_way_time, early, late)
