@@ -1,1 +1,1 @@
-"""One step of the contact: at rest, in slip, across knots and folds."""
+"""Advance the contact by one step: at rest, in slip, and across knots and folds."""

@@ -1,4 +1,4 @@
-"""The piece of load being worked on, steps into the history, and shocks noted."""
+"""Place the contact on the present piece of load, append steps to the history, and note shocks."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.workspace import REAL, WHOLE, Run
 
 RESOLVED = 1e-12
-"""Slips, as a share of a row, of which double precision tells the ends apart well enough."""
+"""Shortest slip (duration as a share of a round trip, 1) of which double precision tells the ends apart well enough."""
 
 
 @kernel
 def theta_at(run: Run, xi: float) -> float:
-    """Offset in the round trip at a place in the present piece of load."""
+    """Return the phase theta (s) in the round trip at the place xi of the present piece of load."""
     return run.state.theta_to if xi >= 1.0 else run.state.theta_from + xi * (run.state.speed + xi * run.state.bend)
 
 
 @kernel
 def xi_at(run: Run, theta: float) -> float:
-    """Where in the present piece the offset theta lies."""
+    """Return the place xi in the present piece of load at which the phase is theta (s)."""
     rest = theta - run.state.theta_from
     root = math.sqrt(max(run.state.speed * run.state.speed + 4.0 * run.state.bend * rest, 0.0))
     pace = run.state.speed + root
@@ -30,7 +30,10 @@ def xi_at(run: Run, theta: float) -> float:
 
 @kernel
 def note_degree(run: Run) -> None:
-    """A new piece of load: note its degree, beyond which the series of a step is zero too."""
+    """Note the degree of a new piece of load and clear run.local and run.seen.
+
+    Beyond that degree the load's series over a step is zero too.
+    """
     run.counts.degree = degree(run.load)
     fill(run.local, 0.0)
     fill(run.seen, 0.0)
@@ -38,7 +41,11 @@ def note_degree(run: Run) -> None:
 
 @kernel
 def record(run: Run, xi_to: float) -> None:
-    """Append the step up to xi_to, whose load and rate already stand in the next free row. A step of no length is not kept."""
+    """Append the step from the present place to xi_to, and move xi there.
+
+    Its load and slip rate are already in the next free row of the history. A step that takes no time is not kept, but counted as
+    stalled.
+    """
     xi = run.state.xi
     width = xi_to - xi
     theta_from, theta_to = theta_at(run, xi), theta_at(run, xi_to)
@@ -63,7 +70,10 @@ def record(run: Run, xi_to: float) -> None:
 
 @kernel
 def note_slip(run: Run, n: int, theta: float) -> None:
-    """Where slip begins, and how many more slips were too short to be resolved than were not."""
+    """Note where slip begins, and count the slips that were too short to be resolved, less the others (at least 0).
+
+    n is the row of the history that is being written, and theta (s) the phase at which it starts.
+    """
     slips, slipped = run.counts.mode != 0, n > 0 and run.whole[WHOLE * (n - 1) + at.S_MODE] != 0
     if slips and not slipped:
         run.counts.slip_row, run.state.slip_since = run.counts.row, theta
@@ -75,7 +85,7 @@ def note_slip(run: Run, n: int, theta: float) -> None:
 
 @kernel
 def note_jump(run: Run, rate: float, cause: int) -> None:
-    """Mark a shock if the slip rate is about to jump."""
+    """Mark a shock, with its cause, if the slip rate is about to jump to the given rate (m/s, signed)."""
     before = run.state.rate_now
     size = abs(rate - before)
     if size > run.par.smallest_jump and size > run.par.relative_jump * max(abs(rate), abs(before)):

@@ -1,4 +1,4 @@
-"""The contact equation at one load: friction, static strength, and the branch of slip rates that the selection rule keeps."""
+"""Solve the contact equation at one load: friction, static strength, and the branch that the selection rule keeps."""
 
 from __future__ import annotations
 
@@ -12,22 +12,23 @@ from stickslip.engine.state.layout import Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
-"""Events so close (in xi) to the end of a piece are left to the start of the next one: what arrives with the load comes first."""
+"""Distance (in xi) from the end of a piece within which events are left to the start of the next piece, because what arrives with
+the load comes first."""
 SAME_LEVEL = 1e-14
-"""Of the normal load: rounding of two levels of the load that are one."""
+"""Share of the normal load (1) within which two levels of the load differ by rounding only, and count as one."""
 NEAR_KNOT = 1e-12
-"""Relative distance within which a slip rate stands at a knot."""
+"""Relative distance (1) within which a slip rate counts as being at a knot."""
 
 
 @kernel
 def constants_of(run: Run, piece: int) -> Floats:
-    """Pointer to the constants of a piece of the law."""
+    """Return a pointer to the constants of a piece of the law."""
     return ahead(run.constants, piece * run.size)
 
 
 @kernel
 def piece_at(run: Run, rate: float) -> int:
-    """The piece of the law at a slip rate: with knots in slip, the one to which slip has come."""
+    """Return the piece of the law at a slip rate (m/s), or, if the knots are in slip, the piece that slip has reached."""
     if run.counts.knots_in_rate == 0:
         return run.counts.piece
     piece = 0
@@ -38,7 +39,7 @@ def piece_at(run: Run, rate: float) -> int:
 
 @kernel
 def is_knot(run: Run, rate: float) -> bool:
-    """Whether the law has a knot at this slip rate."""
+    """Return True if the law has a knot at this slip rate (m/s)."""
     if run.counts.knots_in_rate == 1:
         for knot in range(run.pieces - 1):
             if abs(run.knot[knot] - rate) <= NEAR_KNOT * rate:
@@ -48,13 +49,17 @@ def is_knot(run: Run, rate: float) -> bool:
 
 @kernel
 def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
-    """out: S (mu - mu_reference), its derivatives with respect to rate and slip times S, and mu - mu_reference."""
+    """Write friction at a slip (m, as the law counts it) and a slip rate (m/s, magnitude) into out.
+
+    out[0] is S (mu - mu_reference) in Pa or N, out[1] and out[2] are its derivatives with respect to slip rate and slip, and
+    out[3] is mu - mu_reference.
+    """
     friction_of(run, piece_at(run, rate), law_slip, rate, out)
 
 
 @kernel
 def friction_of(run: Run, piece: int, law_slip: float, rate: float, out: Floats) -> None:
-    """As `friction_at`, by the formula of a piece."""
+    """Write the same numbers as `friction_at` into out, by the formula of the given piece of the law."""
     slip = law_slip + run.slip_shift[piece]
     if run.counts.has_state == 1:
         call_state_value(run.state_at[piece], constants_of(run, piece), slip, rate, run.state.state_now, out)
@@ -68,22 +73,28 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float, out: Floats)
 
 @kernel
 def rest_limit(run: Run) -> float:
-    """Load (minus the reference) at which the selection rule leaves rest forwards: the static strength, or below it."""
+    """Return the load (Pa or N, minus the reference) at which the selection rule leaves rest forwards.
+
+    It is the static strength, or less where the rule lets slip begin below it.
+    """
     friction_at(run, run.state.law_slip, 0.0, run.value)
-    # the step to static friction is added to the coefficient: where the two cancel they must do so exactly, before any product
+    # The step to static friction is added to the coefficient before any product: where the two cancel, they must cancel exactly.
     coefficient = run.value[3] + run.par.static_excess
     return run.par.normal * coefficient + run.par.stick_to
 
 
 @kernel
 def towards(run: Run, load: float, direction: int) -> float:
-    """The load as seen in the direction of slip, minus the reference."""
+    """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference."""
     return load if direction > 0 else -load - 2.0 * run.par.reference
 
 
 @kernel
 def load_ahead(run: Run, guess: float) -> None:
-    """Series of the load from the present place, in units of `guess`: as it is, and as seen in the direction of slip."""
+    """Write the series of the load from the present place, in units of `guess` (in xi), into run.local.
+
+    run.seen receives the same series as seen in the direction of slip.
+    """
     load, local, seen, direction, n = run.load, run.local, run.seen, run.counts.mode, run.counts.degree
     if n <= 1:
         local[0] = load[0] + run.state.xi * load[1]
@@ -98,7 +109,10 @@ def load_ahead(run: Run, guess: float) -> None:
 
 @kernel
 def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]:
-    """Where on [0, 1] the load leaves what the strength (minus the reference) holds, and in which direction; NONE if it stays."""
+    """Return where on [0, 1] the load first exceeds the strength (both minus the reference), and the direction of the slip.
+
+    The place is NONE, and the direction 0, if the load stays within the strength.
+    """
     part, onset, direction = run.part, NONE, 0
     for way in (1, -1):
         for k in range(at.TERMS):
@@ -112,7 +126,7 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
 
 @kernel
 def rate_on_branch(run: Run, load: float, guess: float) -> float:
-    """The slip rate on the current branch that solves g(s) = load: Newton's method kept inside the branch."""
+    """Return the slip rate (m/s) on the current branch that solves g(s) = load, by Newton's method kept inside the branch."""
     branch = run.counts.branch
     low, high = run.rate_from[branch], run.rate_to[branch]
     if load <= run.excess_from[branch]:
@@ -142,7 +156,10 @@ def rate_on_branch(run: Run, load: float, guess: float) -> float:
 
 @kernel
 def rate_from_here(run: Run, load: float, guess: float) -> float:
-    """The slip rate that solves g(s) = load next to the guess: Newton's method as long as it gains; branches need not be known."""
+    """Return the slip rate (m/s) next to the guess that solves g(s) = load; the branches need not be known.
+
+    Newton's method continues as long as it reduces the error.
+    """
     s = best = guess
     least = math.inf
     for _ in range(20):
@@ -160,7 +177,7 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
 
 @kernel
 def needs_branches(run: Run) -> bool:
-    """Whether a choice among branches is due, and the table of branches is that of another slip."""
+    """Return True if a choice among branches is due while the table of branches was made for another slip."""
     meets_jump = run.counts.ready == Incoming.BROUGHT and run.counts.arriving != Cause.NO_CAUSE
     due = run.counts.leaving == 1 or run.counts.mode == 0 or meets_jump
     return due and run.state.table_slip != run.state.law_slip
@@ -168,7 +185,7 @@ def needs_branches(run: Run) -> bool:
 
 @kernel
 def choose_branch(run: Run, load: float) -> None:
-    """Leave rest: the first branch that the rule allows at this load."""
+    """Leave rest for the first branch that the rule allows at this load (minus the reference)."""
     run.state.exit = math.nan
     for branch in range(run.branches):
         if load <= run.keep_to[branch]:
@@ -178,7 +195,7 @@ def choose_branch(run: Run, load: float) -> None:
 
 @kernel
 def leave_branch(run: Run, load: float) -> None:
-    """The branch ends at this load: go to the nearest allowed one in the direction of the load, or to rest.
+    """Leave the branch, which ends at this load, for the nearest allowed one in the direction of the load, or for rest.
 
     A branch that the rule never takes has keep_from > keep_to.
     """
@@ -198,7 +215,10 @@ def leave_branch(run: Run, load: float) -> None:
 
 @kernel
 def branch_exit(run: Run) -> float:
-    """The xi, from the present one, at which the load leaves what the rule keeps the branch for; inf if not on this piece."""
+    """Return the xi, from the present one on, at which the load leaves the interval for which the rule keeps the branch.
+
+    The result is inf if this does not happen on the present piece of load.
+    """
     branch, mode, part, xi = run.counts.branch, run.counts.mode, run.part, run.state.xi
     first = NONE
     for upper in (0, 1):
@@ -217,7 +237,7 @@ def branch_exit(run: Run) -> float:
 
 @kernel
 def end_branch(run: Run) -> None:
-    """The load has left the interval in which the rule keeps the branch."""
+    """Leave the branch for another one or for rest, because the load has left the interval in which the rule keeps it."""
     branch, direction = run.counts.branch, run.counts.mode
     seen = towards(run, evaluate(run.load, run.state.xi), direction)
     upper = abs(seen - run.keep_to[branch]) < abs(seen - run.keep_from[branch])
@@ -227,6 +247,6 @@ def end_branch(run: Run) -> None:
         note_jump(run, 0.0, Cause.FOLD)
         run.state.rate_now = 0.0
         if abs(level - rest_limit(run)) <= SAME_LEVEL * run.par.normal:
-            run.counts.edge = direction  # rest ends where the branch does: the load goes away from there
+            run.counts.edge = direction  # Rest ends where the branch does: the slope of the load decides.
     else:
         run.counts.edge = direction

@@ -1,4 +1,4 @@
-"""Folds: where the branch of slip rates ends because g turns, and the slip rate goes as the square root of the time left."""
+"""Lead slip to and from folds, where a branch ends because g turns, and the slip rate goes as the square root of time."""
 
 from __future__ import annotations
 
@@ -14,19 +14,28 @@ from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
-"""Way (in xi) below which the square root makes no difference."""
+"""Way (in xi) below which the square root makes no difference, so that no side piece is made."""
 APPROACHING, DEPARTING, PASSING = 1, 2, 3
+"""Codes of `counts.at_fold`: on a side piece that ends at a fold, on one that starts at a fold, and on the rest of one whose
+branch has ended before."""
 AT_THE_FOLD = 1e-14
+"""Share of the reference strength (1) within which the load counts as being at the fold: the rounding of a load."""
 ROUNDING = 1e-14
-"""Relative difference of two loads that are surely not the same one."""
+"""Relative difference (1) at which two loads are certainly not the same one."""
 LAST_TO_FOLD = 1e-4
+"""Share (1) of the root of time before a fold that does not move, taken as a straight line: a series in so short a bit is all
+rounding."""
 DEPARTURE = 1e-10
-"""Share of the way that is walked as a straight line in the root of time: the line misses this share of the rate's change."""
+"""Share of the way (1) from a fold that is taken as a straight line in the root of time: the line misses this share of the rate's
+change."""
 
 
 @kernel
 def ends_at_fold(run: Run, way: float) -> bool:
-    """Whether the branch ends there because g turns smoothly, and not at a knot or because the rule prefers another solution."""
+    """Return True if the branch that ends after the given way (in xi) ends because g turns smoothly there.
+
+    The other ends are knots of the law, and loads at which the rule prefers another solution.
+    """
     branch = run.counts.branch
     level = towards(run, evaluate(run.load, run.state.xi + way), run.counts.mode)
     if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
@@ -37,7 +46,10 @@ def ends_at_fold(run: Run, way: float) -> bool:
 
 @kernel
 def share_described(c: Floats) -> float:
-    """How far from 0 (as 2^-n) the first half of a series describes it to rounding: squaring its variable leaves no more terms."""
+    """Return the largest share 2^-n of [0, 1] on which the lower half of a series' coefficients describes it to rounding.
+
+    Only that half is left when the variable of the series is squared (`square_variable`).
+    """
     share = 1.0
     for _ in range(60):
         total, tail, power = 0.0, 0.0, 1.0
@@ -54,7 +66,7 @@ def share_described(c: Floats) -> float:
 
 @kernel
 def square_variable(c: Floats, out: Floats) -> None:
-    """p(y^2) from p, cut to the terms that there are."""
+    """Write the coefficients of p(y^2) into out, from those of p, cut to TERMS coefficients."""
     fill(out, 0.0)
     for k in range((at.TERMS + 1) // 2):
         out[2 * k] = c[k]
@@ -62,7 +74,7 @@ def square_variable(c: Floats, out: Floats) -> None:
 
 @kernel
 def set_aside(run: Run, width: float) -> None:
-    """Keep the present piece of load, to be taken up again `width` further."""
+    """Keep the present piece of load and the state, to be taken up again at a place that is `width` (in xi) further on."""
     copy(run.load, run.kept_load, at.TERMS)
     copy(numbers_of(run.state), numbers_of(run.kept), at.KEPT)
     run.kept.xi = run.state.xi + width
@@ -72,12 +84,13 @@ def set_aside(run: Run, width: float) -> None:
 
 @kernel
 def approach_fold(run: Run, width: float) -> float:
-    """Prepare the way to a fold at distance `width`: s goes as the square root of the time left, so that becomes the variable.
+    """Replace the piece of load by a side piece that ends at the fold `width` (in xi) ahead.
 
-    Returns 0 once the piece is changed, or the part of the way that must be walked first.
+    The slip rate goes as the square root of the time left, so that root becomes the variable. Returns 0 once the side piece is in
+    place, or else the part of the way (in xi) that the contact must slip first.
     """
     backwards, squared = run.part, run.spare
-    restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold, z on [0, 1]
+    restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold backwards: z on [0, 1]
     share = share_described(backwards)
     if share < 1.0:
         return (1.0 - share) * width
@@ -95,7 +108,7 @@ def approach_fold(run: Run, width: float) -> float:
 
 @kernel
 def starts_at_fold(run: Run) -> bool:
-    """Whether slip has just been taken up on a branch at its very fold, as the maximal rule does it under a smooth load."""
+    """Return True if slip has just begun on a branch exactly at its fold, as it does by the maximal rule under a smooth load."""
     branch = run.counts.branch
     fold = run.rate_from[branch]
     if run.counts.edge == 0 or run.counts.at_fold != 0 or fold == 0.0 or is_knot(run, fold):
@@ -106,7 +119,7 @@ def starts_at_fold(run: Run) -> bool:
 
 @kernel
 def load_outruns_fold(run: Run) -> bool:
-    """Whether the load grows faster than the friction at the fold does as the contact slips there."""
+    """Return True if the load grows faster than the friction at the fold does as the contact slips there."""
     fold, xi, direction = run.rate_from[run.counts.branch], run.state.xi, run.counts.mode
     friction_at(run, run.state.law_slip, fold, run.value)
     restrict(run.load, xi, 1.0, run.part)
@@ -116,14 +129,15 @@ def load_outruns_fold(run: Run) -> bool:
 
 @kernel
 def depart_from_fold(run: Run, left: float) -> None:
-    """Prepare the first bit of the way from a fold, on which the rate grows as the root of time.
+    """Replace the first bit of the way from a fold by a side piece, on which the slip rate grows as the square root of time.
 
-    The bit is so short that the load is a straight line in time along it, in the echo of an earlier fold too.
+    `left` is the way (in xi) to the end of the step. The bit is so short that the load is a straight line in time along it, even
+    in the echo of an earlier fold.
     """
     width, forwards = DEPARTURE * left, run.part
     restrict(run.load, run.state.xi, width, forwards)
     rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.excess_from[run.counts.branch])
-    if 0.0 < rise < seen:  # the end of the bit would be the fold itself
+    if 0.0 < rise < seen:  # By rounding, the load at the end of the bit would still be the fold's.
         width = min(width * seen / rise, left)
         restrict(run.load, run.state.xi, width, forwards)
     set_aside(run, width)
@@ -137,7 +151,10 @@ def depart_from_fold(run: Run, left: float) -> None:
 
 @kernel
 def last_to_fold(run: Run) -> float:
-    """Share of the root of time before a fold that is a straight line: a moving fold is known as well as the run is accurate."""
+    """Return the share (1) of the root of time before a fold that is taken as a straight line.
+
+    It is larger where the fold moves, because a moving fold is known only as well as the run is accurate.
+    """
     if run.counts.folds_move == 0:
         return LAST_TO_FOLD
     return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par.tolerance))
@@ -145,9 +162,10 @@ def last_to_fold(run: Run) -> float:
 
 @kernel
 def straight_to_fold(run: Run) -> None:
-    """The last bit of the way to a fold, a straight line in the root of time: its series would be all rounding.
+    """Replace the series of the last bit of the way to a fold by a straight line in the root of time.
 
-    What the line misses there is LAST_TO_FOLD^2 of the rate's change along the piece, during LAST_TO_FOLD^2 of its time.
+    The series would be all rounding. With e the share that `last_to_fold` returns, the line misses e^2 of the rate's change along
+    the piece, during e^2 of its time.
     """
     branch = run.counts.branch
     low, high = run.rate_from[branch], run.rate_to[branch]
@@ -161,7 +179,7 @@ def straight_to_fold(run: Run) -> None:
 
 @kernel
 def straight_from_fold(run: Run) -> None:
-    """The first bit of the way from a fold: a straight line in the root of time, for at the fold itself there is no series."""
+    """Write the first bit of the way from a fold as a straight line in the root of time: at the fold itself no series exists."""
     fold = run.rate_from[run.counts.branch]
     friction_at(run, run.state.law_slip, fold, run.value)
     weakened = run.value[2] * run.k.chi * fold * (run.state.speed + run.state.bend)
@@ -172,13 +190,13 @@ def straight_from_fold(run: Run) -> None:
 
 @kernel
 def leave_fold_piece(run: Run) -> None:
-    """The piece next to a fold is done: take up the piece of load where it was left, and jump if the fold is reached."""
+    """Take up the piece of load again after the side piece next to a fold, and end the branch if the fold is reached."""
     state = run.state
     way = theta_at(run, 1.0) - theta_at(run, 0.0)
-    if run.counts.at_fold == DEPARTING and way > 0.0:  # the next series reaches about as far as the fold is away
+    if run.counts.at_fold == DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
         state.last_step = way
     rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
-    last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # a piece that time does not resolve
+    last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # The side piece was too short to take time.
     copy(numbers_of(run.kept), numbers_of(run.state), at.KEPT)
     state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
@@ -191,17 +209,20 @@ def leave_fold_piece(run: Run) -> None:
 
 @kernel
 def reach_end(run: Run) -> None:
-    """The branch ends here: go to another one, at once or when the branches at this slip are known."""
+    """End the branch: go to another one at once, or, if folds move, when the branches at this slip are known."""
     if run.counts.folds_move == 1:
         run.counts.leaving = 1
     else:
-        run.counts.stalled += 1  # to and fro between branches without any time would go on without end
+        run.counts.stalled += 1  # Counting ends a run that alternates between branches without taking time.
         end_branch(run)
 
 
 @kernel
 def leave_moving_branch(run: Run) -> None:
-    """The branches at this slip are known: go to another one. A piece made for a fold is left as any other then."""
+    """Go from a branch that has ended to another one, now that the branches at this slip are known.
+
+    The rest of a side piece that was made for a fold is walked like any other piece.
+    """
     run.counts.leaving = 0
     run.counts.stalled += 1
     end_branch(run)

@@ -1,7 +1,7 @@
-"""A fold that moves with slip, found from the series of the slip rate.
+"""Find a fold that moves with slip, from the series of the slip rate.
 
-Towards a fold the slip rate s goes as the square root of the time left, but time as a function of s is smooth: it turns there. So
-the series s(t) is reversed, and the fold is where dt/ds = 0.
+Towards a fold the slip rate s goes as the square root of the time left, but time as a function of s is smooth: it turns there.
+Therefore the series s(t) is reversed, and the fold is where dt/ds = 0.
 """
 
 from __future__ import annotations
@@ -16,18 +16,19 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 REVERSED = 14
-"""Terms of the reversed series: rounding grows with them, to 1e-13 here."""
+"""Order of the reversed series (1): rounding grows with it, to 1e-13 here."""
 ENOUGH = 1e-12
-"""The last of them, relative to the time to the fold, for the fold to count as found."""
+"""Largest sum of the last two terms (1), relative to the time to the fold, for the fold to count as found."""
 ALIKE = 0.03
-"""How far two estimates of the time to the fold may differ before it is looked for at all."""
+"""Relative difference (1) of two estimates of the time to the fold beyond which no fold is looked for."""
 
 
 @kernel
 def time_to_root(jet: Floats) -> float:
-    """Time to a square root's branch point, judged from the last coefficients; NONE if they do not look like that.
+    """Return the time, in the unit of the series, to the branch point of a square root, judged from the last coefficients.
 
-    Those of (T - t)^(1/2) are c_(k+1) = c_k (k - 1/2) / (k + 1) / T, and all of one sign.
+    Those of (T - t)^(1/2) obey c_(k+1) = c_k (k - 1/2) / (k + 1) / T, and all but c_0 have one sign. The result is NONE if the
+    coefficients do not look like that.
     """
     n = TERMS - 1
     if jet[1] * jet[n] <= 0.0 or jet[1] * jet[n - 1] <= 0.0:
@@ -39,7 +40,10 @@ def time_to_root(jet: Floats) -> float:
 
 @kernel
 def reversed_series(jet: Floats, time: float, out: Floats) -> None:
-    """t / time as a series in (s - s_0) / (2 s_1 time), order by order: so that it is 2 z - z^2 for a square root alone."""
+    """Write t / time as a series in z = (s - s_0) / (2 s_1 time) into out, order by order.
+
+    In these units the series of a square root alone is 2 z - z^2.
+    """
     powers = np.zeros((REVERSED + 1, REVERSED + 1))  # z^n in (t / time)^j
     out[0], out[1] = 0.0, 2.0
     powers[1, 1] = 2.0
@@ -56,7 +60,10 @@ def reversed_series(jet: Floats, time: float, out: Floats) -> None:
 
 @kernel
 def fold_ahead(jet: Floats) -> tuple[float, float]:
-    """Time to the fold that the series of the slip rate runs into, in its unit, and the rate there; NONE if none is seen."""
+    """Return the time to the fold that the series of the slip rate runs into, and the rate (m/s) there.
+
+    The time is in the unit of the series, and NONE if no fold is seen.
+    """
     time = time_to_root(jet)
     if time == NONE:
         return NONE, 0.0
@@ -82,7 +89,10 @@ def fold_ahead(jet: Floats) -> tuple[float, float]:
 
 @kernel
 def way_to_fold(run: Run, guess: float) -> float:
-    """The way (in xi) to the fold that the present series runs into, if the law stays in its piece; the rate there is noted."""
+    """Return the way (in xi) to the fold that the present series runs into, and note the rate there in state.fold_rate.
+
+    The series is in units of `guess` (in xi). The way is NONE if no fold is seen, or if the law leaves its piece before it.
+    """
     eta, rate = fold_ahead(run.jet)
     if eta == NONE or rate <= 0.0:
         return NONE

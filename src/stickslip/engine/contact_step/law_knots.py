@@ -1,4 +1,4 @@
-"""Knots of a law in slip rate: which piece a rate belongs to, and where a step passes from one piece to the next."""
+"""Handle knots of a law in slip rate: the piece to which a rate belongs, and where a step passes from one piece to the next."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from stickslip.engine.state.workspace import Run
 
 @kernel
 def settle_piece(run: Run, rate: float) -> None:
-    """Take the piece of the law that holds at the slip rate. At a knot the present one goes on: the way there has chosen it.
+    """Set the piece of the law that holds at the slip rate (m/s, magnitude).
 
-    But where a branch starts or ends at the knot, it is the piece on which g rises.
+    At a knot the present piece is kept, because the way to the knot has chosen it. For an algebraic contact, where a branch
+    starts or ends at the knot, it is the piece on which g rises.
     """
     piece = run.counts.piece
     below = piece > 0 and rate < run.knot[piece - 1] * (1.0 - NEAR_KNOT)
@@ -29,7 +30,7 @@ def settle_piece(run: Run, rate: float) -> None:
 
 @kernel
 def is_end_of_branch(run: Run, rate: float) -> bool:
-    """Whether a branch that stays where it is ends at this knot: its end is found from the load."""
+    """Return True if a branch that does not move with slip ends at this knot (m/s): its end is found from the load instead."""
     if run.counts.is_algebraic == 0 or run.counts.folds_move == 1:
         return False
     branch, room = run.counts.branch, NEAR_KNOT * rate
@@ -38,7 +39,10 @@ def is_end_of_branch(run: Run, rate: float) -> bool:
 
 @kernel
 def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
-    """Where on [0, 1] the slip rate leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down."""
+    """Return where on [0, 1] the slip rate leaves the present piece of the law, and whether upwards (1) or downwards (-1).
+
+    The place is NONE if the rate stays in the piece.
+    """
     first, turn, part = NONE, 1, run.part
     for way in (1, -1):
         knot = run.counts.piece if way == 1 else run.counts.piece - 1
@@ -56,7 +60,10 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
 
 @kernel
 def pass_rate_knot(run: Run, turn: int) -> bool:
-    """Stand at the knot and go on behind it; False where the resistance g falls there: then the branch ends at the knot."""
+    """Put the slip rate at the knot and enter the next piece of the law, upwards (turn is 1) or downwards (-1).
+
+    Return False if folds move and the resistance g falls in that piece: then the branch ends at the knot.
+    """
     piece = run.counts.piece
     knot = run.knot[piece] if turn > 0 else run.knot[piece - 1]
     run.state.rate_now = run.counts.mode * knot

@@ -1,8 +1,9 @@
-"""The stages of an implicit step: slip rate and state at Radau's points, by Newton's method.
+"""Solve for the stages of an implicit step: slip rate and state at Radau's points, by Newton's method.
 
     M v' = load - K q - Z v - S mu(u, v, w),    u' = v,    w' = F(u, v, w)
 
-A contact without mass (M = 0) and one without a state are the same equations with terms left out. v >= 0 is the magnitude.
+A contact without mass (M = 0) and one without a state obey the same equations with terms left out. v >= 0 is the magnitude of the
+slip rate, w the state, and q the slip since the start of the step. A step lasts h seconds; places in it run from 0 to 1.
 """
 
 from __future__ import annotations
@@ -29,30 +30,34 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
-"""What `contact_at` leaves in run.value: friction minus the reference with its derivatives, and dw/dt with its own."""
+"""Places in run.value after `contact_at`: friction coefficient minus the reference one with its derivatives, and dw/dt (1/s times
+the unit of the state) with its own."""
 RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
-"""What `look_between` leaves in a row of run.matrix."""
+"""Places in a row of run.matrix after `look_between`: slip rate (m/s), its derivative and integral over the step, state and its
+derivative."""
 STRIDE = 1e-4
 """Share of the way between two places (1) over which the slope of a guard's argument is taken."""
 CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
+"""Places (1) on the straight way between two places at which guards are evaluated: the ends, and one near each for the slope."""
 PLACES_ON_CHORD = 4
-"""Where between two places guards are looked at."""
+"""Number of places in CHORD (1)."""
 NUDGE = 1e-15
-"""Relative change of a number that is rounding: 4 ulp or more."""
+"""Relative change of a number (1) that is rounding: 4 ulp or more."""
 ITERATIONS = 40
+"""Largest number of Newton iterations (1) before the step counts as unsolved."""
 NEWTON_ROUNDING = 1e-15
 """Rounding of the load (1), relative to its terms, as Newton's method meets it."""
 
 
 @kernel
 def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
-    """Friction and the change of the state, with derivatives, into run.value."""
+    """Write friction and the change of the state, with their derivatives, into run.value (see MU ... CHANGE_BY_STATE)."""
     piece = run.counts.piece
     constants, slip = constants_of(run, piece), law_slip + run.slip_shift[piece]
     if run.counts.has_state == 1:
         call_state_value(run.state_at[piece], constants, slip, rate, state, run.value)
     else:
-        below = min(rate, 0.0)  # a rate law need not mean anything there, but an iteration may look: straight on
+        below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
         call_value(run.value_at[piece], constants, slip, rate - below, run.value)
         run.value[MU] += run.value[BY_RATE] * below
         for k in range(BY_STATE, CHANGE_BY_STATE + 1):
@@ -62,7 +67,10 @@ def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
 
 @kernel
 def rate_at_load(run: Run, load: float, guess: float) -> float:
-    """The slip rate of a massless contact with its present state under a load: friction does not fall with the rate then."""
+    """Return the slip rate (m/s) of a massless contact with its present state under a load (minus the reference).
+
+    Friction of such a law does not fall with the rate, so the solution is unique.
+    """
     impedance, normal = run.par.impedance, run.par.normal
     low, high = 0.0, (load + run.par.reference) / impedance
     if high <= 0.0:
@@ -86,7 +94,10 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
 
 @kernel
 def assemble(run: Run, h: float, force: float) -> None:
-    """Newton's equations at the present stages, for a step of h seconds; `force` is taken from the load."""
+    """Write Newton's equations at the present stages into run.matrix, for a step of h seconds.
+
+    `force` (Pa or N) is the part of the load that the step ignores.
+    """
     par, v, w, m = run.par, run.stage_rate, run.stage_state, run.matrix
     moving, remembers = run.counts.mode != 0, run.counts.has_state == 1
     mass, chi = par.inertia / h, run.k.chi * h
@@ -119,7 +130,7 @@ def assemble(run: Run, h: float, force: float) -> None:
 
 @kernel
 def eliminate(m: Floats, size: int) -> bool:
-    """Solve the equations in the rows of m; the solution replaces the last column. False where they are singular."""
+    """Solve `size` linear equations in the rows of m; the solution replaces the last column. Return False if they are singular."""
     for i in range(size):
         row, largest = ahead(m, TERMS * i), 0.0
         for j in range(size):
@@ -151,7 +162,7 @@ def eliminate(m: Floats, size: int) -> bool:
 
 @kernel
 def size_of_load(run: Run) -> float:
-    """Return the size (Pa, or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
+    """Return the size (Pa or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
     size = run.par.reference
     for k in range(TERMS):
         size += abs(run.load[k])
@@ -162,7 +173,7 @@ def size_of_load(run: Run) -> float:
 def correct(run: Run, size: int, rounding: float) -> float:
     """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
 
-    rounding: of the load (Pa, or N); a change of the slip rate that is no more than that makes is none.
+    `rounding` is that of the load (Pa or N); a change of the slip rate that it can explain counts as none.
     """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
     fastest, farthest, moved, evolved = 1e-300, run.par.state_scale + 1e-300, 0.0, 0.0
@@ -177,22 +188,23 @@ def correct(run: Run, size: int, rounding: float) -> float:
         if not (math.isfinite(v[i]) and math.isfinite(w[i])):
             return math.inf
     if rounding > 0.0:
-        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value[BY_RATE]), 0.0)  # as at the last stage
+        # run.value is still that of the last stage.
+        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value[BY_RATE]), 0.0)
     return max(moved / fastest, evolved / farthest)
 
 
 @kernel
 def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
-    """Find slip rates and states at the points of a step of h seconds, from the values at its start. False if that fails.
+    """Find slip rates and states at the points of a step of h seconds, from the values at its start; return False on failure.
 
-    Newton's method begins with the values at the start; or, where share > 0, with the polynomials of a longer step of which
-    this one is such a share. After it, `look_between` has looked between the points.
+    Newton's method begins with the values at the start; or, if share > 0, with the polynomials of a longer step of which this one
+    is that share. On success `look_between` has been called.
     """
     for i in range(1, POINTS):
         run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
         if share > 0.0:
             run.stage_state[i] = evaluate(run.state_jet, share * POINT[i])
-            if run.counts.mode != 0:  # at rest run.jet holds the strength
+            if run.counts.mode != 0:  # At rest run.jet holds the strength.
                 run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
     size = 2 * STAGES if run.counts.has_state == 1 else STAGES
     before, rounding = math.inf, NEWTON_ROUNDING * size_of_load(run) if run.counts.has_inertia == 0 else 0.0
@@ -201,7 +213,7 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
         if not eliminate(run.matrix, size):
             return False
         change = correct(run, size, rounding)
-        # Newton squares its error: the next change would be lost in the tolerance; or the last digits go round in circles
+        # Newton's method squares its error: the next change would be lost in the tolerance, or only rounding is left.
         if change <= 1e-2 * math.sqrt(run.par.tolerance) or 0.1 * before < change < 1e-9:
             look_between(run)
             return True
@@ -213,7 +225,10 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
 
 @kernel
 def look_between(run: Run) -> None:
-    """Put slip rate, its change and integral, state and its change halfway between the points into rows of run.matrix."""
+    """Put slip rate and state halfway between the points, with derivatives and integral, into rows of run.matrix.
+
+    Derivatives (of rate and state) and integral (of the rate) are with respect to the place in the step, from 0 to 1.
+    """
     v, w, remembers = run.stage_rate, run.stage_state, run.counts.has_state == 1
     for i in range(STAGES):
         rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -231,7 +246,7 @@ def look_between(run: Run) -> None:
 
 @kernel
 def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
-    """Evaluate the contact at a place where `look_between` has looked; all of its arguments are larger by a relative nudge."""
+    """Evaluate the contact at the i-th place of `look_between`, with all arguments larger by a relative nudge (1)."""
     row = ahead(run.matrix, TERMS * i)
     slip = run.state.law_slip + run.k.chi * h * row[WALKED]
     contact_at(run, slip * (1.0 + nudge), row[RATE] * (1.0 + nudge), row[STATE] * (1.0 + nudge))
@@ -239,9 +254,9 @@ def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
 
 @kernel
 def yielding(run: Run, h: float) -> tuple[float, float]:
-    """Return the error of slip rate per load that is missing, and of the state per missing change, over a step of h seconds.
+    """Return the error of slip rate per missing load, and of the state per missing rate of change (s), over a step of h seconds.
 
-    What is missing of a derivative turns its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
+    What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
     resistance = abs(run.par.impedance + run.par.normal * run.value[BY_RATE]) + STAGES * run.par.inertia / h
     return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
@@ -276,7 +291,10 @@ def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floa
 
 @kernel
 def follow_step(run: Run, h: float, way: Floats) -> None:
-    """Put law slip (m, since the start), slip rate and state at the start, the points and the places between them one by one."""
+    """Write law slip (m, since the start), slip rate and state along the step into `way`.
+
+    The rows are in order: the start, then the places between the points and the points by turns.
+    """
     chi = run.k.chi * h
     for point in range(POINTS):
         walked = 0.0
@@ -292,7 +310,7 @@ def follow_step(run: Run, h: float, way: Floats) -> None:
 
 @kernel
 def rise(first: float, climb: float, last: float, descent: float) -> float:
-    """Return how far a concave function rises above its start, from its values and its slopes at both ends of [0, 1]."""
+    """Return how far a concave function may rise above its start, from its values and its slopes at both ends of [0, 1]."""
     if climb > 0.0 and descent < 0.0:
         return climb * min(max((last - first - descent) / (climb - descent), 0.0), 1.0)
     return max(last - first, 0.0)
@@ -300,11 +318,12 @@ def rise(first: float, climb: float, last: float, descent: float) -> float:
 
 @kernel
 def stays_in_sight(run: Run, h: float) -> float:
-    """Return the share of its room that the hardest pressed guard of the law uses up in a step of h seconds: it must not exceed 1.
+    """Return the share of its room that the hardest-pressed guard of the law uses up in a step of h seconds.
 
-    A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes back where the argument
-    of its guard moves by its room in the direction of its pull (see `guards`). Whatever an argument moves that way counts. A
-    narrow part may lie between two places: there its argument goes up and down again, which its slopes at both of them show.
+    It must not exceed 1. A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes
+    back where the argument of its guard moves by its room in the direction of its pull (see `engine/codegen/guards.py`). Every
+    movement in that direction counts. A narrow part may lie between two places: there its argument goes up and down again, which
+    its slopes at both of them show.
     """
     n = run.guard_count[run.counts.piece]
     if n == 0:
@@ -319,7 +338,8 @@ def stays_in_sight(run: Run, h: float) -> float:
             walked, rate = begin[0] + CHORD[k] * (end[0] - begin[0]), begin[1] + CHORD[k] * (end[1] - begin[1])
             look_at_guards(run, walked, rate, begin[2] + CHORD[k] * (end[2] - begin[2]), ahead(seen, 2 * n * k))
         for j in range(n):
-            pull = seen[2 * j + 1]  # as it is at this place: one that rises from zero has no room there, and soon enough
+            # Take the pull at this place, not at the start: an argument that rises from zero has no room there, but soon enough.
+            pull = seen[2 * j + 1]
             first, last = pull * seen[2 * j], pull * seen[6 * n + 2 * j]
             climb, descent = pull * seen[2 * n + 2 * j] - first, last - pull * seen[4 * n + 2 * j]
             used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
@@ -331,7 +351,7 @@ def stays_in_sight(run: Run, h: float) -> float:
 
 @kernel
 def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
-    """Return what rounding in the law's formulas makes of slip rate and state: by how much they answer to a nudge of rounding.
+    """Return what rounding in the law's formulas makes of slip rate (m/s) and state, by nudging the arguments by a few ulp.
 
     A formula may lose any number of digits, and nothing but the formula knows how many.
     """
@@ -349,5 +369,5 @@ def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
 
 @kernel
 def larger(x: float, y: float) -> float:
-    """Return the larger of two numbers, and infinity where the second is none."""
+    """Return the larger of two numbers, or infinity if the second is not a number."""
     return math.inf if math.isnan(y) else max(x, y)

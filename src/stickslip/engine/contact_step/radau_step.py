@@ -1,4 +1,4 @@
-"""Implicit steps: for contacts with a state of their own, and for stiff ones with mass.
+"""Take implicit steps, for contacts with a state of their own and for stiff contacts with mass.
 
 Such a contact settles far faster than anything else happens; an explicit series would have to follow every settling time.
 """
@@ -33,46 +33,49 @@ from stickslip.engine.state.layout import Floats, Stop
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
+"""Largest number of attempts at an implicit step (1), each shorter, before it fails."""
 STIFF, NOT_STIFF = 4.0, 1.5
-"""Settling times in an explicit step beyond which the contact is stiff: only stability can have kept it so short; and in an
-implicit step, below which it no longer is."""
+"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
+step so short; and in an implicit step, below which the contact is no longer stiff."""
 CHECKED = 16
-"""Explicit steps between two looks at the stiffness."""
+"""Number of explicit steps (1) between two checks of the stiffness."""
 LONGEST_GROWTH = 4.0
-"""Growth (as an exponent) of a disturbance over a step, at most."""
+"""Largest growth (as an exponent, 1) of a disturbance over a step."""
 ROUNDING = 1e-15
+"""Rounding of a number in double precision (1), relative to its terms."""
 LOAD_ROUNDING = 1e-14
-"""Share of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+"""Share (1) of the load's coefficients below which a load is zero: rounding where it passes through zero."""
 DEFECT_ROUNDING = 1e-14
-"""Share of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
+"""Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
-"""Share of the defect (1) that counts: it turns its sign at every point, and leaves hardly anything in slip and state."""
+"""Share of the defect (1) that counts: it changes its sign at every point, and leaves hardly anything in slip and state."""
 LEAST_TREND = 0.7
-"""Change of the length (1) that a step expects at least of the next one, when it had to become shorter itself."""
+"""Least value (1) of the factor by which a step that had to be shortened limits the length of the next one."""
 LAW_ROUNDING = 5.0
-"""Rounding of the law that is allowed for, in units of the largest that was seen in a few evaluations."""
+"""Rounding of the law that is allowed for, in units of the largest (1) that was seen in a few evaluations."""
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
-"""Error, in units of the tolerance, beyond which a step is never kept; attempts, each shorter, whose error has not halved."""
+"""Error, in units of the tolerance (1), above which a step is never kept; and number of attempts in a row, each shorter, whose
+error has not halved, after which the error is taken to be rounding."""
 FORGOTTEN = 1e-18
-"""Share of friction below which what is left of the state at rest is dropped."""
+"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
 
 
 @kernel
 def is_implicit(run: Run) -> bool:
-    """Whether the next step is an implicit one."""
+    """Return True if the next step must be implicit."""
     return run.counts.has_state == 1 or run.counts.stiff == 1
 
 
 @kernel
 def settling_rate(run: Run) -> float:
-    """How fast (1/s) the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
+    """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
     return (run.par.impedance + run.par.normal * run.value[1]) / run.par.inertia
 
 
 @kernel
 def judge_stiffness(run: Run) -> None:
-    """After an explicit step of a contact with mass: now and then, whether it has become stiff."""
+    """Check now and then, after an explicit step of a contact with mass, whether the contact has become stiff."""
     run.counts.steps += 1
     if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
         run.counts.stiff = 1
@@ -80,10 +83,10 @@ def judge_stiffness(run: Run) -> None:
 
 @kernel
 def growth_rate(run: Run) -> float:
-    """How fast (1/s) a disturbance of slip rate and state grows at the start of the step; 0 where none does.
+    """Return the rate (1/s) at which a disturbance of slip rate and state grows at the start of the step; 0 where none grows.
 
-    An implicit step far longer than that would walk along an unstable solution as if it were stable. What slip does to a
-    disturbance is left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with it.
+    An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. The effect of slip is
+    left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with the disturbance.
     """
     par, value = run.par, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
@@ -96,13 +99,16 @@ def growth_rate(run: Run) -> float:
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
-        growth = -2.0 * product / (math.sqrt(root) - trace)  # the same without cancellation
+        growth = -2.0 * product / (math.sqrt(root) - trace)  # This form of the same root has no cancellation.
     return max(growth, 0.0)
 
 
 @kernel
 def start_of_step(run: Run) -> float:
-    """Slip rate and state at the start into the stages; the force that is none by definition, where slip leaves rest."""
+    """Put slip rate and state at the start of the step into the stages, and return the force (Pa or N) that the step ignores.
+
+    It is 0 except where slip leaves rest, because the net force is zero by definition there.
+    """
     state, force = run.state, 0.0
     run.stage_state[0] = state.state_now
     run.stage_rate[0] = abs(state.rate_now)
@@ -122,7 +128,7 @@ def start_of_step(run: Run) -> float:
 def strength_ahead(run: Run) -> float:
     """Put the static strength (minus the reference) over a step at rest into run.jet, from the states at its points.
 
-    Returns by how much it misses the law between the points, in units of the tolerance.
+    Returns by how much it misses the law between the points, or its last terms if they are larger, in units of the tolerance.
     """
     par = run.par
     largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
@@ -143,14 +149,15 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
 
     The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
-    between the points, where a feature of the law may lie that none of the points sees. `lost` is what is known to be lost by
-    rounding in the law itself.
+    between the points, where a feature of the law may lie that none of the points sees. `force` (Pa or N) is the force that the
+    step ignores; `lost` (m/s) and `lost_state` (in units of the state) are known to be lost by rounding in the law itself.
     """
     par, value, h = run.par, run.value, run.k.speed
     fastest, farthest = par.rate_floor, par.state_scale + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
-    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h  # as at the last stage
+    # run.value is from the latest evaluation, at or near the end of the step.
+    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h
     noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
     missed, missed_state = defects(run, h, force)
@@ -169,7 +176,7 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
 def settle_start(run: Run) -> bool:
     """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
 
-    Leading coefficients that are negative by the rounding of the interpolation alone are set to zero: a contact with mass leaves
+    Leading coefficients that are negative only by the rounding of the interpolation are set to zero: a contact with mass leaves
     rest with a slip rate that grows as the square of time, or even later.
     """
     if run.counts.mode == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
@@ -188,7 +195,7 @@ def settle_start(run: Run) -> bool:
 
 @kernel
 def turn_with_load(run: Run, left: float) -> float:
-    """Let a contact that never rests slip the way the load pulls it. Returns for how long (in xi, at most `left`) it does so.
+    """Let a contact that never rests slip the way the load pulls it, and return for how long (in xi, at most `left`) it does so.
 
     Friction is an odd function of the slip rate there, and zero at rest. Without mass the slip rate has the sign of the load at
     every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
@@ -202,28 +209,28 @@ def turn_with_load(run: Run, left: float) -> float:
         direction = -1
     first = first_descent(part, run.spare) if part[0] > rounding else 0.0
     if first <= TIE:
-        run.load[0] -= direction * part[0]  # a load that passes through zero here does so for the stages, too
+        run.load[0] -= direction * part[0]  # The stages must see the load pass through zero here, too.
         part[0] = 0.0
         first = first_descent(part, run.spare)
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
     if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par.reference:
-        return left  # no load at all
+        return left  # The load is zero throughout.
     run.counts.mode = direction
     return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
 
 
 @kernel
 def turn_over(c: Floats) -> None:
-    """Change the sign of a polynomial."""
+    """Change the sign of a polynomial in place."""
     for k in range(at.TERMS):
         c[k] = -c[k]
 
 
 @kernel
 def judged_error(run: Run, force: float, before: float) -> float:
-    """Return the error of the step's polynomials as `error_of`. Infinity stands for polynomials that are no solution at all.
+    """Return the error of the step's polynomials like `error_of`, or infinity if they are no solution at all.
 
     An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
     """
@@ -236,7 +243,7 @@ def judged_error(run: Run, force: float, before: float) -> float:
 
 @kernel
 def first_length(run: Run, left: float) -> float:
-    """Return the length in xi with which to try an implicit step: short enough for a disturbance that grows."""
+    """Return the length (in xi, at most `left`) with which to try an implicit step: short enough for a disturbance that grows."""
     speed = abs(run.state.speed)
     guess = min(left, run.state.last_step / speed)
     if 0.5 * left < guess < left:
@@ -249,10 +256,11 @@ def first_length(run: Run, left: float) -> float:
 
 @kernel
 def collocate(run: Run, left: float) -> float:
-    """An implicit step: polynomials of slip rate and state (run.jet, run.state_jet) over a step of the returned length in xi.
+    """Make polynomials of slip rate and state (run.jet, run.state_jet) for an implicit step, and return its length (in xi).
 
-    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. An error that
-    does not shrink with the step is rounding, after PATIENCE attempts in a row. The polynomials are NaN if all attempts fail.
+    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. After PATIENCE
+    attempts in a row in which the error did not shrink with the step, it is taken to be rounding. The polynomials are NaN if all
+    attempts fail.
     """
     speed = abs(run.state.speed)
     if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
@@ -274,7 +282,8 @@ def collocate(run: Run, left: float) -> float:
                 if error > 1.0:
                     run.counts.rough += 1
                     run.state.roughest = max(run.state.roughest, error * run.par.tolerance)
-                change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0  # steps that had to shrink go on to
+                # Where this step had to shrink, the next one probably has to shrink as well.
+                change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0
                 run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
                 return guess
             before = error
@@ -289,10 +298,10 @@ def collocate(run: Run, left: float) -> float:
 
 @kernel
 def begin_step(run: Run, guess: float) -> float:
-    """Prepare the load and the start of an implicit step of this length in xi; return the force that it ignores."""
+    """Prepare the load and the start of an implicit step of length `guess` (in xi); return the force (Pa or N) that it ignores."""
     load_ahead(run, guess)
     if run.counts.sticks == 0 and abs(run.seen[0] + run.par.reference) <= LOAD_ROUNDING * size_of_load(run):
-        run.seen[0] = -run.par.reference  # the load passes through zero here: slip begins with a rate of zero
+        run.seen[0] = -run.par.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
     run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
     return start_of_step(run)
@@ -300,7 +309,7 @@ def begin_step(run: Run, guess: float) -> float:
 
 @kernel
 def keep_state(run: Run, length: float) -> None:
-    """Put the state's polynomial, up to `length` of the step, into the history, and the state at its end where it is now."""
+    """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
     if run.counts.has_state == 0:
         return
     kept = ahead(run.stored_state, at.TERMS * run.counts.length)
@@ -324,7 +333,7 @@ def note_negative_friction(run: Run) -> None:
 
 @kernel
 def forgotten(run: Run) -> bool:
-    """Whether nothing is left of the state that friction would notice; then nothing is left at all."""
+    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     if abs(run.value[BY_STATE] * run.state.state_now) > FORGOTTEN:
         return False
@@ -334,7 +343,10 @@ def forgotten(run: Run) -> bool:
 
 @kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
-    """One step at rest in which the state, and so the strength, changes; up to where the load leaves what friction can hold."""
+    """Take one step at rest in which the state, and with it the strength, changes.
+
+    The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
+    """
     width = collocate(run, xi_to - run.state.xi)
     if not math.isfinite(run.jet[0]):
         run.state.rate_now = math.nan

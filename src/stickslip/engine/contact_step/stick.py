@@ -1,4 +1,4 @@
-"""The contact at rest: what a new piece of load finds, how rest heals, how long it lasts, and how slip comes to rest."""
+"""Treat the contact at rest: what a new piece of load meets, how rest heals, how long it lasts, and how slip comes to rest."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
-"""Rests up to the root of this many local tolerances (the root of `rtol`), in rows, are touches of rest in passing."""
+"""Number of local tolerances (1) whose root bounds a touch of rest in passing, in round trips: the root is that of `rtol`."""
 
 
 @kernel
 def arrive(run: Run) -> None:
-    """A new piece of load begins: does the contact stick or slip under it, which way, on which branch?"""
+    """Decide how the contact answers a new piece of load: whether it sticks or slips, in which direction, and on which branch."""
     load = run.load[0]
     if run.counts.sticks == 0:
         if run.counts.has_inertia == 0 and load != -run.par.reference:
@@ -37,7 +37,7 @@ def arrive(run: Run) -> None:
     limit = rest_limit(run)
     mode = run.counts.mode
     if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == Cause.NO_CAUSE:
-        pass  # the load goes on as it was, and so does the slip rate
+        pass  # The load continues without a jump, and so does the slip rate.
     elif mode != 0 and run.counts.is_algebraic == 1:
         seen, branch = towards(run, load, mode), run.counts.branch
         if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
@@ -58,7 +58,7 @@ def arrive(run: Run) -> None:
 
 @kernel
 def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
-    """Where on [0, 1] of a stretch of load rest ends, and in which direction; NONE if it lasts."""
+    """Return where on [0, 1] of an interval of load rest ends, and the direction of slip; the place is NONE if rest lasts."""
     strength = run.jet
     fill(strength, 0.0)
     strength[0] = rest_limit(run)
@@ -67,17 +67,20 @@ def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
 
 @kernel
 def is_arrest(run: Run, lasting: float) -> bool:
-    """Whether rest that lasts so long (s, without healing) is more than a touch of rest in passing.
+    """Return True if a rest that would last this long (s, without healing) is more than a touch of rest in passing.
 
     A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
-    the order of its root. A contact without mass stops because the load falls, and stays.
+    the order of the tolerance's root. A contact without mass stops because the load falls, and stays at rest.
     """
     return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.par.tolerance) * run.par.row_time
 
 
 @kernel
 def heal(run: Run, load: float) -> None:
-    """A law that remembers slip since the last arrest forgets it: friction is that of the start. Slip at once if it cannot hold."""
+    """Let a law that remembers slip since the last arrest forget it, so that friction is that of the start again.
+
+    The contact slips at once if the healed strength cannot hold the load (Pa or N, minus the reference).
+    """
     before = rest_limit(run)
     run.state.law_slip, run.counts.piece = 0.0, int(run.par.healed_piece)
     limit = rest_limit(run)
@@ -85,11 +88,11 @@ def heal(run: Run, load: float) -> None:
         return
     run.counts.edge = 0
     if run.counts.folds_move == 1:
-        return  # the branches at the healed slip have to be found first
+        return  # The branches at the healed slip must be found first.
     for direction in (1, -1):
         beyond = towards(run, load, direction) - limit
         if abs(beyond) <= SAME_LEVEL * run.par.normal:
-            run.counts.edge = direction  # how the load goes on decides, and not its rounding
+            run.counts.edge = direction  # Decide by the slope of the load, not by its rounding.
         elif beyond > 0.0:
             run.counts.mode = direction
             if run.counts.has_inertia == 0:
@@ -98,7 +101,7 @@ def heal(run: Run, load: float) -> None:
 
 @kernel
 def stick(run: Run, xi_to: float) -> None:
-    """Stay at rest until the load leaves what friction can hold."""
+    """Stay at rest up to the place xi_to, or until the load exceeds what friction can hold."""
     if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
         stick_with_state(run, xi_to)
         return
@@ -127,7 +130,10 @@ def stick(run: Run, xi_to: float) -> None:
 
 @kernel
 def come_to_rest(run: Run) -> None:
-    """The slip rate has reached zero: rest, or slip the other way where the load is beyond the strength there."""
+    """Bring the contact, whose slip rate has reached zero, to rest, or let it slip the way the load exceeds the strength.
+
+    Under a law that never sticks, slip turns round at once.
+    """
     before = run.counts.mode
     run.state.rate_now = 0.0
     if run.counts.sticks == 0:

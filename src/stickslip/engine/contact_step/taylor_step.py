@@ -1,6 +1,7 @@
-"""The contact in slip: one Taylor step, cut at the first event in it.
+"""Advance the contact in slip by one Taylor step, cut at the first event in it.
 
-The step goes straight into the next free row of the history: series, length, events, and only then is the row kept.
+The step is written straight into the next free row of the history: series, length, events, and only then is the row kept. A
+"guess" is the length (in xi) in whose units the series is computed; lengths of steps are given in guesses.
 """
 
 from __future__ import annotations
@@ -70,23 +71,27 @@ from stickslip.engine.state.layout import Cause, Floats, Stop
 from stickslip.engine.state.workspace import Run
 
 LONGEST_GUESS = 2.0
-"""Guess at the next step's length (1), relative to the last one."""
+"""Guess at the length of the next step, relative to the last one (1)."""
 SHORTEST_GUESS = 1e-16
-"""Share of the way to go: after a last step of next to no length, high orders in units of it would vanish, or overflow."""
+"""Least guess as a share of the way to go (1): in units of a last step of next to no length, high orders would vanish or
+overflow."""
 NO_EVENT, ARREST, KNOT = range(3)
-"""What may end a step early: the slip rate reaches zero, or slip (or its rate) a knot of the law."""
+"""Codes of what may end a step early: the slip rate reaches zero, or slip (or its rate) reaches a knot of the law."""
 
 
 @kernel
 def first_guess(run: Run, left: float) -> float:
-    """Length (in xi) in whose units the next series is computed: near the step that will be taken, so that nothing overflows."""
+    """Return the length (in xi) in whose units the next series is computed, from the way (in xi) that is left.
+
+    It is near the length of the step that will be taken, so that no coefficient overflows.
+    """
     speed = abs(run.state.speed + 2.0 * run.state.bend * run.state.xi)
     return min(left, max(LONGEST_GUESS * run.state.last_step / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
 
 
 @kernel
 def series(run: Run, guess: float) -> None:
-    """Taylor series of the slip rate's magnitude (run.jet) from the present state, in units of `guess`."""
+    """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `guess` (in xi)."""
     prepare_series(run, guess)
     piece = run.counts.piece
     call_jet(run.jet_at[piece], constants_of(run, piece), numbers_of(run.k), run.seen, run.jet)
@@ -94,7 +99,7 @@ def series(run: Run, guess: float) -> None:
 
 @kernel
 def prepare_series(run: Run, guess: float) -> None:
-    """What the series is made of: the load ahead (run.seen), and run.k."""
+    """Prepare what the series is made of: the load ahead (run.seen), in units of `guess` (in xi), and the numbers in run.k."""
     direction, par, k = run.counts.mode, run.par, run.k
     load_ahead(run, guess)
     k.rate = abs(run.state.rate_now)
@@ -117,14 +122,17 @@ def prepare_series(run: Run, guess: float) -> None:
 
 @kernel
 def stretch(run: Run, length: float, rate: Floats) -> None:
-    """The slip rate's magnitude over a step of so many guesses, on [0, 1]."""
+    """Write the slip rate's magnitude over a step of the given length (in guesses) into `rate`, as a polynomial on [0, 1]."""
     powers_of(length, run.powers)
     multiply(run.jet, run.powers, rate)
 
 
 @kernel
 def growth(run: Run, rate: Floats, length: float, end: float) -> float:
-    """Slip over the step up to `end` on [0, 1]: the integral of the rate over dtheta = (A + B eta) d eta."""
+    """Return the slip (m, unsigned) in a step of the given length (in guesses) up to the place `end` on [0, 1].
+
+    It is the integral of the rate over dtheta = (A + B eta) d eta.
+    """
     straight = run.k.speed * length * integral(rate, end, 1)
     if run.k.bend == 0.0:
         return straight
@@ -133,7 +141,10 @@ def growth(run: Run, rate: Floats, length: float, end: float) -> float:
 
 @kernel
 def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
-    """Where on [0, end] the slip reaches the next knot of the law; NONE if it does not. Up to the end of slip it is monotone."""
+    """Return where on [0, end] slip reaches the next knot of the law, or NONE if it does not.
+
+    The rate does not change its sign before `end`, so slip is monotone and bisection finds the place.
+    """
     grown = run.k.chi * growth(run, rate, length, end)
     next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
     if next_knot < 0 or next_knot >= run.pieces - 1:
@@ -153,7 +164,10 @@ def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
 
 @kernel
 def next_knot(run: Run, rate: Floats, length: float, end: float) -> tuple[float, int]:
-    """Where on [0, end] the step leaves the present piece of the law, NONE if it does not; and whether upwards (1) or down (-1)."""
+    """Return where on [0, end] the step leaves the present piece of the law, and whether upwards (1) or downwards (-1).
+
+    The place is NONE if the step stays in the piece.
+    """
     if run.counts.knots_in_rate == 1:
         return rate_knot_crossing(run, rate)
     return knot_crossing(run, rate, length, end), 1 if run.k.chi > 0.0 else -1
@@ -161,7 +175,7 @@ def next_knot(run: Run, rate: Floats, length: float, end: float) -> tuple[float,
 
 @kernel
 def pass_knot(run: Run, turn: int) -> None:
-    """Go on in the next piece of the law."""
+    """Enter the next piece of the law, upwards (turn is 1) or downwards (-1), or end the branch where g falls in that piece."""
     if run.counts.knots_in_rate == 0:
         run.counts.piece += turn
     elif not pass_rate_knot(run, turn):
@@ -170,7 +184,11 @@ def pass_knot(run: Run, turn: int) -> None:
 
 @kernel
 def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
-    """An algebraic contact may leave its branch: how far to go, whether the branch ends there, whether it did so just now."""
+    """Find where an algebraic contact leaves its branch, and prepare the way to a smooth fold.
+
+    Returns the xi up to which to slip, whether the branch ends there, and whether this call has already done all that can be done
+    now (the branch has ended, or the piece of load has been replaced by a side piece).
+    """
     moves = run.counts.folds_move == 1
     if math.isnan(run.state.exit) and not moves:
         run.state.exit = branch_exit(run)
@@ -188,7 +206,10 @@ def end_of_branch(run: Run, xi_to: float) -> tuple[float, bool, bool]:
 
 @kernel
 def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[float, bool, bool]:
-    """As `end_of_branch`, for a fold that moves with slip: where the series runs into it, if that is before the target."""
+    """Find where the series runs into a fold that moves with slip, if that is before the target (in xi).
+
+    Returns the same three values as `end_of_branch`; target and leaves are unchanged if no fold is met.
+    """
     way = way_to_fold(run, guess)
     if not way < target - run.state.xi:
         return target, leaves, False
@@ -204,7 +225,7 @@ def look_for_fold(run: Run, guess: float, target: float, leaves: bool) -> tuple[
 
 @kernel
 def slip(run: Run, xi_to: float) -> None:
-    """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, the end of the piece."""
+    """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, or the place xi_to."""
     target, leaves, done = xi_to, False, False
     if run.counts.is_algebraic == 1 and (run.counts.at_fold == 0 or run.counts.folds_move == 1):
         target, leaves, done = end_of_branch(run, xi_to)
@@ -212,7 +233,7 @@ def slip(run: Run, xi_to: float) -> None:
             if run.counts.folds_move == 0 or load_outruns_fold(run):
                 depart_from_fold(run, target - run.state.xi)
             else:
-                run.counts.stalled += 1  # slip would end where it starts, again and again
+                run.counts.stalled += 1  # Slip would end where it starts, again and again.
             return
     if done:
         return
@@ -240,7 +261,7 @@ def slip(run: Run, xi_to: float) -> None:
 
 @kernel
 def note_shock(run: Run) -> None:
-    """Note the jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
+    """Note a jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
     if run.state.xi == 0.0 and run.counts.arriving != Cause.NO_CAUSE:
         note_jump(run, run.counts.mode * run.jet[0], run.counts.arriving)
     elif run.counts.edge != 0 and run.counts.has_inertia == 0:
@@ -249,7 +270,7 @@ def note_shock(run: Run) -> None:
 
 @kernel
 def slip_implicitly(run: Run, xi_to: float) -> None:
-    """Slip for one implicit step, or up to what ends it."""
+    """Slip for one implicit step, or up to what ends it: arrest, a knot of the law, or the place xi_to."""
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
     guess = collocate(run, xi_to - run.state.xi)
@@ -268,7 +289,10 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 
 @kernel
 def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
-    """Choose the length of an explicit step, cut it at the first event, make it shorter until it obeys the law, and go."""
+    """Take an explicit step: choose its length, cut it at the first event, shorten it until it obeys the law, and record it.
+
+    `target` and `guess` are in xi; `leaves` says that the branch ends at the target.
+    """
     length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par.tolerance))
     rate, load = ahead(run.stored_rate, at.TERMS * run.counts.length), ahead(run.stored_load, at.TERMS * run.counts.length)
     begin_verification(run)
@@ -304,7 +328,7 @@ def is_straight(run: Run) -> bool:
 
 @kernel
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
-    """Length of an explicit step (in guesses) that may be so long, and whether it reaches the target."""
+    """Return the length (in guesses) of an explicit step that may be `length` guesses long, and whether it reaches the target."""
     limit = (target - run.state.xi) / guess
     if run.guard_count[run.counts.piece] > 0 and not is_straight(run):
         seen = within_guards(run, min(length, limit))
@@ -321,15 +345,16 @@ def choose_length(run: Run, target: float, guess: float, length: float) -> tuple
 
 @kernel
 def duration_of(run: Run, length: float) -> float:
-    """Return how long (s) a step of so many guesses is."""
+    """Return the duration (s) of a step of the given length (in guesses)."""
     return length * abs(run.k.speed + 0.5 * run.k.bend * min(length, 1.0))
 
 
 @kernel
 def first_event(run: Run, rate: Floats, length: float) -> tuple[int, int, float]:
-    """Find what ends a step (of so many guesses) early, and cut the step there.
+    """Find what ends a step of the given length (in guesses) early, and cut the step there.
 
-    Returns the event, which knot it passes (1 upwards, -1 down), and the share of the step up to there.
+    Returns the event, the direction in which a knot is passed (1 upwards, -1 downwards), and the share of the step up to the
+    event.
     """
     arrest = NONE
     if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
@@ -345,7 +370,7 @@ def first_event(run: Run, rate: Floats, length: float) -> tuple[int, int, float]
 
 @kernel
 def end_step(run: Run, target: float, event: int, turn: int, leaves: bool, reached: bool) -> None:
-    """Do what the event at the end of a step asks for."""
+    """Do what the event at the end of a step requires: come to rest, pass a knot, or end the branch."""
     if event == ARREST:
         come_to_rest(run)
     elif event == KNOT:
@@ -356,14 +381,18 @@ def end_step(run: Run, target: float, event: int, turn: int, leaves: bool, reach
 
 @kernel
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
-    """Record the step, which ends at xi = to, and move the state there."""
+    """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
     multiply(run.local, run.powers, ahead(run.stored_load, at.TERMS * run.counts.length))
     move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
 @kernel
 def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
-    """Record the step, of which load and rate (as a magnitude) stand in the next free row, and the slip is known; move there."""
+    """Record the step and move the state to its end, at xi = to.
+
+    Load and rate (m/s, as a magnitude) are in the next free row of the history. `grown` is the slip (m) in the step and
+    `rate_end` the rate at its end (m/s), both unsigned.
+    """
     direction = run.counts.mode
     load = ahead(run.stored_load, at.TERMS * run.counts.length)
     speed, bend = run.k.speed * length, run.k.bend * length * length
@@ -383,9 +412,10 @@ def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, t
 
 @kernel
 def note_gain(run: Run, rate: Floats) -> None:
-    """By how much slip multiplies an error of the load (Z v + S mu(v) = load, and 2 Z v - load goes back): |2 Z / g'(v) - 1|.
+    """Note the factor |2 Z / g'(v) - 1| by which slip multiplies an error of the load.
 
-    Where slip, inertia or a state decide with it, what becomes of an error is no matter of its phase alone.
+    It follows from Z v + S mu(v) = load, and from 2 Z v - load, which goes back to the driver. The gain is NaN where slip,
+    inertia or a state decide too, because the fate of an error is then not a matter of its phase alone.
     """
     if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
         friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)), run.value)
@@ -396,7 +426,10 @@ def note_gain(run: Run, rate: Floats) -> None:
 
 @kernel
 def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> None:
-    """The block unloads its spring as it slips: take stiffness times slip from the outer load."""
+    """Take stiffness times slip from the outer load, in place, because a block unloads its spring as it slips.
+
+    `straight` and `bent` are the stiffness times A and times B of dtheta = (A + B eta) d eta (N s/m, signed).
+    """
     for k in range(1, at.TERMS):
         load[k] -= straight * RECIPROCAL[k] * rate[k - 1]
     if bent != 0.0:
