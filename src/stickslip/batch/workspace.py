@@ -12,8 +12,9 @@ from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import FREE
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.contact_step.on_demand import lend_implicit_steps
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Integers, Params, Setup, Store
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
 from stickslip.engine.waves.echo_queue import Echoes, new_echoes
 from stickslip.engine_input.prepare import NOT_VARYING
@@ -121,6 +122,8 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, lane_of(work.store, n), lane_of(work.echoes, n))
+        if Counts(setups.counts).has_inertia == 1:
+            lend_implicit_steps(work.table[n])
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
     own_rows = {

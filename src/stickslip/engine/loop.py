@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.codegen.compiler import ahead, call_step, kernel
 from stickslip.engine.contact_step.append_segment import note_degree, xi_at
 from stickslip.engine.contact_step.contact_equation import needs_branches, rest_limit
 from stickslip.engine.contact_step.fold import leave_fold_piece, leave_moving_branch
 from stickslip.engine.contact_step.radau_step import is_implicit
 from stickslip.engine.contact_step.stick import arrive, stick
-from stickslip.engine.contact_step.taylor_step import slip, slip_implicitly
+from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.series.polynomial import fill, maximum, mean_of, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Integers, Stop
@@ -276,10 +276,12 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
         xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
         if run.state.xi < xi_to:
             length, xi = run.counts.length, run.state.xi
+            if run.implicit_step == 0 and is_implicit(run):
+                return Stop.NEED_IMPLICIT_STEPS
             if run.counts.mode == 0:
                 stick(run, xi_to)
             elif is_implicit(run):
-                slip_implicitly(run, xi_to)
+                call_step(run.implicit_step, run, xi_to)
             elif run.counts.waits == 1:
                 run.state.target = xi_to
                 return Stop.SLIPS

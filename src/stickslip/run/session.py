@@ -12,6 +12,7 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine.contact_step.on_demand import lend_implicit_steps
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
@@ -137,6 +138,9 @@ class RunInProgress:
     def step(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
         code = self.follower.advance(self.memory, self.store, last, budget)
+        if code == Stop.NEED_IMPLICIT_STEPS:
+            lend_implicit_steps(self.memory)
+            return OUT_OF_BUDGET
         if code != Stop.NEED_BRANCHES:
             return code
         self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)

@@ -136,6 +136,19 @@ def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
 
 
 @intrinsic
+def call_step(typingctx: Any, address: Any, run: Any, xi_to: Any) -> Any:
+    """Call a step of the engine that is compiled apart: step(memory of the run, xi_to)."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        whole = ir.IntType(64)
+        kind = ir.FunctionType(ir.VoidType(), [whole, ir.DoubleType()])
+        builder.call(builder.inttoptr(args[0], kind.as_pointer()), [builder.ptrtoint(args[1], whole), args[2]])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, run, types.float64), codegen
+
+
+@intrinsic
 def floats(typingctx: Any, address: Any) -> Any:
     """An address as a pointer to floats, which is indexed like an array."""
     return FLOATS(types.int64), _cast
@@ -192,7 +205,7 @@ def float_of(typingctx: Any, bits: Any) -> Any:
 
 
 if UNCOMPILED:
-    call_prepare = call_value = call_state_value = call_guards = call_jet = call
+    call_prepare = call_value = call_state_value = call_guards = call_jet = call_step = call
 
     def floats(address: int) -> Pointer:
         """Return the pointer to floats at an address."""

@@ -236,6 +236,8 @@ def record_at(record: type[Record]) -> Any:
             given = signature.args[0]
             if isinstance(given, types.Array):
                 return builder.bitcast(context.make_array(given)(context, builder, arguments[0]).data, pointer)
+            if isinstance(given, types.Integer):
+                return builder.inttoptr(arguments[0], pointer)
             return builder.bitcast(arguments[0], pointer)
 
         return kind(memory), codegen

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.codegen.compiler import ahead, call_step, kernel
 from stickslip.engine.contact_step.append_segment import note_jump, record
 from stickslip.engine.contact_step.contact_equation import (
     SAME_LEVEL,
@@ -16,7 +16,7 @@ from stickslip.engine.contact_step.contact_equation import (
     rest_limit,
     towards,
 )
-from stickslip.engine.contact_step.radau_step import forgotten, stick_with_state
+from stickslip.engine.contact_step.radau_step import forgotten
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats
@@ -103,7 +103,7 @@ def heal(run: Run, load: float) -> None:
 def stick(run: Run, xi_to: float) -> None:
     """Stay at rest up to the place xi_to, or until the load exceeds what friction can hold."""
     if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
-        stick_with_state(run, xi_to)
+        call_step(run.implicit_rest, run, xi_to)
         return
     width, load = xi_to - run.state.xi, ahead(run.stored_load, at.TERMS * run.counts.length)
     restrict(run.load, run.state.xi, width, load)

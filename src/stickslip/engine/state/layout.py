@@ -211,6 +211,8 @@ class Stop(IntEnum):
     """An explicit step of slip is left to the caller, who takes it side by side with others."""
     OFF_THE_LAW = 9
     """No step from here obeys the contact equation."""
+    NEED_IMPLICIT_STEPS = 11
+    """The caller must lend the implicit steps, which are compiled when they are first needed."""
     NEGATIVE_FRICTION = 10
     """Friction is below zero from here on."""
 

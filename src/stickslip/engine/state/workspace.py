@@ -64,6 +64,8 @@ class Run(Record):
     loads: int
     segments: int
     capacity: int
+    implicit_step: int  # addresses of functions that are compiled apart, 0 where the run has not needed them yet
+    implicit_rest: int
 
     par: Params = inside(Params)
     state: State = inside(State)
