@@ -1,8 +1,9 @@
 """Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and `contact.rules.selection` in compiled code.
 
 If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
-folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law. In all functions `address` is that of the formula's compiled `value`, `c` points to its constants, `impedance` is Z
-(Pa s/m), `normal` is S (Pa), and `out` has room for the numbers that `value` returns.
+folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law. In all functions `address`
+is that of the formula's compiled `value`, `c` points to its constants, `impedance` is Z (Pa s/m), `normal` is S (Pa), and `out` has
+room for the numbers that `value` returns.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ returns to halving the bits."""
 
 @kernel
 def slope_at(address: int, c: Any, impedance: float, normal: float, rate: float, out: Any) -> float:
-    """Return g'(s), in Pa s/m, at a slip rate (m/s) and at the reference slip."""
+    """Return g'(s), in Pa s/m, at a slip rate (m/s) and the reference slip."""
     call_value(address, c, 0.0, rate, out)
     return impedance + normal * out[1]
 

@@ -39,6 +39,7 @@ def inlined(function: F) -> F:
 
 
 def _compiled(function: F, **options: bool) -> F:
+    """Return a function as a `Kernel`, or as plain Python if the compiler is switched off."""
     compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
     return compiled
 
@@ -165,6 +166,7 @@ def floats_in(typingctx: Any, array: Any) -> Any:
 
 
 def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Write the conversion of an address to a pointer."""
     return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
 
 
