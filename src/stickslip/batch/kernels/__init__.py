@@ -1,1 +1,1 @@
-"""What of a batch is compiled: any edit here, as in `engine`, compiles the engine anew."""
+"""Provide the compiled functions of a batch. Like an edit in `engine`, any edit here makes the engine compile anew."""

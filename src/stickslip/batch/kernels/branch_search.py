@@ -1,7 +1,9 @@
-"""Branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and the rules of `contact.rules.selection`, compiled.
+"""Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and `contact.rules.selection` in compiled code.
 
-Where mu is convex or concave g turns once at most, and the fold is found between two floating-point numbers that are neighbours.
-Any other law is searched over the grid of slip rates of `contact.branches`.
+If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
+folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law. In all functions `address`
+is that of the formula's compiled `value`, `c` points to its constants, `impedance` is Z (Pa s/m), `normal` is S (Pa), and `out` has
+room for the numbers that `value` returns.
 """
 
 from __future__ import annotations
@@ -15,32 +17,39 @@ from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_
 from stickslip.engine.state.layout import Floats, Integers
 
 MOST_BRANCHES = 4
+"""Largest number of branches for which tables have room."""
 RULES = ("perfect-delay", "minimal", "maximal")
-"""Selection rules that the batch knows."""
+"""Selection rules that a batch supports."""
 PERFECT_DELAY, MINIMAL, MAXIMAL = range(3)
+"""Numbers of these rules in compiled code."""
 
 POINTS_PER_DECADE = 64
+"""Density of the geometric part of the search grid, as in `contact.branches`."""
 EVEN_POINTS, EVEN_REACH = 2001, 10.0
+"""Number of points of the even part of the search grid, and its end as a multiple of the fastest scale."""
 BELOW, ABOVE = 1e-8, 1e4
+"""The search grid extends from this multiple of the slowest scale of the contact to this multiple of the fastest one."""
 ROUNDS, BETWEEN = 3, 17
-"""The grid is refined so often where g' nearly touches zero, with so many rates between two neighbours."""
+"""Number of times that the grid is refined where g' nearly touches zero, and number of rates put between the two neighbours."""
 NEVER_RISES, TOO_MANY = 0, -1
+"""Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
 NEARBY = 1e-14
-"""Rounding of where a law says that the turn is, relative."""
+"""Relative rounding error of the rate at which a law itself says that the fold is."""
 OCTAVE, STEPS = 2**52, 16
-"""A factor of two between slip rates, by their bits, and steps of false position behind which the bits are halved again."""
+"""A factor of two between slip rates, as a difference of their bits; number of steps of false position after which the search
+returns to halving the bits."""
 
 
 @kernel
 def slope_at(address: int, c: Any, impedance: float, normal: float, rate: float, out: Any) -> float:
-    """g'(s)."""
+    """Return g'(s), in Pa s/m, at a slip rate (m/s) and the reference slip."""
     call_value(address, c, 0.0, rate, out)
     return impedance + normal * out[1]
 
 
 @kernel
 def excess_at(address: int, c: Any, impedance: float, normal: float, start: float, rate: float, out: Any) -> float:
-    """g(s) minus the static strength."""
+    """Return g(s) minus the static strength (Pa) at a slip rate (m/s); start is g(0+) minus the static strength."""
     call_value(address, c, 0.0, rate, out)
     return impedance * rate + normal * out[0] + start
 
@@ -49,10 +58,10 @@ def excess_at(address: int, c: Any, impedance: float, normal: float, start: floa
 def turn_between(
     address: int, c: Any, impedance: float, normal: float, low: float, high: float, at_low: float, at_high: float, out: Any
 ) -> float:
-    """The rate between two at which g' changes sign: the last one at which it still rises, or the first one at which it does.
+    """Return the slip rate between `low` and `high` at which g' changes sign: the last or the first one at which g still rises.
 
-    at_low, at_high: g' there. Halves the bits of the rates down to a factor of two; from there on false position, kept from
-    standing still by the weights of Anderson & Björck 1973 (BIT 13, 253).
+    at_low and at_high are g' at the two ends. The bits of the rates are halved until these differ by less than a factor of two.
+    Then false position takes over, with the weights of Anderson & Björck 1973 (BIT 13, 253) so that neither end gets stuck.
     """
     rises, side, steps = at_low > 0.0, 0, 0
     before, behind = bits_of(low), bits_of(high)
@@ -74,7 +83,7 @@ def turn_between(
 
 @kernel
 def share_kept(value: float, last: float) -> float:
-    """What false position leaves of the value at the end that stays where it is for a second time."""
+    """Return the weight for the value at an end that false position keeps twice, from the new value and the one it replaces."""
     share = 1.0 - value / last
     return share if share > 0.0 else 0.5
 
@@ -83,9 +92,9 @@ def share_kept(value: float, last: float) -> float:
 def turns_once(
     address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, near: float, ends: Floats, out: Any
 ) -> int:
-    """Ends of the branches of a resistance whose slope only rises, or only falls. Returns how many branches there are.
+    """Write the ends of the branches (m/s) into `ends`, if the slope of g is monotone; return their number or NEVER_RISES.
 
-    near: where the turn may be, if that is known.
+    slowest and fastest are the scales of the contact (m/s). `near` is the rate at which the law says that the fold is, or NaN.
     """
     low, high = 0.0, ABOVE * fastest
     at_high = slope_at(address, c, impedance, normal, high, out)
@@ -108,7 +117,8 @@ def turns_once(
 
 @kernel
 def search_grid(slowest: float, fastest: float) -> Floats:
-    """0 and slip rates (m/s) in geometric progression over every scale, evenly up to the fastest, ascending."""
+    """Return ascending slip rates (m/s): 0, a geometric progression over all scales, and an even spacing up to EVEN_REACH times the
+    fastest."""
     low, high = math.log10(slowest * BELOW), math.log10(fastest * ABOVE)
     even = np.linspace(0.0, EVEN_REACH * fastest, EVEN_POINTS)
     steep = 10.0 ** np.linspace(low, high, math.ceil((high - low) * POINTS_PER_DECADE))
@@ -117,7 +127,7 @@ def search_grid(slowest: float, fastest: float) -> Floats:
 
 @kernel
 def refined(rates: Floats, slope: Floats) -> Floats:
-    """The rates, and more of them where a parabola through three values of g' of one sign would reach zero."""
+    """Return the slip rates with more of them where a parabola through three values of g' of one sign might reach zero."""
     extra = [rates[0]]
     for n in range(1, len(rates) - 1):
         left, middle, right = slope[n - 1], slope[n], slope[n + 1]
@@ -129,7 +139,7 @@ def refined(rates: Floats, slope: Floats) -> Floats:
 
 @kernel
 def slopes_at(address: int, c: Any, impedance: float, normal: float, rates: Floats, out: Any) -> Floats:
-    """g' at many rates."""
+    """Return g' (Pa s/m) at many slip rates (m/s)."""
     slope = np.empty(len(rates))
     for n in range(len(rates)):
         slope[n] = slope_at(address, c, impedance, normal, rates[n], out)
@@ -138,7 +148,7 @@ def slopes_at(address: int, c: Any, impedance: float, normal: float, rates: Floa
 
 @kernel
 def turns(address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any) -> int:
-    """Ends of the branches of any resistance. Returns how many branches there are; NEVER_RISES or TOO_MANY."""
+    """Write the ends of the branches of any resistance into `ends`; return the number of branches, NEVER_RISES or TOO_MANY."""
     rates = search_grid(slowest, fastest)
     for _ in range(ROUNDS):
         rates = refined(rates, slopes_at(address, c, impedance, normal, rates, out))
@@ -160,7 +170,10 @@ def turns(address: int, c: Any, impedance: float, normal: float, slowest: float,
 
 @kernel
 def keep_levels(rule: int, branches: int, table: Floats) -> float:
-    """Fill in between which loads the rule keeps each branch; returns the load at which stick is left."""
+    """Write into a member's table between which loads the rule keeps each branch; return the load at which stick ends.
+
+    Loads are differences from the static strength (Pa).
+    """
     stick_to = 0.0
     for n in range(branches):
         low, high = table[4 * branches + n], table[5 * branches + n]
@@ -194,9 +207,11 @@ def branch_tables(
     irregular: Floats,
     stick_to: Floats,
 ) -> None:
-    """Rows of `Setup.branch` of each member, one behind the other; how many branches; whether a load has several solutions.
+    """Fill `table` with the rows of `Setup.branch` of each member, one after the other, and the other results for each member.
 
-    work: room for four numbers, the caller's: an array made here would end where its address is taken.
+    branches receives the number of branches, irregular 1 if several slip rates solve the contact equation at some load, and
+    stick_to the load minus strength (Pa) at which stick ends. one_way: mu is convex or concave. rule: an index of RULES. work has
+    room for four numbers and belongs to the caller, because an array made here would be freed as soon as its address is taken.
     """
     ends = np.empty(2 * MOST_BRANCHES)
     out, size = floats(work.ctypes.data), constants.shape[1] * constants.shape[2] if len(constants) > 1 else 0

@@ -1,4 +1,4 @@
-"""The constants of a law's formulas, for many members."""
+"""Calculate the constants of a law's formulas for many members."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from stickslip.engine.state.layout import Floats, Integers
 
 @kernel
 def fill_constants(prepare: Integers, numbers: Floats, constants: Floats) -> None:
-    """What `prepare` of each piece of the law says for each member; its numbers are the law's and the pieces' references."""
+    """Call `prepare` of each piece of the law for each member, to fill `constants`, of shape (members, pieces, size).
+
+    prepare holds the addresses of these functions. A row of `numbers` has the law's parameters and the reference slip (m) of each
+    piece.
+    """
     members, pieces, size = constants.shape
     source, target, parameters = floats(numbers.ctypes.data), floats(constants.ctypes.data), numbers.shape[1] - pieces
     for n in range(members):

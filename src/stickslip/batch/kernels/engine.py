@@ -1,4 +1,4 @@
-"""The engine of single runs, called through its address: what is compiled for a batch holds no second copy of it."""
+"""Call the engine of single runs through its address, so that the code compiled for a batch needs no second copy of it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from numba.extending import intrinsic
 from stickslip.engine.loop import advance
 
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
-"""Of `loop.advance`: table, last row, last theta, budget."""
+"""Types of the arguments of `loop.advance`: table, last row, last theta (s), budget."""
 
 
 @cache
 def engine_address() -> int:
-    """Where the machine code of `loop.advance` is; compiles it where no single run has done so."""
+    """Return the address of the machine code of `loop.advance`; compile it if no single run has done so."""
     advance.entry.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
     compiled = advance.entry.overloads[ARGUMENTS]  # type: ignore[attr-defined]
     return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
@@ -24,7 +24,7 @@ def engine_address() -> int:
 
 @intrinsic
 def advance_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
-    """`loop.advance` at its address."""
+    """Call `loop.advance`, whose machine code is at `address`, and return the code with which it stops."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         convention = context.call_conv

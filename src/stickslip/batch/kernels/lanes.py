@@ -1,9 +1,8 @@
-"""One explicit step of slip for several members at once, side by side in lanes of the processor's registers.
+"""Take one explicit step of slip for several members at once, side by side in lanes of the processor's registers.
 
-A step's series is a long chain in which each coefficient waits for those before it: one run alone leaves most of a processor idle.
-What decides (how long, what next) is done run by run, by the functions of single runs; what only calculates is done in lanes, by
-the same functions, which for lanes do the same to the last bit. A step in which slip may end, or a knot of the law is met, is left
-to the engine.
+The series of a step is a long chain in which each coefficient waits for those before it, so that one run alone leaves most of a
+processor idle. Control flow runs per member, with the functions of single runs. Arithmetic runs on all lanes at once, with the same
+functions and identical bits. A step in which slip may end, or which meets a knot of the law, is left to the engine.
 """
 
 from __future__ import annotations
@@ -26,21 +25,27 @@ from stickslip.engine.state.workspace import PLACES, Run, borrow
 K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE = (
     Series.places[name].first for name in ("speed", "bend", "slip", "rate", "free", "force")
 )
+"""Rows of the block that hold the fields of `run.k` (`Series`) that change from step to step."""
 SERIES = Series.total
+"""Number of the first rows of the block, which hold all fields of `run.k`."""
 SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (Series.total + n * TERMS for n in range(7))
 LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
 CONSTANTS = TOLERANCE + 1
-"""Rows of the block, of `WIDTH` numbers each: behind those of `run.k`; a law's constants fill the last ones."""
+"""First rows of the other contents of the block, which has WIDTH numbers in each row: polynomials of TERMS rows each (load as the
+formula sees it, load, series of the rate, bound of the guards, powers of the length, rate and load over the step), then single
+numbers (length, lower bound of the rate, slip in the step, rate at its end, guess, whether the target is reached, last step,
+tolerance), and last the law's constants."""
 
 AWAY, FRESH, SLIPPING, ALONE = range(4)
-"""What a lane waits for: nothing; the first step on a piece of load; another one; a step that the engine must take."""
+"""What a lane waits for: nothing; its first step on a piece of load; another step on it; a step that the engine must take."""
 
 
 @kernel
 def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """A step for each lane that waits for one, those under the same formula of the law together.
+    """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
 
-    table: the engine's tables of the lanes; jets: addresses of the formulas' series, by piece of the law.
+    table points to the memory of the runs in the lanes, waits to what each lane waits for, and jets to the addresses of the
+    formulas' series, one for each piece of the law; block is the address of the numbers in lanes.
     """
     for lane in range(WIDTH):
         if waits[lane] == FRESH or waits[lane] == SLIPPING:
@@ -52,13 +57,13 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
 
 @inlined
 def piece_of(table: Integers, lane: int) -> int:
-    """The piece of the law under which the member in a lane slips."""
+    """Return the piece of the law under which the member in a lane slips."""
     return borrow(ahead(table, lane * PLACES)).counts.piece
 
 
 @kernel
 def step_under(address: int, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """A step for the lanes under a formula that have not yet taken theirs: what they wait for is below 0."""
+    """Take one step in the lanes under the formula at `address` that have not taken theirs, which a negative `waits` marks."""
     column, rows, taking = floats(block), lanes_at(block), 0
     for lane in range(WIDTH):
         if waits[lane] < 0 and jets[piece_of(table, lane)] == address:
@@ -77,7 +82,7 @@ def step_under(address: int, table: Integers, waits: Integers, jets: Integers, b
 
 @inlined
 def put_in(run: Run, own: Floats, fresh: bool) -> None:
-    """What a run's series is made of into its column of the block."""
+    """Copy the input of a run's series into its column of the block; if `fresh`, also what is constant on a piece of load."""
     guess = first_guess(run, run.state.target - run.state.xi)
     prepare_series(run, guess)
     own[WIDTH * GUESS] = guess
@@ -98,9 +103,9 @@ def put_in(run: Run, own: Floats, fresh: bool) -> None:
 
 @inlined
 def take_length(run: Run, own: Floats) -> None:
-    """How long the step is."""
+    """Choose the length of a run's step, in units of the guess, and store it in the run's column of the block."""
     usable = own[WIDTH * LENGTH]
-    if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # not for lanes
+    if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # `length_at` alone does not decide here
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
         usable = usable_length(run.jet, run.par.tolerance)
@@ -114,8 +119,10 @@ def take_length(run: Run, own: Floats) -> None:
 
 @inlined
 def calculate(rows: Floats) -> None:
-    """Slip rate and load over the steps, bounds of the rate, slip and rate at the end: as `taylor_step.stretch` and
-    `taylor_step.keep_step`."""
+    """Calculate in all lanes slip rate and load over the step, slip in it, and the rate's value at the end and lower bound.
+
+    The calculations are those of `taylor_step.stretch` and `taylor_step.keep_step`.
+    """
     length, rate, powers = rows[LENGTH], ahead(rows, RATE), ahead(rows, POWERS)
     powers_of(length, powers)
     multiply(ahead(rows, JET), powers, rate)
@@ -128,7 +135,11 @@ def calculate(rows: Floats) -> None:
 
 @inlined
 def take_out(run: Run, own: Floats) -> int:
-    """Keep the step in the run's history, if that is all there is to do; says what the lane waits for then."""
+    """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
+
+    A step is simple if the rate stays positive, the contact equation is obeyed and no knot is met. Otherwise the step is dropped
+    and ALONE is returned.
+    """
     length, target = own[WIDTH * LENGTH], run.state.target
     rate = ahead(run.stored_rate, TERMS * run.counts.length)
     load = ahead(run.stored_load, TERMS * run.counts.length)

@@ -1,4 +1,4 @@
-"""The pieces of a history by their addresses: of arrays that are handed on, compiled code counts references."""
+"""Access the pieces of a history through pointers, because compiled code counts references to arrays that it hands on."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from stickslip.engine.state.workspace import REAL, WHOLE
 
 
 class Pieces(NamedTuple):
-    """The tables of a `Store` as pointers, row after row."""
+    """The tables of a `Store` as pointers to their first numbers, row after row."""
 
     whole: Integers
     real: Floats
@@ -20,30 +20,30 @@ class Pieces(NamedTuple):
 
 @kernel
 def pieces_of(store: Store) -> Pieces:
-    """The pieces of a history; the caller keeps it alive."""
+    """Return pointers to the tables of a history, which the caller keeps alive."""
     tables = store.real.ctypes.data, store.load.ctypes.data, store.rate.ctypes.data
     return Pieces(integers(store.whole.ctypes.data), floats(tables[0]), floats(tables[1]), floats(tables[2]))
 
 
 @kernel
 def whole_of(store: Pieces, n: int) -> Integers:
-    """Row of a piece in `Store.whole`."""
+    """Return a pointer to the row of piece n in `Store.whole`."""
     return ahead(store.whole, WHOLE * n)
 
 
 @kernel
 def real_of(store: Pieces, n: int) -> Floats:
-    """Row of a piece in `Store.real`."""
+    """Return a pointer to the row of piece n in `Store.real`."""
     return ahead(store.real, REAL * n)
 
 
 @kernel
 def load_of(store: Pieces, n: int) -> Floats:
-    """Its load as a polynomial."""
+    """Return a pointer to the coefficients of the load (Pa or N, minus the reference strength) of piece n."""
     return ahead(store.load, TERMS * n)
 
 
 @kernel
 def rate_of(store: Pieces, n: int) -> Floats:
-    """Its slip rate as a polynomial."""
+    """Return a pointer to the coefficients of the slip rate (m/s) of piece n."""
     return ahead(store.rate, TERMS * n)

@@ -1,4 +1,4 @@
-"""Slip events of a run: the points that `trajectory.slip_events.turning_points` finds, in order, and where each event begins and
+"""Find the slip events of a run: sort the points of `trajectory.slip_events.turning_points`, and find where each event begins and
 ends."""
 
 from __future__ import annotations
@@ -12,31 +12,34 @@ from stickslip.engine.state.layout import Floats, Integers, Store
 from stickslip.trajectory.slip_events import NOT_YET, count_pulses, highest, turning_points
 
 POINTS_PER_PIECE = 8
-"""Turning points for which there is room at first."""
+"""Number of turning points for which there is room at first, for each piece of history."""
 
 
 class Points(NamedTuple):
-    """Room for the turning points of a slip rate, in order of time, and for the events made of them."""
+    """The turning points of a slip rate in order of time, and the events that they form. Arrays may be longer than needed."""
 
-    piece: Integers
-    xi: Floats
-    rate: Floats
-    kind: Integers
-    begin: Integers
-    past: Integers
-    top: Integers
-    pulses: Integers
+    piece: Integers  # of each point: its piece of history
+    xi: Floats  # of each point: its place in the piece, from 0 to 1
+    rate: Floats  # of each point: magnitude of the slip rate, m/s
+    kind: Integers  # of each point: +1 if the rate rises above the threshold, -1 if it falls to it, 0 above it
+    begin: Integers  # of each event: its first point
+    past: Integers  # of each event: the point after its last one
+    top: Integers  # of each event: its fastest point
+    pulses: Integers  # of each event: its number of pulses
 
 
 def new_points(capacity: int) -> Points:
-    """Room for so many."""
+    """Return uninitialised arrays for `capacity` points."""
     whole = [np.empty(capacity, np.int64) for _ in range(6)]
     return Points(whole[0], np.empty(capacity), np.empty(capacity), *whole[1:])
 
 
 @kernel
 def put_in_order(points: Points, found: int) -> None:
-    """By piece, place in it, and at one place first what rises: as `slip_events.walk`, whose order of pieces is right already."""
+    """Sort the first `found` points by piece and place, and at one place those at which the rate rises first.
+
+    This is the order of `slip_events.walk`. The pieces are in order already.
+    """
     for n in range(1, found):
         piece, xi, rate, kind = points.piece[n], points.xi[n], points.rate[n], points.kind[n]
         k = n - 1
@@ -48,20 +51,23 @@ def put_in_order(points: Points, found: int) -> None:
 
 @kernel
 def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
-    """Whether a point comes behind another one of the same piece."""
+    """Return True if a point belongs after another one of the same piece."""
     return xi > other_xi or (xi == other_xi and xi < 1.0 and kind < other_kind)
 
 
 @kernel
 def move(points: Points, source: int, target: int) -> None:
-    """A point to another place in the order."""
+    """Copy a point to another position in the order."""
     points.piece[target], points.xi[target] = points.piece[source], points.xi[source]
     points.rate[target], points.kind[target] = points.rate[source], points.kind[source]
 
 
 @kernel
 def find_events(store: Store, length: int, threshold: float, points: Points) -> int:
-    """Slip events: where each begins, is fastest and ends among the points. Returns how many; NOT_YET if there is no room."""
+    """Find slip events, which are faster than `threshold` (m/s), in the first `length` pieces; return their number.
+
+    The points of each event are written into `points`. Returns NOT_YET if there is no room for all turning points.
+    """
     found = turning_points(store, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
     if found < 0:
         return NOT_YET

@@ -1,7 +1,9 @@
-"""What a batch keeps of a run: numbers folded from its history, as the tables of a `Solution` have them.
+"""Reduce the history of a run to the numbers that a batch keeps, which equal those in the tables of a `Solution`.
 
-Slip events are found by the kernels of `trajectory.slip_events`. What comes behind them here is `trajectory.tables` for one row, in
-compiled code.
+The kernels of `trajectory.slip_events` find the slip events. The functions here do in compiled code, for one event or run, what
+`trajectory.tables` does for all. Functions on a history take the pieces as pointers (`Pieces`), and the number of pieces as
+`length`. A place in it is a pair of a piece and xi from 0 to 1; `row_time` is the length of a round trip (of a block: of a period),
+in s.
 """
 
 from __future__ import annotations
@@ -39,6 +41,7 @@ COLUMNS = (
     "irregular",
     "branches",
 )
+"""Names of the numbers that are kept of each run, in SI units, in the order of their columns."""
 (
     EVENTS,
     PULSES,
@@ -60,14 +63,14 @@ COLUMNS = (
     BRANCHES,
 ) = range(len(COLUMNS))
 OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, RECURRENCE_CV + 1)))
-"""Quantities for which slip events must be found."""
+"""Columns for which slip events must be found."""
 
 # ---- places in a history ----------------------------------------------------------------------------------------------------
 
 
 @kernel
 def offset_at(store: Pieces, piece: int, xi: float) -> float:
-    """Offset in the row (s) of a place in a piece: as `History.placed`."""
+    """Return the offset (s) of a place in its round trip, as in `History.placed`."""
     real = real_of(store, piece)
     if xi == 1.0:
         return real[at.S_THETA_TO]
@@ -76,20 +79,20 @@ def offset_at(store: Pieces, piece: int, xi: float) -> float:
 
 @kernel
 def time_between(store: Pieces, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
-    """From one place to another, s."""
+    """Return the time (s) from one place to a later one."""
     rows = whole_of(store, later)[at.S_ROW] - whole_of(store, piece)[at.S_ROW]
     return rows * row_time + (offset_at(store, later, later_xi) - offset_at(store, piece, xi))
 
 
 @kernel
 def time_at(store: Pieces, row_time: float, piece: int, xi: float) -> float:
-    """Of a place, since the start of the run, s."""
+    """Return the time (s) of a place since the start of the run."""
     return whole_of(store, piece)[at.S_ROW] * row_time + offset_at(store, piece, xi)
 
 
 @kernel
 def place_of(store: Pieces, piece: int, local: float) -> float:
-    """Place in [0, 1] of a time `local` s after the start of a piece: as `History.xi`."""
+    """Return the place xi in [0, 1] of a time `local` s after the start of a piece, as in `History.xi`."""
     speed, bend = real_of(store, piece)[at.S_SPEED], real_of(store, piece)[at.S_BEND]
     pace = speed + math.sqrt(max(speed * speed + 4.0 * bend * local, 0.0))
     return min(max(2.0 * local / (pace if pace > 0.0 else 1.0), 0.0), 1.0)
@@ -97,7 +100,7 @@ def place_of(store: Pieces, piece: int, local: float) -> float:
 
 @kernel
 def grown(store: Pieces, piece: int, xi: float) -> float:
-    """Slip since the start of the piece, m: as `History.grown`."""
+    """Return the slip (m) since the start of the piece, as in `History.grown`."""
     rate, bend = rate_of(store, piece), real_of(store, piece)[at.S_BEND]
     straight = real_of(store, piece)[at.S_SPEED] * integral(rate, xi, 1)
     return straight if bend == 0.0 else straight + 2.0 * bend * integral(rate, xi, 2)
@@ -105,20 +108,20 @@ def grown(store: Pieces, piece: int, xi: float) -> float:
 
 @kernel
 def reached(run_end: float, code: int, row_time: float, store: Pieces, length: int) -> float:
-    """Up to where (s) a run that ended with a code has come."""
+    """Return the time (s) that a run has reached: `run_end` if it is finished or locked, otherwise the end of its history."""
     return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(store, row_time, length - 1, 1.0)
 
 
 @kernel
 def rests_at(store: Pieces, length: int, row_time: float, end: float) -> bool:
-    """Whether the contact is at rest at the end of the run."""
+    """Return True if the contact is at rest at the end of the run (s), in the last piece or after it, where nothing is recorded."""
     recorded = time_at(store, row_time, length - 1, 1.0)
     return whole_of(store, length - 1)[at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
 
 
 @kernel
 def slipped(store: Pieces, length: int, row_time: float, end: float) -> float:
-    """Slip from the start of the run to its end, m."""
+    """Return the slip (m) from the start of the run to its end (s)."""
     last = length - 1
     while last > 0 and time_at(store, row_time, last, 0.0) > end:
         last -= 1
@@ -127,7 +130,7 @@ def slipped(store: Pieces, length: int, row_time: float, end: float) -> float:
 
 @kernel
 def slipped_between(store: Pieces, piece: int, xi: float, later: int, later_xi: float) -> float:
-    """Slip from one place to a later one, m: as `History.slipped_within`."""
+    """Return the slip (m) from one place to a later one, as in `History.slipped_within`."""
     whole = 0.0
     for n in range(piece, later):
         whole += grown(store, n, 1.0)
@@ -139,7 +142,7 @@ def slipped_between(store: Pieces, piece: int, xi: float, later: int, later_xi: 
 
 @kernel
 def friction_in(run: Run, store: Pieces, piece: int, xi: float) -> float:
-    """Friction minus the reference strength at a place in slip or at rest: as `History.friction`."""
+    """Return friction minus the reference strength (Pa or N) at a place, in slip or at rest, as in `History.friction`."""
     excess, rate, mode = evaluate(load_of(store, piece), xi), evaluate(rate_of(store, piece), xi), whole_of(store, piece)[at.S_MODE]
     if run.counts.has_inertia == 0:
         return excess - run.par.impedance * rate
@@ -152,7 +155,11 @@ def friction_in(run: Run, store: Pieces, piece: int, xi: float) -> float:
 
 @kernel
 def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float:
-    """Its left limit where a piece starts: at rest before the first one, or behind rows that nothing was recorded of."""
+    """Return friction minus the reference strength (Pa or N) just before a piece starts.
+
+    Before the first piece the contact is at rest under the initial `excess`. After round trips at rest that were not recorded, the
+    load follows from the piece whose echo holds there, and from the ramp.
+    """
     if piece == 0:
         return excess
     row_time, last = run.par.row_time, piece - 1
@@ -174,7 +181,10 @@ def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float
 
 @kernel
 def friction_after(run: Run, store: Pieces, length: int, piece: int, xi: float) -> float:
-    """Friction after an event that ends at a place, at rest: as `tables.friction_after`."""
+    """Return friction minus the reference strength (Pa or N) after an event that ends at a place, as in `tables.friction_after`.
+
+    If the slip rate falls from there to zero, this is the friction at rest.
+    """
     mode, rate = whole_of(store, piece)[at.S_MODE], abs(evaluate(rate_of(store, piece), xi))
     for n in range(piece + 1, length):
         if whole_of(store, n)[at.S_MODE] != mode:
@@ -191,7 +201,7 @@ def friction_after(run: Run, store: Pieces, length: int, piece: int, xi: float) 
 
 @kernel
 def fold_events(run: Run, store: Pieces, points: Points, events: int, out: Floats) -> None:
-    """Numbers of all events, and how they recur."""
+    """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
     out[EVENTS], out[PULSES] = events, 0.0
     for column in range(PEAK_RATE, RECURRENCE_CV + 1):
         out[column] = math.nan
@@ -210,7 +220,10 @@ def fold_events(run: Run, store: Pieces, points: Points, events: int, out: Float
 
 @kernel
 def fold_recurrence(store: Pieces, row_time: float, points: Points, events: int, out: Floats) -> None:
-    """Mean of the times between starts of events, and the sample's standard deviation over it (0 of two events: NaN)."""
+    """Write the mean (s) and the coefficient of variation of the times between starts of events into `out`.
+
+    The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
+    """
     mean = spread = 0.0
     for n in range(1, events):
         a, b = points.begin[n - 1], points.begin[n]
@@ -225,7 +238,10 @@ def fold_recurrence(store: Pieces, row_time: float, points: Points, events: int,
 
 @kernel
 def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: float, stiffness: float, out: Floats) -> None:
-    """Numbers of the first event: as `tables.event_rows`."""
+    """Write the numbers that describe the first event into `out`, as in `tables.event_rows`.
+
+    excess is the initial load minus the static strength (Pa or N), stiffness that of the body (Pa/m or N/m).
+    """
     a, b = points.begin[0], points.past[0] - 1
     piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
     row_time = run.par.row_time
@@ -241,7 +257,7 @@ def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: flo
 
 @kernel
 def fold_whole(store: Pieces, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
-    """Numbers of the whole run, so long (s), that has ended with a code."""
+    """Write the numbers that describe the whole run into `out`; the run was to last `duration` s and ended with a `Stop` code."""
     end = reached(duration, code, row_time, store, length)
     shocks = 0
     for n in range(length):
@@ -253,7 +269,7 @@ def fold_whole(store: Pieces, length: int, row_time: float, duration: float, cod
 
 @kernel
 def fold_end(store: Store, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
-    """As `fold_whole`, for the last pieces of a history: its shocks are not all among them."""
+    """Do the same as `fold_whole` for the last pieces of a history, but keep the number of shocks, which are not all among them."""
     shocks = out[SHOCKS]
     fold_whole(pieces_of(store), length, row_time, duration, code, floats(out.ctypes.data))
     out[SHOCKS] = shocks

@@ -1,8 +1,9 @@
-"""Many runs in compiled code: the engine on each member, and what is kept of it.
+"""Run many members in compiled code: the engine on each of them, and the reduction of its history to a few numbers.
 
-One thread has one workspace with a lane for each of a few members, and takes members as lanes become free. Members that slip under
-a law of slip take their steps side by side; others run to their end one after the other, all in the first lane. No Python comes in
-between, so threads run side by side; nor are references to arrays counted, but where a run has ended.
+Each thread has one workspace with a lane for each of WIDTH members, and starts further members as lanes become free. Members take
+their explicit steps of slip side by side, unless their law demands steps taken alone (`batch.setups.steps_alone`): such members run
+to their end one after the other, all in the first lane. No Python code runs in between, so threads run in parallel. References to
+arrays are counted only when a run has ended.
 """
 
 from __future__ import annotations
@@ -30,21 +31,21 @@ if TYPE_CHECKING:
     from stickslip.batch.workspace import Workspace
 
 BUDGET = 200_000
-"""Steps between two looks at whether the batch is to stop."""
+"""Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
 FREE, UNDER_WAY, AT_END = range(3)
-"""What a lane is at: no member; one that runs; one whose run has ended."""
+"""State of a lane: it has no member; its member is running; the run of its member has ended and is not reduced yet."""
 
 
 class Lane(NamedTuple):
-    """A lane of a workspace, by addresses; the engine's table is that of the member in it."""
+    """A lane of a workspace, as pointers to its entries in the tables."""
 
-    table: Integers
-    base: Integers
-    stride: Integers
-    stage: Integers
-    waits: Integers
-    member: Integers
-    code: Integers
+    table: Integers  # memory of the run in the lane, see `engine.state.workspace.Run`
+    base: Integers  # addresses of the tables that the first member uses in this lane
+    stride: Integers  # bytes from a member's tables to those of the next; 0 for a table that all share
+    stage: Integers  # FREE, UNDER_WAY or AT_END
+    waits: Integers  # what the lane waits for, see `kernels.lanes`
+    member: Integers  # index of the member in the lane
+    code: Integers  # what the engine returned last
 
 
 @kernel
@@ -59,10 +60,11 @@ def run_group(
     codes: Integers,
     out: Floats,
 ) -> int:
-    """Run members, each in a lane of the workspace. `engine`: its address; `base`: its table in each lane, for the first member.
+    """Run members, each in a lane of the workspace, and write their stop codes and numbers into `codes` and `out`.
 
-    Returns WIDTH when all are done, or `stop` is set; else the lane that has no room, or whose member has crept for so long
-    (code PAUSED) that it is to be run alone. Called again, it goes on from there.
+    engine is the address of `advance`; base and stride are those of `batch.workspace.table_of`; out has the shape (members,
+    len(COLUMNS)). Returns WIDTH when all members are done or `stop` is set. Otherwise it returns the lane that has no room, or
+    whose member has crept for so long (code PAUSED) that it should be run alone. Called again, it continues from there.
     """
     first = first_lane(work, base, stride)
     jets, block = integers(setups.jets.ctypes.data), work.block[0]
@@ -85,7 +87,7 @@ def run_group(
 
 @kernel
 def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
-    """The first lane."""
+    """Return the first lane of a workspace."""
     flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
     member, code = integers(work.member.ctypes.data), integers(work.code.ctypes.data)
     table, origin = integers(work.table.ctypes.data), integers(base.ctypes.data)
@@ -94,7 +96,7 @@ def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
 
 @kernel
 def nth(lane: Lane, n: int) -> Lane:
-    """The lane n places further on."""
+    """Return the lane n places after the given one."""
     table, base = ahead(lane.table, n * PLACES), ahead(lane.base, n * ADDRESSES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
     return Lane(table, base, lane.stride, stage, waits, member, code)
@@ -102,7 +104,7 @@ def nth(lane: Lane, n: int) -> Lane:
 
 @kernel
 def point_at(lane: Lane, setups: Setups, n: int) -> None:
-    """The engine's table for the member n."""
+    """Write into a lane's memory the addresses of the tables of member n, and its number of branches."""
     for k in range(ADDRESSES):
         lane.table[k] = lane.base[k] + n * lane.stride[k]
     run = borrow(lane.table)
@@ -114,7 +116,10 @@ def point_at(lane: Lane, setups: Setups, n: int) -> None:
 
 @kernel
 def start_member(run: Run, setups: Setups, n: int) -> None:
-    """As at t = 0. Nobody will go on behind the end, so that it may cut pieces and leaps from the start."""
+    """Set the numbers, state and counts of member n as at t = 0.
+
+    No caller continues the run after its end, so its end may cut pieces and leaps (`to_the_end`) from the start.
+    """
     par, state, counts = numbers_of(run.par), numbers_of(run.state), whole_numbers_of(run.counts)
     for k in range(setups.par.shape[1]):
         par[k] = setups.par[n if len(setups.par) > 1 else 0, k]
@@ -127,7 +132,7 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 
 @kernel
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
-    """Let the engine run the lane's member until it is to take a step with others, ends or pauses, has no room, or all stops."""
+    """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
     if lane.waits[0] == ALONE:
         counts = borrow(lane.table).counts
@@ -154,7 +159,10 @@ def bring_on(
     codes: Integers,
     out: Floats,
 ) -> bool:
-    """Run members in a lane until one is to take a step with others, or none is left; False where there is no room."""
+    """Reduce runs that have ended and start further members in a lane, until one waits for a step side by side or none is left.
+
+    place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
+    """
     numbers = floats(out.ctypes.data)
     while lane.stage[0] != UNDER_WAY:
         n = lane.member[0]
@@ -181,7 +189,7 @@ def bring_on(
 
 @kernel
 def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Floats) -> bool:
-    """Fold a run that has ended with a code; False where there is no room for its turning points."""
+    """Reduce the run of member n, which has ended with a code, to the numbers in `out`; return False if points lack room."""
     pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts.length
     if wants_events:
         events = find_events(store_of(work, lane), length, setups.threshold[n], work.points)
@@ -196,6 +204,6 @@ def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wa
 
 @kernel
 def store_of(work: Workspace, lane: int) -> Store:
-    """The history in a lane."""
+    """Return the tables of the history in a lane."""
     store = work.store
     return Store(store.whole[lane], store.real[lane], store.load[lane], store.rate[lane], store.state[lane])

@@ -1,1 +1,1 @@
-"""The compiler and its cache, and the code that is written for each friction formula."""
+"""Provide the compiler and its cache, and generate the code of each friction formula."""

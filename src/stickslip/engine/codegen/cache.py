@@ -1,11 +1,12 @@
-"""The cache of compiled code on disk: whose it is, what it holds, and whether that is what was put there.
+"""Keep compiled code in a cache on disk that belongs to this user, and verify each file before it is used.
 
-Machine code and pickles from this folder are executed. It must therefore belong to this user alone (see `private_folder`);
-where it cannot, code is compiled into a temporary folder that is removed at the end. Every file of numba's carries a checksum:
-one that is damaged counts as missing, and is compiled again. Formulas are executed from the text in memory, never from the file.
+Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
+`private_folder`). If there is no such folder, code is compiled into a temporary one, which is removed when the process ends. Every
+file that numba writes carries a checksum; a damaged file counts as missing, and its function is compiled again. Formulas are
+executed from the text in memory, never from the file.
 
-The folder's name carries a hash of every source that is compiled: an edited kernel can never meet its old machine code (numba
-itself looks at the file of a function, not at the functions it calls).
+The name of the folder contains a hash of every source file that is compiled, so that an edited kernel never meets its old machine
+code. This is needed because numba itself compares only the file of a function, not the files of the functions that it calls.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.atomic_write import write_atomically
 
 NOT_COMPILED = ("cache.py", "private_folder.py")
-"""Files among the compiled ones that decide where machine code is kept, and nothing of what it does."""
+"""Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 SEAL = b"stickslip cache 1\n"
-"""What each file of the cache begins with, before the checksum of its name and of the rest."""
+"""First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
 
 
 COMPILED_FOLDERS = ("engine", "batch/kernels")
-"""Folders of the package that are compiled."""
+"""Folders of the package whose files all enter the hash, because they hold compiled functions."""
 COMPILED_FILES = (
     "engine_input/branch_table.py",
     "friction/formula/expression.py",
@@ -50,11 +51,11 @@ COMPILED_FILES = (
     "trajectory/slip_events.py",
     "trajectory/status.py",
 )
-"""Other files that hold compiled functions, or numbers that compiled functions use (tests/test_layers.py looks)."""
+"""Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
 
 
 def compiled_sources() -> list[Path]:
-    """Return every file whose content is compiled, in order."""
+    """Return the paths of all files whose content is compiled, sorted."""
     package = Path(__file__).parents[2]
     folders = [path for folder in COMPILED_FOLDERS for path in (package / folder).rglob("*.py")]
     inside = [path for path in folders if path.name not in NOT_COMPILED]
@@ -62,6 +63,7 @@ def compiled_sources() -> list[Path]:
 
 
 def _sources_hash() -> str:
+    """Return a hash of the versions of numba and Python and of all compiled sources, as 16 hexadecimal digits."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
     for path in compiled_sources():
         digest.update(path.read_bytes())
@@ -71,17 +73,21 @@ def _sources_hash() -> str:
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
 SOURCES = _sources_hash()
-"""Stands for the code that is compiled, and for what compiles it."""
+"""Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
 
 
 @cache
 def tell(message: str) -> None:
-    """Say something once, in one line on standard error."""
+    """Write a message to standard error on one line, once for each distinct message."""
     sys.stderr.write(f"stickslip: {' '.join(message.split())}\n")
 
 
 def cache_folder() -> Path:
-    """Return the folder of compiled code: in STICKSLIP_CACHE_DIR, else in the user's cache folder, else a temporary one."""
+    """Return the folder of compiled code.
+
+    It lies in STICKSLIP_CACHE_DIR if that is set, otherwise in the user's cache folder. If it cannot be made there, or would not be
+    private, a temporary folder is returned.
+    """
     chosen = os.environ.get("STICKSLIP_CACHE_DIR")
     root = Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
     try:
@@ -98,17 +104,18 @@ def cache_folder() -> Path:
 
 
 def _remove(folder: Path, owner: int) -> None:
-    """Remove a temporary folder when the process that made it ends, and not when one that was forked from it does."""
+    """Remove a temporary folder when the process that made it ends, but not when a process forked from that one ends."""
     if os.getpid() == owner:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 CACHE = cache_folder()
+"""The folder of compiled code of this process."""
 DAMAGED = f"the cache of compiled code in {CACHE} is damaged: what is damaged is compiled again"
 
 
 class _SealedFile(IndexDataCacheFile):
-    """The files of one function, each with its checksum: a damaged one is removed and counts as missing."""
+    """The cache files of one function, each with a checksum. A damaged file is removed and counts as missing."""
 
     def _load_index(self) -> dict[Any, str]:
         content = self._unsealed(Path(self._index_path))
@@ -121,17 +128,19 @@ class _SealedFile(IndexDataCacheFile):
     def _load_data(self, name: str) -> Any:
         content = self._unsealed(Path(self._data_path(name)))
         if content is None:
-            raise FileNotFoundError(name)  # numba takes it for a function that is not compiled yet
+            raise FileNotFoundError(name)  # numba then compiles the function
         return pickle.loads(content)
 
     def _save_data(self, name: str, data: Any) -> None:
         self._seal(Path(self._data_path(name)), self._dump(data))
 
     def _seal(self, path: Path, content: bytes) -> None:
+        """Write content to a file, after the mark SEAL and the checksum."""
         sealed = SEAL + _checksum(path, content) + content
         write_atomically(path, lambda draft: draft.write_bytes(sealed))
 
     def _unsealed(self, path: Path) -> bytes | None:
+        """Return the content of a file, or None if it is missing or its checksum is wrong; remove it in the second case."""
         try:
             sealed = path.read_bytes()
         except FileNotFoundError:
@@ -146,11 +155,12 @@ class _SealedFile(IndexDataCacheFile):
 
 
 def _checksum(path: Path, content: bytes) -> bytes:
+    """Return the SHA-256 digest of a file's name and content; with the name, a file copied over another one does not pass."""
     return hashlib.sha256(path.name.encode() + b"\n" + content).digest()
 
 
 class _Locator(UserProvidedCacheLocator):
-    """Our folder and no other: numba's own search would go on to folders that are not checked."""
+    """Locates cache files in CACHE only, because numba's own search would continue with folders that are not checked."""
 
     def __init__(self, function: Any, file: str) -> None:
         super().__init__(function, file)
@@ -162,11 +172,13 @@ class _Locator(UserProvidedCacheLocator):
 
 
 class _Files(CompileResultCacheImpl):
+    """The cache implementation of numba, restricted to the one locator above."""
+
     _locator_classes = (_Locator,)
 
 
 class SealedCache(FunctionCache):
-    """The cache of one function. Whatever cannot be read is compiled again, whatever cannot be written is done without."""
+    """The cache of one function. A file that cannot be read is compiled again; one that cannot be written is left out."""
 
     _impl_class = _Files
 
@@ -177,10 +189,10 @@ class SealedCache(FunctionCache):
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Return the compiled function, or None if it has to be compiled, which is said where it takes long."""
+        """Return the compiled function, or None if it must be compiled; announce the compilation if it takes long (see SLOW)."""
         try:
             found = super().load_overload(signature, context)
-        except Exception as error:  # whatever unpickling raises: it must not end every later start
+        except Exception as error:  # unpickling may raise anything, and must not make every later start fail
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None
         if found is None and self._name in SLOW:
@@ -188,7 +200,7 @@ class SealedCache(FunctionCache):
         return found
 
     def save_overload(self, signature: Any, data: Any) -> None:
-        """Keep a compiled function for later starts if there is room for it."""
+        """Store a compiled function for later starts; say so on standard error if it cannot be written."""
         try:
             super().save_overload(signature, data)
         except OSError as error:
@@ -199,19 +211,19 @@ SLOW = {
     "advance": "compiling the engine for this machine: about 15 s, once",
     "run_group": "compiling what batches add to the engine: a few seconds, once",
 }
-"""What to say before the functions are compiled whose compilation somebody waits for."""
+"""Messages to show before the compilation of those functions for which a user has to wait."""
 announce: Callable[[str], None] = tell
-"""Says it: on standard error, unless a progress display has put something else here."""
+"""Function that shows such a message: on standard error, unless a progress display has replaced it."""
 
 
 def announce_by(show: Callable[[str], None]) -> None:
-    """Let something else than standard error say what is being compiled."""
+    """Show messages about compilation with the given function instead of on standard error."""
     global announce
     announce = show
 
 
 def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """As numba's `cfunc`, with this cache."""
+    """Return a decorator like numba's `cfunc` that uses this cache; without the compiler it returns the function unchanged."""
 
     def compiled(function: Callable[..., Any]) -> Any:
         if UNCOMPILED:
@@ -225,7 +237,10 @@ def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]
 
 
 def load_module(name: str, text: str) -> ModuleType:
-    """Return a module from its source, which is also put into the cache: numba looks at the file of what it compiles."""
+    """Return the module with a given name and source text.
+
+    The text is also written into the cache, because numba inspects the file of each function that it compiles.
+    """
     folder = CACHE / "formulas"
     path = folder / f"{name}.py"
     source = text.encode()
@@ -238,6 +253,6 @@ def load_module(name: str, text: str) -> ModuleType:
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # numba looks a cached function's module up by its name; this keeps the code alive, too
+    sys.modules[name] = module  # numba finds the module of a cached function by its name; this entry also keeps the code alive
     exec(compile(text, str(path), "exec"), module.__dict__)
     return module

@@ -1,6 +1,8 @@
-"""Compilation: the engine is compiled once, each friction formula once, both kept on disk (see `cache`).
+"""Compile the engine once and each friction formula once, and keep both on disk (see `cache`).
 
-Formulas are called through their addresses, so that a new law compiles its own few functions and nothing of the engine.
+The engine calls formulas through their addresses, so that a new law compiles its own few functions and nothing of the engine. The
+intrinsics of this module are the operations on addresses and bits that compiled code needs; plain Python versions replace them if
+the compiler is switched off (see `uncompiled`).
 """
 
 from __future__ import annotations
@@ -27,24 +29,25 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def kernel(function: F) -> F:
-    """Compile a function of the engine, with the cache of this module."""
+    """Return a function of the engine in compiled form, with its machine code kept in the cache."""
     return _compiled(function)
 
 
 def inlined(function: F) -> F:
-    """As `kernel`, always put in place where it is called: for small functions in the innermost loops."""
+    """Return a compiled function, like `kernel`, that is always inlined: for small functions in the innermost loops."""
     return _compiled(function, forceinline=True)
 
 
 def _compiled(function: F, **options: bool) -> F:
+    """Return a function as a `Kernel`, or as plain Python if the compiler is switched off."""
     compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
     return compiled
 
 
 class CompiledFormula:
-    """The functions of a friction formula (see `codegen.taylor_series`), and how many constants they need.
+    """The compiled functions of a friction formula (see `codegen.taylor_series`); `size` is the number of constants they need.
 
-    Each is written, compiled and loaded when it is first asked for; what was compiled before comes from the disk.
+    Each function is generated, compiled and loaded when it is first needed. What an earlier run compiled comes from the disk.
     """
 
     def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
@@ -54,16 +57,16 @@ class CompiledFormula:
 
     @property
     def guard_count(self) -> int:
-        """The number of guards of the formula."""
+        """Return the number of guards of the formula (see `codegen.guards`)."""
         return len(self._writer.guards)
 
     def address(self, part: str) -> int:
-        """Return the address of one of the functions, by its name: see `taylor_series.SIGNATURES`."""
+        """Return the address of one of the functions, given its name in `taylor_series.SIGNATURES`."""
         function = self._function(part)
         return int(function.handle if UNCOMPILED else function.address)
 
     def fill(self, values: Floats, reference: float, constants: Floats) -> None:
-        """Fill the formula's constants from the values of its parameters and the reference slip (m)."""
+        """Fill `constants`, of length `size`, from the values of the formula's parameters and the reference slip (m)."""
         prepare = self._function("prepare")
         if UNCOMPILED:
             prepare(values, reference, constants)
@@ -71,7 +74,7 @@ class CompiledFormula:
             prepare.ctypes(values.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
 
     def fill_guards(self, constants: Floats, slip: float, out: Floats) -> None:
-        """Put arguments and pulls of the guards at a slip (m, minus the reference), at rest, into out."""
+        """Write argument and pull of each guard into `out`, for a contact at rest at a slip (m, minus the reference slip)."""
         guards = self._function("guards")
         if UNCOMPILED:
             guards(constants, slip, 0.0, 0.0, out)
@@ -79,6 +82,7 @@ class CompiledFormula:
             guards.ctypes(constants.ctypes.data_as(_DOUBLE), slip, 0.0, 0.0, out.ctypes.data_as(_DOUBLE))
 
     def _function(self, part: str) -> Any:
+        """Return one of the functions, and generate and load it first if this has not been done yet."""
         if part not in self._functions:
             text = self._writer.module(part)
             name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
@@ -95,41 +99,45 @@ _DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 @cache
 def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> CompiledFormula:
-    """The compiled functions of a formula (and of how its state changes), the same ones for every problem."""
+    """Return the compiled functions of a formula; equal formulas share one object in all problems.
+
+    `state_rate` is the formula of the time derivative of the law's state, for a law that has one.
+    """
     return CompiledFormula(formula, parameters, state_rate)
 
 
 @intrinsic
 def call_prepare(typingctx: Any, address: Any, parameters: Any, reference: Any, c: Any) -> Any:
-    """prepare(parameters, reference, c) of the formula at `address`."""
+    """Call `prepare(parameters, reference, c)`, the function of a formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, FLOATS), _call
 
 
 @intrinsic
 def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) -> Any:
-    """value(c, dx, s, out) of the formula at `address`."""
+    """Call `value(c, dx, s, out)`, the function of a formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS), _call
 
 
 @intrinsic
 def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
-    """state_value(c, dx, s, w, out) of the formula at `address`."""
+    """Call `state_value(c, dx, s, w, out)`, the function of a formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
 
 
 @intrinsic
 def call_guards(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
-    """guards(c, dx, s, w, out) of the formula at `address`."""
+    """Call `guards(c, dx, s, w, out)`, the function of a formula at `address`."""
     return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
 
 
 @intrinsic
 def call_jet(typingctx: Any, address: Any, c: Any, k: Any, load: Any, s: Any) -> Any:
-    """rate_jet or motion_jet(c, k, L, s) of the formula at `address`."""
+    """Call `rate_jet(c, k, L, s)` or `motion_jet(c, k, L, s)`, or their versions for lanes: the function at `address`."""
     return types.void(types.int64, FLOATS, FLOATS, FLOATS, FLOATS), _call
 
 
 def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Write the call of a C function without result: its address is the first argument, its own arguments are the others."""
     kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in args[1:]])
     builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
     return context.get_dummy_value()
@@ -150,19 +158,19 @@ def call_step(typingctx: Any, address: Any, run: Any, xi_to: Any) -> Any:
 
 @intrinsic
 def floats(typingctx: Any, address: Any) -> Any:
-    """An address as a pointer to floats, which is indexed like an array."""
+    """Return an address as a pointer to floats, which is indexed like an array."""
     return FLOATS(types.int64), _cast
 
 
 @intrinsic
 def integers(typingctx: Any, address: Any) -> Any:
-    """An address as a pointer to 64-bit integers."""
+    """Return an address as a pointer to 64-bit integers."""
     return INTEGERS(types.int64), _cast
 
 
 @intrinsic
 def floats_in(typingctx: Any, array: Any) -> Any:
-    """An array of floats as a pointer to the first of them; the caller keeps the array alive."""
+    """Return a pointer to the first number of an array of floats; the caller keeps the array alive."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return context.make_array(signature.args[0])(context, builder, args[0]).data
@@ -171,12 +179,13 @@ def floats_in(typingctx: Any, array: Any) -> Any:
 
 
 def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    """Write the conversion of an address to a pointer."""
     return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
 
 
 @intrinsic
 def ahead(typingctx: Any, pointer: Any, n: Any) -> Any:
-    """The pointer to the number n places further on."""
+    """Return the pointer to the number n places after the one that `pointer` points to."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.gep(args[0], [args[1]])
@@ -186,7 +195,7 @@ def ahead(typingctx: Any, pointer: Any, n: Any) -> Any:
 
 @intrinsic
 def bits_of(typingctx: Any, number: Any) -> Any:
-    """The 64 bits of a float as an integer."""
+    """Return the 64 bits of a float as an integer."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.bitcast(args[0], ir.IntType(64))
@@ -196,7 +205,7 @@ def bits_of(typingctx: Any, number: Any) -> Any:
 
 @intrinsic
 def float_of(typingctx: Any, bits: Any) -> Any:
-    """The float with these 64 bits."""
+    """Return the float with the given 64 bits."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.bitcast(args[0], ir.DoubleType())
@@ -212,7 +221,7 @@ if UNCOMPILED:
         return pointer_at(address, np.float64)
 
     def integers(address: int) -> Pointer:
-        """Return the pointer to whole numbers at an address."""
+        """Return the pointer to 64-bit integers at an address."""
         return pointer_at(address, np.int64)
 
     def bits_of(number: float) -> np.int64:
@@ -220,7 +229,7 @@ if UNCOMPILED:
         return np.float64(number).view(np.int64)
 
     def float_of(bits: int) -> np.float64:
-        """Return the float with these 64 bits."""
+        """Return the float with the given 64 bits."""
         return np.int64(bits).view(np.float64)
 
     def floats_in(array: Floats) -> Pointer:
@@ -228,5 +237,5 @@ if UNCOMPILED:
         return Pointer(array)
 
     def ahead(pointer: Pointer, n: int) -> Pointer:
-        """Return the pointer to the number n places further on."""
+        """Return the pointer to the number n places after the one that `pointer` points to."""
         return pointer.ahead(n)

@@ -1,13 +1,15 @@
-"""Guards: where a step must end so that it cannot jump over a part of the law that leaves no trace at its start.
+"""Limit the length of a step so that it cannot jump over a part of the friction law that is invisible where the step starts.
 
-A Taylor step is as long as its last coefficients allow. They know nothing of a part of the formula that is smaller than rounding
-where the step starts: exp(z) beside a sum of order one while z < -45, a quotient whose denominator is huge, a high power of a
-small base. Such a part comes back only when its argument moves towards where it counts. So every such node guards the step: its
-argument, of which the series is known, may move towards that place by a given room and no further. Out of sight the room reaches
-to where the node begins to count; in sight it is so small that the last coefficients tell the truth.
+The last coefficients of a Taylor series decide how long a step is. They do not see a part of the formula that is smaller than
+rounding where the step starts: exp(z) beside a sum of order one while z < -45, a quotient whose denominator is huge, a high power
+of a small base. Such a part matters again only when its argument has moved far enough. Therefore every such node of the formula is
+a guard of the step: its argument, whose series is known, may move in the critical direction by a limited distance, its room. While
+the node is hidden below rounding, the room extends to where the node begins to matter; once it is visible, the room is so small
+that the last coefficients of the series are reliable.
 
-A guard is written as a pull: 1 / room, with the sign of the direction that is guarded. The step may be so long that
-pull x (argument - argument at the start) stays below 1, and max(pull x coefficient, 0) are the coefficients of a bound on that.
+A guard is expressed as a pull: 1 / room, with the sign of the critical direction. In a step pull x (argument - argument at the
+start) must stay below 1. The numbers max(pull x coefficient, 0), with the Taylor coefficients of the argument, are the coefficients
+of an upper bound of this product.
 """
 
 from __future__ import annotations
@@ -17,29 +19,29 @@ from dataclasses import dataclass
 from stickslip.friction.formula.expression import Expression, nodes_of
 
 HIDDEN = 50.0
-"""Exponent beyond which exp leaves nothing in double precision beside a number of order one (1): e^-50 is 2e-22."""
+"""Magnitude of an exponent beyond which exp, or its inverse, is lost beside a number of order one: e^-50 is 2e-22."""
 IN_SIGHT = 8.0
-"""Change of an exponent in one step (1) up to which the terms of order 17 and 18 bound those that follow them."""
+"""Largest change of an exponent in one step, dimensionless; up to here the terms of order 17 and 18 bound those that follow."""
 SHARE = 0.9
-"""Share of the way to zero (1) that a denominator, or the argument of sqrt, may go in one step."""
+"""Largest fraction of its distance from zero by which a denominator, or the argument of sqrt, may fall in one step."""
 TINIEST = 1e-300
-"""Keeps a division by zero from being one."""
+"""Number that is added to a denominator that may vanish, to avoid a division by zero."""
 
 TRANSCENDENTAL = ("exp", "tanh", "pow")
-"""Operations that vanish below rounding by themselves. What contains one of them is guarded by it, and needs no guard of its own:
-a denominator 1 + exp(z) falls by orders of magnitude without harm."""
+"""Operations whose results can fall below rounding by themselves. A denominator or root that contains one of them needs no guard
+of its own, because that operation has one: a denominator 1 + exp(z) may fall by orders of magnitude without harm."""
 
 
 @dataclass(frozen=True)
 class Guard:
-    """A node that guards the step, by the operation that it guards and its argument."""
+    """A guard of the step: the operation of its node, the argument whose change is limited, and the exponent of a power."""
 
     operation: str
     argument: Expression
     exponent: Expression | None = None
 
     def pull(self, argument: str, exponent: str) -> str:
-        """Write the pull, from the name of the argument's value (and of the exponent): see the module's docstring."""
+        """Return the source text of the pull (see the module), given the names of the values of the argument and the exponent."""
         if self.operation == "pow":
             return f"power_pull({argument}, {exponent})"
         if self.operation in ("exp", "tanh"):
@@ -50,7 +52,7 @@ class Guard:
 
 
 def guards_of(nodes: list[Expression]) -> list[Guard]:
-    """Find the guards among the nodes of a formula that vary."""
+    """Return the guards among the nodes of a formula, without those whose argument is constant."""
     found: dict[Guard, None] = {}
     for node in nodes:
         guarded = _guarded(node)
@@ -60,9 +62,9 @@ def guards_of(nodes: list[Expression]) -> list[Guard]:
 
 
 def _guarded(node: Expression) -> Expression | None:
-    """Return the argument that a node guards, if it guards one.
+    """Return the argument that must be guarded at a node, or None if the node needs no guard.
 
-    A logarithm needs no guard: it changes too slowly to be out of sight at one end of a step and to count at the other.
+    A logarithm needs none: it changes too slowly to be below rounding at one end of a step and to matter at the other.
     """
     if node.operation in TRANSCENDENTAL:
         return node.arguments[0]
@@ -74,4 +76,5 @@ def _guarded(node: Expression) -> Expression | None:
 
 
 def _varies(node: Expression) -> bool:
+    """Return True if a node depends on slip, slip rate or state."""
     return any(part.operation in ("slip", "rate", "state") for part in nodes_of(node))

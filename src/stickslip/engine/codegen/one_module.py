@@ -1,8 +1,9 @@
-"""How numba compiles the engine: all functions that an entry point calls go into one module, which is optimised once.
+"""Make numba link all functions that an entry point calls into one module, which is optimised once.
 
-Left to itself numba makes machine code and wrappers of every function, optimises each together with all that it calls, and does so
-again at every level of calls. Here a function that is called from compiled code becomes typed, unoptimised code and nothing more;
-only a function that is called from Python is linked with all that it needs, optimised, turned into machine code and kept on disk.
+By default numba makes machine code and wrappers of every function, and optimises each one together with all functions that it
+calls, again at every level of calls. Here a function that is called from compiled code becomes typed, unoptimised code and nothing
+more. Only a function that is called from Python is linked with everything that it needs, optimised, turned into machine code and
+kept on disk.
 """
 
 from __future__ import annotations
@@ -19,35 +20,37 @@ from numba.extending import typeof_impl
 from stickslip.engine.codegen.cache import SealedCache
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
+"""Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
+a sum may be fused into one operation."""
 
 
 class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
-    """The code of one function that others call: neither linked, nor optimised, nor turned into machine code."""
+    """The code of one function that others call. It is not linked, not optimised and not turned into machine code."""
 
     def finalize(self) -> None:
-        """Add nothing any more; what the function calls is linked by the module that it ends in."""
+        """Close the library without linking anything; the `Whole` that includes this function links the functions that it calls."""
         self._raise_if_finalized()
         self._finalized = True
 
     @property
     def codegen(self) -> Any:
-        """The code generator, for which functions without machine code have no environment either."""
+        """Return the code generator, wrapped because a function without machine code has no environment either."""
         return _WithoutEnvironments(self._codegen)
 
     def enable_object_caching(self) -> None:
-        """There is no machine code to keep."""
+        """Do nothing, because there is no machine code to keep."""
 
     def get_pointer_to_function(self, name: str) -> int:
-        """Return 0: there is no machine code to point to."""
+        """Return 0, because there is no machine code to point to."""
         self._ensure_finalized()
         return 0
 
     def own_module(self) -> Any:
-        """Return the code of this function alone, which may be linked several times."""
+        """Return the code of this function alone; it may be linked into several modules."""
         return super()._get_module_for_linking()
 
     def _get_module_for_linking(self) -> Any:
-        """Return the code of this function with all that it calls, for modules that are not made here."""
+        """Return the code of this function with all functions that it calls, for modules of numba's own kind."""
         module = self.own_module().clone()
         below = list(parts_below(self._linking_libraries))
         for part in below:
@@ -64,17 +67,17 @@ class _WithoutEnvironments:
         self._codegen = codegen
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: only what is called from Python has an environment."""
+        """Do nothing, because only functions that are called from Python have an environment."""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._codegen, name)
 
 
 class Whole(JITCodeLibrary):  # type: ignore[misc]
-    """The module of a function that is called from Python: every part that it needs is linked once."""
+    """The module of a function that is called from Python. Every part that it needs is linked into it once."""
 
     def finalize(self) -> None:
-        """Link, optimise and make machine code."""
+        """Link the parts and numba's own functions, optimise, and make machine code."""
         linked: list[Any] = list(vars(self)["_linking_libraries"])
         parts = list(parts_below(linked))
         for part in parts:
@@ -83,7 +86,7 @@ class Whole(JITCodeLibrary):  # type: ignore[misc]
         super().finalize()
 
     def _optimize_final_module(self) -> None:
-        """Let nobody else see the parts, so that what is inlined everywhere leaves nothing behind."""
+        """Hide the parts from other modules, so that a function that is inlined everywhere is dropped; then optimise."""
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == llvm.Linkage.linkonce_odr:
                 function.linkage = llvm.Linkage.internal
@@ -91,7 +94,7 @@ class Whole(JITCodeLibrary):  # type: ignore[misc]
 
 
 def parts_below(libraries: list[Any]) -> Iterator[Part]:
-    """Yield the parts among some libraries, and all those that they call, each once."""
+    """Yield the parts among the given libraries and all parts that they call, directly or indirectly, each once."""
     seen: set[int] = set()
     waiting = list(libraries)
     while waiting:
@@ -103,7 +106,7 @@ def parts_below(libraries: list[Any]) -> Iterator[Part]:
 
 
 def others_of(libraries: list[Any]) -> list[Any]:
-    """Return what some libraries need that is no part: numba's own functions, each once."""
+    """Return the libraries that the given ones link and that are not parts (numba's own functions), each once."""
     needed = [one for library in libraries for one in vars(library)["_linking_libraries"] if not isinstance(one, Part)]
     return list({id(one): one for one in needed}.values())
 
@@ -125,7 +128,7 @@ class WholeCompiler(Compiler):  # type: ignore[misc]
 
 
 class Kernel:
-    """A compiled function: an entry point where Python calls it, a part where compiled code does."""
+    """A compiled function. Called from Python it is an entry point (`Whole`), called from compiled code a `Part`."""
 
     def __init__(self, function: Callable[..., Any], **options: bool) -> None:
         self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
@@ -135,10 +138,11 @@ class Kernel:
         self.entry._cache = SealedCache(function)
 
     def __call__(self, *arguments: Any) -> Any:
-        """Call the machine code; compile it the first time."""
+        """Call the machine code, which the first call compiles or loads."""
         return self.entry(*arguments)
 
 
 @typeof_impl.register(Kernel)
 def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
+    """Return the type that compiled code sees when it calls a kernel: that of its part."""
     return types.Dispatcher(kernel.part)

@@ -1,8 +1,8 @@
-"""Records: memory with named places, read and written by the same words in compiled code and in Python.
+"""Define records: memory with named places, which compiled code and Python read and write by the same names.
 
-A record is a run of 8-byte places, each a float, a whole number, an address or a record of its own. Compiled code gets a pointer
-to the first place; `run.state.xi` is then one load at a known distance, without any count of references. Python wraps the same
-memory as an object: `State(numbers).xi`.
+A record is a sequence of 8-byte places, filled by floats, 64-bit integers, addresses, rows of floats and other records. Compiled
+code holds a pointer to the first place, so that `run.state.xi` is one load at a fixed distance, without reference counting. Python
+wraps the same memory as an object: `State(numbers).xi`.
 
     class State(Record):
         xi: float  # where in the piece of load the contact is
@@ -33,52 +33,55 @@ from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, pointer_at
 
 Floats = NDArray[np.float64]
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
-"""What compiled code sees of an address: a pointer that is indexed like an array."""
+"""Types that an address has in compiled code: pointers, which are indexed like arrays."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a field of a record is (in places of 8 bytes), how many places it has, and what it is."""
+    """The position of a field in its record and its size, both in places of 8 bytes, and its type."""
 
     first: int
     size: int
     kind: Any  # float, int, a record, or a pointer's type
-    inside: bool  # the record or the row of numbers lies here, and not its address
+    inside: bool  # True if the record or the row of floats itself lies here; False if it is a number or an address
 
 
 @dataclass(frozen=True)
 class _Wanted:
+    """The declaration of a field: its type, its size in places, and whether it lies inside the record."""
+
     kind: Any
     size: int
     inside: bool
 
 
 def floats_at() -> Any:
-    """Declare the address of floats."""
+    """Declare a field that holds the address of floats."""
     return _Wanted(FLOATS, 1, False)
 
 
 def integers_at() -> Any:
-    """Declare the address of whole numbers."""
+    """Declare a field that holds the address of 64-bit integers."""
     return _Wanted(INTEGERS, 1, False)
 
 
 def row(size: int) -> Any:
-    """Declare so many floats that lie in the record itself."""
+    """Declare a row of `size` floats that lie in the record itself."""
     return _Wanted(FLOATS, size, True)
 
 
 def inside(record: type[Record], size: int | None = None) -> Any:
-    """Declare a record that lies in this one, in at least so many places."""
+    """Declare a record that lies in this one and takes `size` places, by default as many as it has."""
     return _Wanted(record, record.total if size is None else size, True)
 
 
 class Record:
-    """The base of all records. Their fields are annotations; a float or a whole number needs no more than that."""
+    """The base class of all records. Fields are annotations; a float or an integer needs nothing else."""
 
     places: ClassVar[dict[str, Place]] = {}
+    """The place of each field, by name."""
     total: ClassVar[int] = 0
-    """How many places a record has."""
+    """Number of 8-byte places of a record."""
 
     def __init_subclass__(cls) -> None:
         first, cls.places = 0, {}
@@ -100,7 +103,7 @@ class Record:
 
 
 class _Number:
-    """A number of a record, for Python: a column of them where the memory holds many records side by side."""
+    """Python's access to a number in a record, or to one number of each if the memory has the shape (places, records)."""
 
     def __init__(self, place: int) -> None:
         self.place = place
@@ -113,7 +116,7 @@ class _Number:
 
 
 class _Inside:
-    """A row of floats, or a record, that lies in another one, for Python: found once and kept."""
+    """Python's access to a row of floats or a record that lies inside another record; the view is made once and kept."""
 
     def __init__(self, place: Place, name: str) -> None:
         self.place, self.name = place, name
@@ -122,7 +125,7 @@ class _Inside:
         if record is None:
             return self
         begin, end = self.place.first, self.place.first + self.place.size
-        if self.place.kind is FLOATS:  # up to the end of the record: some functions write on into the row that follows
+        if self.place.kind is FLOATS:  # up to the end of the record, because some functions write beyond a row into the next one
             found: Any = Pointer(record.numbers.view(np.float64), begin)
         else:
             kind = np.int64 if int in get_type_hints(self.place.kind).values() else np.float64
@@ -132,7 +135,7 @@ class _Inside:
 
 
 class _Address:
-    """An address in a record, for Python: a pointer into the array that has been lent."""
+    """Python's access to an address in a record: a pointer into the array that was lent (see `uncompiled.lend_memory`)."""
 
     def __init__(self, place: Place) -> None:
         self.place, self.kind = place.first, np.float64 if place.kind is FLOATS else np.int64
@@ -145,13 +148,14 @@ class _Address:
 
 
 def _descriptor(place: Place, name: str) -> Any:
+    """Return the object through which Python reads and writes a field."""
     if place.kind in (float, int):
         return _Number(place.first)
     return _Inside(place, name) if place.inside else _Address(place)
 
 
 class RecordPointer(types.Type):  # type: ignore[misc] # numba is untyped
-    """What compiled code knows of a record: a pointer to its first place."""
+    """The type of a record in compiled code: a pointer to its first place."""
 
     def __init__(self, record: type[Record]) -> None:
         self.record = record
@@ -160,12 +164,14 @@ class RecordPointer(types.Type):  # type: ignore[misc] # numba is untyped
 
 @register_model(RecordPointer)
 class _PointerModel(models.PrimitiveModel):  # type: ignore[misc]
+    """The representation of such a pointer in machine code: the address of a 64-bit place."""
+
     def __init__(self, manager: datamodel.DataModelManager, kind: RecordPointer) -> None:
         super().__init__(manager, kind, ir.IntType(64).as_pointer())
 
 
 def _type_of(place: Place) -> Any:
-    """Return numba's type of a field."""
+    """Return the type that a field has in compiled code."""
     if place.kind is float:
         return types.float64
     if place.kind is int:
@@ -175,20 +181,24 @@ def _type_of(place: Place) -> Any:
 
 @infer_getattr
 class _Fields(AttributeTemplate):  # type: ignore[misc]
+    """Tells numba which fields a record has, and their types."""
+
     key = RecordPointer
 
     def generic_resolve(self, kind: RecordPointer, name: str) -> Any:
-        """Return the type of a field; None if there is none of this name."""
+        """Return the type of a field, or None if the record has no field of this name."""
         place = kind.record.places.get(name)
         return None if place is None else _type_of(place)
 
 
 def _address(builder: Any, pointer: Any, place: Place) -> Any:
+    """Write the calculation of a field's address from that of its record."""
     return builder.gep(pointer, [ir.Constant(ir.IntType(64), place.first)], inbounds=True)
 
 
 @lower_getattr_generic(RecordPointer)
 def _get(context: Any, builder: Any, kind: RecordPointer, pointer: Any, name: str) -> Any:
+    """Write the reading of a field: a pointer if the field lies inside the record, otherwise its value."""
     place = kind.record.places[name]
     wanted = context.get_value_type(_type_of(place))
     address = _address(builder, pointer, place)
@@ -199,6 +209,7 @@ def _get(context: Any, builder: Any, kind: RecordPointer, pointer: Any, name: st
 
 @lower_setattr_generic(RecordPointer)
 def _set(context: Any, builder: Any, signature: Any, arguments: Any, name: str) -> None:
+    """Write the assignment of a number or an address to a field."""
     pointer, value = arguments
     place = signature.args[0].record.places[name]
     builder.store(value, builder.bitcast(_address(builder, pointer, place), value.type.as_pointer()))
@@ -206,7 +217,7 @@ def _set(context: Any, builder: Any, signature: Any, arguments: Any, name: str) 
 
 @intrinsic
 def numbers_of(typingctx: Any, record: Any) -> Any:
-    """Return a record of floats as a pointer to them."""
+    """Return a pointer to the numbers of a record that has only floats."""
 
     def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], context.get_value_type(FLOATS))
@@ -216,7 +227,7 @@ def numbers_of(typingctx: Any, record: Any) -> Any:
 
 @intrinsic
 def whole_numbers_of(typingctx: Any, record: Any) -> Any:
-    """Return a record of whole numbers as a pointer to them."""
+    """Return a pointer to the numbers of a record that has only 64-bit integers."""
 
     def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], context.get_value_type(INTEGERS))
@@ -225,7 +236,7 @@ def whole_numbers_of(typingctx: Any, record: Any) -> Any:
 
 
 def record_at(record: type[Record]) -> Any:
-    """Return a function for kernels from memory, an array of whole numbers or a pointer to it, to the record in it."""
+    """Return a function with which kernels turn memory (an array of 64-bit integers, or a pointer to it) into the record there."""
     if UNCOMPILED:
         return record
     kind, pointer = RecordPointer(record), ir.IntType(64).as_pointer()
@@ -248,7 +259,7 @@ def record_at(record: type[Record]) -> Any:
 if UNCOMPILED:
 
     def numbers_of(record: Record) -> Pointer:
-        """Return the numbers of a record."""
+        """Return a pointer to the numbers of a record."""
         return Pointer(record.numbers)
 
     whole_numbers_of = numbers_of

@@ -1,7 +1,9 @@
-"""Taylor recurrences of a formula's nodes: order zero, first derivatives, higher orders, as text.
+"""Write the Taylor recurrences of a formula's nodes as text: order zero, first derivatives and higher orders.
 
-Names in the text: c[i] the node i at the reference point, e_i its difference from that, n_i_k its k-th Taylor coefficient, x_k
-and s_k those of slip and slip rate, w_i_k k times the coefficient.
+The text uses these names for node number i: c[i] is its value at the reference point, e{i} its difference from that value, n{i}_{k}
+its k-th Taylor coefficient, and w{i}_{k} is k times that coefficient. The k-th coefficients of slip and slip rate are x_{k} and
+s_{k}. The difference of the slip is dx, that of the rate is s_0, and w is the state. Recurrences of elementary functions follow
+from their differential equations, such as (exp a)' = a' exp a, order by order.
 """
 
 from __future__ import annotations
@@ -10,23 +12,24 @@ from stickslip.engine.codegen.guards import guards_of
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
 LARGEST_EXPONENT = 150.0
-"""Exponents beyond this count as this where exp occurs in denominators only (1): e^150 leaves nothing of a quotient, and its
-squares and series stay numbers."""
+"""Largest exponent, dimensionless, of an exp that occurs in denominators only; larger ones are replaced by it. A quotient over
+e^150 is negligible, and the square and the series of e^150 are still finite."""
 NO_LIMIT = 1e308
-"""Of other exponents (1): where exp is infinite the run ends and says so."""
+"""Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""
 FRESH = 4
-"""Terms of a sum that wait for the newest coefficients (see `sum_of`)."""
+"""Number of terms of a sum that are added last, because they need the newest coefficients (see `sum_of`)."""
 
 
 def oldest_first(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The pairs of orders in a product's recurrence, those that wait for the newest coefficients last."""
+    """Sort the pairs of orders in a product's recurrence so that those which need the newest coefficients come last."""
     return sorted(pairs, key=max)
 
 
 def sum_of(terms: list[str]) -> str:
-    """Sum of terms, oldest first: the old ones as a balanced tree (short, and small in rounding error), the newest added last.
+    """Write the sum of terms, which are given oldest first: the older ones as a balanced tree, then the newest one by one.
 
-    The processor is done with the old ones before the newest are known: what it waits for is one addition for each of them.
+    The tree is short and has little rounding error. The processor has finished it before the newest terms are known, and then needs
+    only one addition for each of these.
     """
     if not terms:
         return "0.0"
@@ -35,6 +38,7 @@ def sum_of(terms: list[str]) -> str:
 
 
 def _balanced(terms: list[str]) -> str:
+    """Write the sum of terms as a balanced binary tree."""
     if len(terms) == 1:
         return terms[0]
     half = len(terms) // 2
@@ -42,7 +46,7 @@ def _balanced(terms: list[str]) -> str:
 
 
 def _vanishes(node: Expression) -> bool:
-    """Whether a node is 0 at the reference point, where slip rate and state are 0, whatever the parameters."""
+    """Return True if a node is 0 for any parameters at the reference point, where slip rate and state are 0."""
     if node in (RATE, STATE):
         return True
     if node.operation == "mul":
@@ -51,7 +55,7 @@ def _vanishes(node: Expression) -> bool:
 
 
 def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
-    """Return the nodes that reach the formula through denominators alone, by way of sums and products."""
+    """Return the nodes whose every way into the formula leads through sums, differences and products to a denominator."""
     parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
     for node in nodes:
         for argument in node.arguments:
@@ -67,11 +71,12 @@ def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
 
 
 def _divides(node: Expression, parent: Expression) -> bool:
+    """Return True if a node is the denominator, and not also the numerator, of its parent."""
     return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
 
 
 class Recurrences:
-    """What is known of a formula's nodes, and the statements that compute them."""
+    """The nodes of a formula with their dependencies, and the statements that compute them."""
 
     def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
         self.formula, self.parameters, self.state_rate = formula, parameters, state_rate
@@ -83,14 +88,14 @@ class Recurrences:
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
         own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
-        self.guards = guards_of([node for node in self.dynamic if node in own])  # what arcsinh needs besides hides nothing
+        self.guards = guards_of([node for node in self.dynamic if node in own])  # the auxiliary nodes of arcsinh need no guard
         self._only_below = in_denominators_only(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 
     @staticmethod
     def _with_companions(formula: Expression) -> list[Expression]:
-        """Nodes in order of computation, with the partner that a recurrence needs (cos for sin, and so on)."""
+        """Return the nodes in order of computation, with the auxiliary nodes that recurrences need, such as cos for sin."""
         found: dict[Expression, None] = {}
         for node in nodes_of(formula):
             argument = node.arguments[0] if node.arguments else node
@@ -108,10 +113,14 @@ class Recurrences:
     # ---- names --------------------------------------------------------------------------------------------------------------
 
     def reference(self, node: Expression) -> str:
+        """Return the name of a node's value at the reference point."""
         return f"c[{self.index[node]}]"
 
     def coefficient(self, node: Expression, k: int) -> str | None:
-        """Name of the k-th Taylor coefficient of a node, or None where it is identically zero."""
+        """Return the name of the k-th Taylor coefficient of a node, or None if it is zero.
+
+        The rate's coefficient of order `pending_rate`, which is not known yet, counts as zero.
+        """
         if not self.varies[node]:
             return self.reference(node) if k == 0 else None
         if node == STATE:
@@ -121,23 +130,29 @@ class Recurrences:
         return f"x_{k}" if node == SLIP else f"n{self.index[node]}_{k}"
 
     def difference(self, node: Expression) -> str | None:
+        """Return the name of a node's difference from its reference value, or None if the node is constant."""
         if not self.varies[node]:
             return None
         return {SLIP: "dx", RATE: "s_0", STATE: "w"}.get(node, f"e{self.index[node]}")
 
     def slope(self, node: Expression, variable: Expression, tag: str) -> str | None:
+        """Return the name of a node's derivative with respect to a variable, or None if it is zero.
+
+        The tag is the letter with which the names of these derivatives begin.
+        """
         if not depends_on(node, variable):
             return None
         return "1.0" if node == variable else f"{tag}{self.index[node]}"
 
     def products(self, a: Expression, b: Expression, pairs: list[tuple[int, int]]) -> list[str]:
+        """Write the products a_i b_j for the given pairs (i, j), without those that are zero."""
         names = [(self.coefficient(a, i), self.coefficient(b, j)) for i, j in oldest_first(pairs)]
         return [f"{x} * {y}" for x, y in names if x is not None and y is not None]
 
     # ---- order zero ---------------------------------------------------------------------------------------------------------
 
     def reference_value(self, node: Expression) -> str:
-        """The node at the reference point, for `prepare`."""
+        """Write a node's value at the reference point, for `prepare`."""
         arguments = [self.reference(argument) for argument in node.arguments]
         signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
         if node.operation in signs:
@@ -151,11 +166,11 @@ class Recurrences:
         return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
 
     def largest_exponent(self, node: Expression) -> float:
-        """Return the exponent beyond which an exp node stays as it is."""
+        """Return the exponent beyond which an exp node no longer grows."""
         return LARGEST_EXPONENT if node in self._only_below else NO_LIMIT
 
     def order_zero(self) -> list[str]:
-        """Differences from the reference and values of every node at dx, s_0."""
+        """Write the difference from the reference and the value of every varying node, at slip difference dx and rate s_0."""
         lines = [f"x_0 = {self.reference(SLIP)} + dx"]
         turned_by: set[Expression] = set()
         for node in self.dynamic:
@@ -170,7 +185,7 @@ class Recurrences:
         return lines
 
     def _value_rule(self, node: Expression) -> str:
-        """The node's value: from its arguments where that is cheap; reference plus difference loses digits of small values."""
+        """Write a node's value, from its arguments if that is cheap, because reference + difference loses small values."""
         sign = {"add": "+", "sub": "-", "mul": "*", "div": "/"}.get(node.operation)
         if node.operation == "exp":
             a = node.arguments[0]
@@ -187,6 +202,7 @@ class Recurrences:
         return f"{left} {sign} {right}"
 
     def _difference_rule(self, node: Expression) -> str:
+        """Write a node's difference from its reference value, in a form without cancellation."""
         a = node.arguments[0]
         r, ra, ea = self.reference(node), self.reference(a), self.difference(a)
         if node.operation in ("add", "sub", "mul", "div"):
@@ -197,7 +213,7 @@ class Recurrences:
             if node.operation == "sub":
                 return f"{ea or ''}{f' - {eb}' if eb else ''}"
             if node.operation == "mul" and ea and eb and (_vanishes(a) or _vanishes(b)):
-                return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # as it is: there is nothing to take it from
+                return f"{self.coefficient(a, 0)} * {self.coefficient(b, 0)}"  # the reference value is 0
             if node.operation == "mul":
                 return " + ".join(t for t in (ea and f"{ea} * {rb}", eb and f"{self.coefficient(a, 0)} * {eb}") if t)
             numerator = f"{ea or ''}{f' - {r} * {eb}' if eb else ''}"
@@ -206,7 +222,7 @@ class Recurrences:
             j = self.index[a]
             sine, cosine = (self.reference(Expression(name, (a,))) for name in ("sin", "cos"))
             return f"{cosine} * g{j} - {sine} * h{j}" if node.operation == "sin" else f"-{sine} * g{j} - {cosine} * h{j}"
-        now = self.coefficient(a, 0)  # far from the reference its value has digits that reference + difference lacks
+        now = self.coefficient(a, 0)  # far from the reference this value has digits that reference + difference lacks
         return {
             "exp": f"exp_difference({r}, {now}, {ea}, {self.largest_exponent(node)})",
             "log": f"log_difference({ra}, {now}, {ea})",
@@ -217,7 +233,7 @@ class Recurrences:
         }[node.operation]
 
     def slopes(self, variable: Expression, tag: str) -> list[str]:
-        """First derivatives of the nodes with respect to SLIP, RATE or STATE."""
+        """Write the first derivatives of the nodes by a variable (SLIP, RATE or STATE), with names that begin with `tag`."""
         lines = []
         for node in self.dynamic:
             if not depends_on(node, variable):
@@ -252,7 +268,7 @@ class Recurrences:
     # ---- guards -------------------------------------------------------------------------------------------------------------
 
     def pulls(self) -> list[str]:
-        """Name, for each guard, the inverse of how far its argument may move: see `engine.codegen.guards`."""
+        """Write the pull of each guard: the inverse of how far its argument may move, see `engine.codegen.guards`."""
         lines = []
         for j, guard in enumerate(self.guards):
             exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
@@ -260,7 +276,7 @@ class Recurrences:
         return lines
 
     def reach(self, k: int) -> str:
-        """The k-th coefficient of the bound on how much of its room a guard has used up, for the guard that uses up most."""
+        """Write the k-th coefficient of an upper bound on the share of its room that any guard has used up."""
         used = [
             f"{coefficient} * g_{j}" for j, guard in enumerate(self.guards) if (coefficient := self.coefficient(guard.argument, k))
         ]
@@ -272,21 +288,23 @@ class Recurrences:
     # ---- higher orders ------------------------------------------------------------------------------------------------------
 
     def order(self, k: int) -> list[str]:
+        """Write the k-th Taylor coefficients of all varying nodes."""
         return [f"n{self.index[node]}_{k} = {self._recurrence(node, k)}" for node in self.dynamic]
 
     def weights(self, k: int) -> list[str]:
-        """k a_k of every argument of a function: shared by the recurrences of higher order."""
+        """Write k a_k for every series a for which recurrences of higher order need it; several may share it."""
         arguments = {n.arguments[0] for n in self.dynamic if n.operation in ("sin", "cos", "exp", "tanh")}
         arguments |= {n for n in self.dynamic if n.operation in ("log", "arcsinh")}
         return [f"w{self.index[a]}_{k} = {k}.0 * {self.coefficient(a, k)}" for a in sorted(arguments, key=self.index.__getitem__)]
 
     def _weighted(self, a: Expression, b: Expression, k: int) -> str:
-        """(1/k) sum over 0 < j < k of j a_j b_(k-j)."""
+        """Write + (1/k) times the sum over 0 < j < k of j a_j b_(k-j), or nothing if k = 1."""
         pairs = oldest_first([(j, k - j) for j in range(1, k)])
         terms = [f"w{self.index[a]}_{i} * {self.coefficient(b, j)}" for i, j in pairs]
         return f" + {1.0 / k!r} * ({sum_of(terms)})" if terms else ""
 
     def _recurrence(self, node: Expression, k: int) -> str:
+        """Write the k-th Taylor coefficient of a node (k > 0) in terms of those already known."""
         a = node.arguments[0]
         ak = self.coefficient(a, k) or "0.0"
         if node.operation in ("add", "sub"):

@@ -1,7 +1,7 @@
-"""Eight numbers side by side, on which the processor works at once: a type of compiled code, with its arithmetic.
+"""Define lanes, a type of compiled code: eight floats side by side, on which the processor works at once, with their arithmetic.
 
-What is written for a float holds for lanes as well: the same functions, compiled for the other type, do in each lane what they do
-for a float, bit for bit. What decides (if, while) is not for lanes.
+A function written for floats serves lanes as well. Compiled for lanes, it computes in each lane exactly what it computes for a
+float, bit for bit. It must not contain decisions (if, while) that depend on lanes.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from numba.extending import intrinsic, lower_builtin, lower_cast, models, regist
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 
 WIDTH = 8
-"""Lanes: what fills the widest registers of today's processors; where they are narrower, several serve."""
+"""Number of lanes, which fills the widest registers of today's processors; narrower processors use several registers."""
 
 Writer = Callable[[Any, Any, list[Any]], Any]
-"""Writes the code of a function: from the compiler's context and builder, and the arguments, to the result."""
+"""Type of a function that writes the code of an operation, from the compiler's context and builder and the arguments."""
 
 VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 WHOLE = ir.IntType(64)
@@ -45,24 +45,26 @@ POINTER = types.CPointer(LANES)
 
 @register_model(Lanes)
 class LanesModel(models.PrimitiveModel):  # type: ignore[misc] # numba
-    """A vector register."""
+    """The representation of lanes in machine code: a vector register."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, VECTOR)
 
 
 def _in_every_lane(builder: Any, number: Any) -> Any:
+    """Write the conversion of a float to lanes that all hold it."""
     first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), number, ir.Constant(INDEX, 0))
     return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(INDEX, WIDTH), [0] * WIDTH))
 
 
 @lower_cast(types.Float, LANES)
 def _cast(context: Any, builder: Any, from_type: Any, to_type: Any, number: Any) -> Any:
+    """Write the automatic conversion of a float to lanes."""
     return _in_every_lane(builder, context.cast(builder, number, from_type, types.float64))
 
 
 def _define(function: Any, arguments: int, write: Writer) -> None:
-    """Teach the compiler a function of lanes; numbers among its arguments hold in every lane."""
+    """Define a function for lanes, with the given number of arguments; an argument that is a single number holds in every lane."""
 
     def generic(self: Any, args: tuple[Any, ...], keywords: Any) -> Any:
         known = all(kind == LANES or isinstance(kind, (types.Float, types.Integer)) for kind in args)
@@ -81,10 +83,12 @@ def _define(function: Any, arguments: int, write: Writer) -> None:
 
 
 def _instruction(name: str) -> Writer:
+    """Return the writer of an operation that is one instruction of LLVM."""
     return lambda context, builder, args: getattr(builder, name)(*args)
 
 
 def _of_the_processor(name: str) -> Writer:
+    """Return the writer of a function of one argument that LLVM provides for vectors."""
     kind = ir.FunctionType(VECTOR, [VECTOR])
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
@@ -94,14 +98,17 @@ def _of_the_processor(name: str) -> Writer:
 
 
 def _smaller(context: Any, builder: Any, args: list[Any]) -> Any:
+    """Write min(a, b) as Python has it: a unless b < a."""
     return builder.select(builder.fcmp_ordered("<", args[1], args[0]), args[1], args[0])
 
 
 def _larger(context: Any, builder: Any, args: list[Any]) -> Any:
+    """Write max(a, b) as Python has it: a unless b > a."""
     return builder.select(builder.fcmp_ordered(">", args[1], args[0]), args[1], args[0])
 
 
 def _each_by_itself(function: Any) -> Writer:
+    """Return the writer of a function that is called for one lane after the other, to get the same bits as for floats."""
     of_float = signature(types.float64, types.float64)
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
@@ -135,7 +142,7 @@ for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p
 
 @intrinsic
 def bits_as_number(typingctx: Any, x: Any) -> Any:
-    """The 64 bits of a float, or of lanes, as a whole number."""
+    """Return the 64 bits of a float, or of each lane, read as an integer and converted to a float."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         return builder.sitofp(builder.bitcast(args[0], WHOLES if x == LANES else WHOLE), args[0].type)
@@ -145,7 +152,7 @@ def bits_as_number(typingctx: Any, x: Any) -> Any:
 
 @intrinsic
 def power_of_two(typingctx: Any, n: Any) -> Any:
-    """2^n, of a whole number as a float, or of lanes of such."""
+    """Return 2^n for a whole number n that is given as a float, or for lanes of such; the result must be a normal number."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         kind = WHOLES if n == LANES else WHOLE
@@ -156,12 +163,13 @@ def power_of_two(typingctx: Any, n: Any) -> Any:
 
 
 def _constant(kind: Any, number: int) -> Any:
+    """Return an integer constant of the given type, in every lane if the type has lanes."""
     return ir.Constant(kind, [number] * WIDTH if kind == WHOLES else number)
 
 
 @intrinsic
 def _lane(typingctx: Any, numbers: Any, n: Any) -> Any:
-    """Of numbers and lanes, what they are in the lane n."""
+    """Return a tuple of floats: the lane n of each of the given numbers; a single float is returned as it is."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         given = [builder.extract_value(args[0], i) for i in range(len(numbers))]
@@ -173,7 +181,7 @@ def _lane(typingctx: Any, numbers: Any, n: Any) -> Any:
 
 @intrinsic
 def _joined(typingctx: Any, numbers: Any) -> Any:
-    """So many floats as lanes."""
+    """Return WIDTH floats, given as a tuple, as lanes."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         result = ir.Constant(VECTOR, ir.Undefined)
@@ -185,7 +193,7 @@ def _joined(typingctx: Any, numbers: Any) -> Any:
 
 
 def lane_by_lane(function: Any) -> Any:
-    """A compiled function of floats as one of lanes."""
+    """Return a compiled function of lanes that calls a compiled function of floats in each lane."""
 
     @njit
     def of_lanes(*numbers: Any) -> Any:
@@ -199,7 +207,7 @@ def lane_by_lane(function: Any) -> Any:
 
 @intrinsic
 def lanes_at(typingctx: Any, address: Any) -> Any:
-    """An address, of which 64 is a factor, as a pointer to lanes, which is indexed like an array."""
+    """Return an address (bytes, a multiple of 64) as a pointer to lanes, which is indexed like an array."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
@@ -210,9 +218,9 @@ def lanes_at(typingctx: Any, address: Any) -> Any:
 if UNCOMPILED:
 
     def bits_as_number(x: Any) -> Any:
-        """Return the 64 bits of a float as a whole number, as a float."""
+        """Return the 64 bits of a float, read as an integer and converted to a float."""
         return np.float64(np.float64(x).view(np.int64))
 
     def power_of_two(n: Any) -> Any:
-        """Return 2^n of a whole number as a float."""
+        """Return 2^n for a whole number n that is given as a float."""
         return np.ldexp(1.0, int(n))

@@ -1,24 +1,24 @@
-"""Write the compiled form of a friction formula: its value and the Taylor series of the contact that slips under it.
+"""Write the source text of a friction formula: its value, and the Taylor series of a contact that slips under it.
 
-Each formula becomes straight-line code, in C functions that are each compiled when they are first wanted:
+Each formula becomes straight-line code in C functions, each of which is compiled when it is first needed:
 
-prepare    fills `c` with the formula's constants and its nodes at the reference point (slip x_ref, rate 0)
-value      mu(x, s) - mu(x_ref, 0) with its derivatives with respect to s and x
-state_value  mu(x, s, w) - mu(x_ref, 0, 0) with its derivatives with respect to s, x and the state w, and the same of dw/dt
-rate_jet   massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
-motion_jet contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
-guards     for each guard of the formula (see `engine.codegen.guards`) its argument and how hard the step is held back there
+prepare      fills `c` with the formula's constants and the values of its nodes at the reference point (slip x_ref, rate 0)
+value        mu(x, s) - mu(x_ref, 0), and its derivatives with respect to s and x
+state_value  mu(x, s, w) - mu(x_ref, 0, 0) and dw/dt, each with its derivatives with respect to s, x and the state w
+rate_jet     massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
+motion_jet   contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
+guards       the argument and the pull of each guard of the formula (see `engine.codegen.guards`)
 rate_jets, motion_jets  the two series for several runs side by side (see `simd`)
 
-Behind the ORDER + 1 coefficients of the series, the jets of a formula with guards leave those of a bound: the step may be as long
-as its sum stays below 1.
+If the formula has guards, a jet writes the coefficients of a bound after the ORDER + 1 coefficients of its series. The step may be
+as long as the sum of the bound's series stays below 1.
 
-Friction is kept as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
-released from the very edge of equilibrium keeps its digits. s >= 0 is the magnitude of the slip rate, q its integral, and
-x = x_start + chi q the slip that the law counts. Time inside a piece is t = t0 + A eta + B eta^2 / 2, dt/d eta = A + B eta: B is
-zero except where a piece ends or starts at a fold, where s goes as a square root of time and eta is that root. A contact that
-leaves rest exactly at its strength has no net force by definition, not by subtraction: k[10] = 0 says so, k[11] is the step
-from static to sliding friction.
+Friction is computed as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
+released at the very edge of equilibrium keeps its digits. Here s >= 0 is the magnitude of the slip rate, q its integral, and
+x = x_start + chi q the slip that the law counts. Time inside a piece is t = t0 + A eta + B eta^2 / 2, so dt/d eta = A + B eta. B is
+zero except next to a fold, where s goes as a square root of time and eta is that root. A contact that leaves rest exactly at its
+strength has no net force by definition, not by subtraction: the caller sets k[10] = 0, and k[11] to the step from static to sliding
+friction (times the normal stress or force).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
 
 ORDER = 18
-"""Order of the Taylor series, and so of the history's polynomials."""
+"""Order of the Taylor series, and therefore degree of the polynomials in the history."""
 
 SIGNATURES = {
     "prepare": ("p[]", "x_ref", "c[]"),
@@ -42,7 +42,7 @@ SIGNATURES = {
     "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jets": ("c[]", "k[]", "L[]", "s[]"),
 }
-"""Arguments of the functions: arrays where marked, else numbers."""
+"""Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
 MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
 
@@ -120,6 +120,7 @@ def power_value(reference, difference, base, exponent):
 '''
 
 SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
+"""Functions that work on lanes."""
 
 LANES_HEADER = """
 from stickslip.engine.codegen.simd import POINTER as _array
@@ -138,7 +139,7 @@ power_value = lane_by_lane(power_value)
 
 
 def describe(node: Expression) -> str:
-    """The formula in ordinary notation."""
+    """Return a formula in ordinary notation."""
     signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
     if node.operation in signs:
         left, right = (describe(argument) for argument in node.arguments)
@@ -149,7 +150,7 @@ def describe(node: Expression) -> str:
 
 
 class FormulaWriter(Recurrences):
-    """Turns one formula into source text; see the module's docstring for what is written."""
+    """Writes the functions of one formula as source text; the module's docstring lists them."""
 
     def __init__(
         self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER, state_rate: Expression | None = None
@@ -158,11 +159,11 @@ class FormulaWriter(Recurrences):
         self.limit = order
 
     def prepare(self) -> list[str]:
-        """prepare(p, x_ref, c)"""
+        """Write the body of `prepare(p, x_ref, c)`."""
         return [f"c[{self.index[node]}] = {self.reference_value(node)}" for node in self.nodes]
 
     def value(self) -> list[str]:
-        """value(c, dx, s, out)"""
+        """Write the body of `value(c, dx, s, out)`; out receives mu minus its reference, then d mu/ds and d mu/dx."""
         body = ["s_0 = s", *self.order_zero(), *self.slopes(RATE, "d"), *self.slopes(SLIP, "f")]
         body += [
             f"out[0] = {self.difference(self.formula) or '0.0'}",
@@ -172,7 +173,11 @@ class FormulaWriter(Recurrences):
         return body
 
     def state_value(self) -> list[str]:
-        """state_value(c, dx, s, w, out)"""
+        """Write the body of `state_value(c, dx, s, w, out)`.
+
+        The first four numbers of out are mu minus its reference and the derivatives of mu with respect to s, x and w; the other
+        four are dw/dt and its derivatives.
+        """
         assert self.state_rate is not None
         variables = ((RATE, "d"), (SLIP, "f"), (STATE, "y"))
         body = ["s_0 = s", *self.order_zero()]
@@ -185,14 +190,19 @@ class FormulaWriter(Recurrences):
         return body
 
     def guard_values(self) -> list[str]:
-        """guards(c, dx, s, w, out)"""
+        """Write the body of `guards(c, dx, s, w, out)`; out receives the argument and the pull of each guard in turn."""
         body = ["s_0 = s", *self.order_zero(), *self.pulls()]
         for j, guard in enumerate(self.guards):
             body += [f"out[{2 * j}] = {self.coefficient(guard.argument, 0)}", f"out[{2 * j + 1}] = g_{j}"]
         return body
 
     def rate_jet(self) -> list[str]:
-        """Massless contact. k is laid out by `stickslip.engine.state.layout`; L holds the load's series; s receives the rate's."""
+        """Write the body of `rate_jet(c, k, L, s)`, for a massless contact.
+
+        k holds the numbers of `engine.state.layout.Series`, L the series of the load; s receives the series of the rate. A and B
+        of the text include the factor chi, so that the integral of s is that of the law's slip. If friction depends on the rate,
+        k[9] must already solve the contact equation.
+        """
         body = ["Z = k[0]", "S = k[1]", "A = k[2] * k[3]", "B = k[2] * k[4]", "dx = k[5]", "offset = k[6]"]
         implicit = self.rate_dependent[self.formula]
         if implicit:
@@ -216,11 +226,14 @@ class FormulaWriter(Recurrences):
         return body
 
     def bound(self, k: int) -> list[str]:
-        """The k-th coefficient of the bound of a formula with guards, behind the series."""
+        """Write the k-th coefficient of the guards' bound, which is stored after the series, if the formula has guards."""
         return [f"s[{self.limit + 1 + k}] = {self.reach(k)}"] if self.guards else []
 
     def motion_jet(self) -> list[str]:
-        """Contact with mass: M ds/dt = L - K q - Z s - S mu. Arguments as for `rate_jet`."""
+        """Write the body of `motion_jet(c, k, L, s)`, for a contact with mass: M ds/dt = L - K q - Z s - S mu.
+
+        The arguments are those of `rate_jet`.
+        """
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
         body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
@@ -229,7 +242,7 @@ class FormulaWriter(Recurrences):
             body += [f"q_{k} = {_integral('s', k)}", f"s_{k} = {_integral('a', k)}"]
             body.append(f"s[{k}] = s_{k}")
             if k == self.limit:
-                body += [f"s[{2 * k + 1}] = s[{2 * k}]"] if self.guards else []  # the formula's own coefficients end at k - 1
+                body += [f"s[{2 * k + 1}] = s[{2 * k}]"] if self.guards else []  # the coefficients of the formula end at k - 1
                 break
             body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k), *self.bound(k)]
             friction = self.coefficient(self.formula, k)
@@ -238,7 +251,10 @@ class FormulaWriter(Recurrences):
         return body
 
     def statements(self, part: str) -> list[str]:
-        """The body of one of SIGNATURES: assignments that are nearly C, too (the benchmarks make C of them)."""
+        """Return the body of one of the functions in SIGNATURES, as assignments.
+
+        They are nearly valid C, too, and benchmarks/c_peer.py turns them into C.
+        """
         write: dict[str, Callable[[], list[str]]] = {
             "prepare": self.prepare,
             "value": self.value,
@@ -252,7 +268,7 @@ class FormulaWriter(Recurrences):
         return write[part]()
 
     def module(self, part: str) -> str:
-        """Source of a module with one of the functions."""
+        """Return the source text of a module that has one of the functions."""
         arguments = SIGNATURES[part]
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
         head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
@@ -263,6 +279,9 @@ class FormulaWriter(Recurrences):
 
 
 def _integral(name: str, k: int) -> str:
-    """k-th coefficient of the integral of a series over dt = (A + B eta) d eta; A / k and B / k do not wait for the series."""
+    """Write the k-th coefficient of the integral of a series over dt = (A + B eta) d eta.
+
+    The factors A / k and B / k come first, because they do not depend on the series and can be computed ahead.
+    """
     old = f" + {1.0 / k!r} * B * {name}_{k - 2}" if k > 1 else ""
     return f"{1.0 / k!r} * A * {name}_{k - 1}{old}"

@@ -1,10 +1,10 @@
-"""Run the engine as plain Python, with every access to memory checked: for a debugger, and for tests.
+"""Run the engine as plain Python with every memory access checked, for debugging and for tests.
 
-The environment variable STICKSLIP_UNCOMPILED=1, set before the package is imported, switches it on. Every kernel is then the
-Python function that it is written as, every pointer an object that knows the array it points into, and every formula of a law the
-generated Python text. Numbers are numpy's, so that a division by zero gives infinity as in compiled code. Results agree with those
-of compiled code to the tolerance and not to the last bit, since a processor may fuse a product and a sum. Batches are run member
-by member: lanes are registers of a processor and have no counterpart in Python.
+The environment variable STICKSLIP_UNCOMPILED=1, set before the package is imported, switches this on. Every kernel is then the
+Python function from which it is normally compiled, every pointer is an object that knows the array it points into, and every
+formula of a law is its generated Python text. Numbers are numpy's, so that a division by zero gives infinity as in compiled code.
+Results agree with those of compiled code to the tolerance but not to the last bit, because a processor may fuse a product and a
+sum. Batches run member by member, because lanes are registers of a processor and have no counterpart in Python.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 UNCOMPILED = os.environ.get("STICKSLIP_UNCOMPILED", "") not in ("", "0")
-"""True if kernels are run as plain Python."""
+"""True if kernels run as plain Python."""
 
 BYTES = 8
-"""Size of a number in memory."""
+"""Size of a number in memory, in bytes."""
 
 Array = NDArray[Any]
 
 
 class Pointer:
-    """A place in an array of numbers. Reading or writing outside the array raises IndexError."""
+    """A pointer to a number in an array. Reading or writing outside the array raises IndexError."""
 
     __slots__ = ("first", "memory")
 
@@ -38,7 +38,7 @@ class Pointer:
 
     @property
     def address(self) -> int:
-        """Address of the place, in bytes."""
+        """Return the address of the number, in bytes."""
         return self.memory.ctypes.data + BYTES * self.first
 
     def __getitem__(self, n: int) -> Any:
@@ -48,28 +48,32 @@ class Pointer:
         self.memory[self._place(n)] = value
 
     def _place(self, n: int) -> int:
+        """Return the index in the array of the number n places after this one."""
         place = self.first + int(n)
         if not 0 <= place < len(self.memory):
             raise IndexError(f"place {place} of an array of {len(self.memory)} numbers")
         return place
 
     def ahead(self, n: int) -> Self:
-        """Return the pointer to the number n places further on."""
+        """Return the pointer to the number n places after this one."""
         return type(self)(self.memory, self.first + int(n))
 
 
 _lent: list[weakref.ref[Array]] = []
-"""Arrays whose addresses have been handed to the engine, as long as they live."""
+"""Weak references to the arrays whose addresses have been handed to the engine."""
 
 
 def lend_memory(*arrays: Array) -> None:
-    """Make the addresses of arrays known, so that pointers to them can be checked."""
+    """Register arrays whose addresses the engine receives, so that pointers into them can be checked."""
     alive = [known for known in _lent if known() is not None]
     _lent[:] = alive + [weakref.ref(array) for array in arrays if not any(known() is array for known in alive)]
 
 
 def pointer_at(address: int, kind: type) -> Pointer:
-    """Return the pointer to an address inside an array that has been lent."""
+    """Return the pointer to an address (bytes) inside a registered array, whose numbers have the type `kind`.
+
+    Raises IndexError if the address lies in none of them.
+    """
     for known in reversed(_lent):
         array = known()
         if array is not None and 0 <= int(address) - array.ctypes.data < max(array.nbytes, 1):
@@ -78,16 +82,17 @@ def pointer_at(address: int, kind: type) -> Pointer:
 
 
 _formulas: list[Callable[..., None]] = []
+"""Functions of formulas; the handle of a function is its index here plus 1."""
 
 
 def handle_of(function: Callable[..., None]) -> int:
-    """Return the number that stands for a formula's function where compiled code has an address."""
+    """Register a formula's function and return its handle, which takes the place of the address in compiled code."""
     _formulas.append(function)
     return len(_formulas)
 
 
 def call(handle: int, *arguments: Any) -> None:
-    """Call a formula's function."""
+    """Call the formula's function with the given handle."""
     _formulas[int(handle) - 1](*arguments)
 
 
@@ -99,11 +104,11 @@ MATHS = SimpleNamespace(
     nan=np.float64(np.nan),
     pi=np.float64(np.pi),
 )
-"""The functions of `math` with numpy's answers where Python raises an error: the logarithm of zero is minus infinity."""
+"""Replacement of `math` that returns what numpy does where `math` raises an error: the logarithm of zero is minus infinity."""
 
 
 def as_python(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a kernel as the function that it is, computing as numpy does."""
+    """Return a kernel as a plain function, after `math` in its module has been replaced by MATHS."""
     names = vars(sys.modules[function.__module__])
     if "math" in names:
         names["math"] = MATHS
