@@ -46,8 +46,14 @@ class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
         return 0
 
     def own_module(self) -> Any:
-        """Return the code of this function alone; it may be linked into several modules."""
-        return super()._get_module_for_linking()
+        """Return the code of this function alone; it may be linked into several modules.
+
+        Its linkage is weak: a linker may drop a function of linkage "linkonce" that nobody has asked for yet, and a part that is
+        linked later may ask for it.
+        """
+        module = super()._get_module_for_linking().clone()
+        set_linkage(module, llvm.Linkage.linkonce_odr, llvm.Linkage.weak_odr)
+        return module
 
     def _get_module_for_linking(self) -> Any:
         """Return the code of this function with all functions that it calls, for modules of numba's own kind."""
@@ -57,6 +63,7 @@ class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
             module.link_in(part.own_module(), preserve=True)
         for library in others_of([self, *below]):
             module.link_in(library._get_module_for_linking(), preserve=True)
+        set_linkage(module, llvm.Linkage.weak_odr, llvm.Linkage.linkonce_odr)
         return module
 
 
@@ -87,10 +94,16 @@ class Whole(JITCodeLibrary):  # type: ignore[misc]
 
     def _optimize_final_module(self) -> None:
         """Hide the parts from other modules, so that a function that is inlined everywhere is dropped; then optimise."""
-        for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage == llvm.Linkage.linkonce_odr:
-                function.linkage = llvm.Linkage.internal
+        for before in (llvm.Linkage.linkonce_odr, llvm.Linkage.weak_odr):
+            set_linkage(self._final_module, before, llvm.Linkage.internal)
         super()._optimize_final_module()
+
+
+def set_linkage(module: Any, before: Any, after: Any) -> None:
+    """Change the linkage of the functions that a module defines."""
+    for function in module.functions:
+        if not function.is_declaration and function.linkage == before:
+            function.linkage = after
 
 
 def parts_below(libraries: list[Any]) -> Iterator[Part]:
