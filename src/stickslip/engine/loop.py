@@ -33,7 +33,7 @@ The loop knows its state by these fields:
     near a fold   counts.at_fold is APPROACHING, DEPARTING or PASSING (`contact_step.fold`)
 
 Where folds move with slip, counts.leaving = 1 says that a branch has ended: the loop returns NEED_BRANCHES, unless the table of
-branches already holds at this slip, and then goes on to another branch or to rest.
+branches already holds at this slip, and then takes another branch or rest.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ from stickslip.engine.waves.echo_queue import FOREVER, NOTHING, end_trip, next_e
 from stickslip.engine.waves.varying_forcing import has_faded, rows_withstood, take_part
 
 ROOM = 8
-"""Free rows of the history (1) without which the loop does not go round again: more than one pass of it can append."""
+"""Least number of free rows in the history (1) for another pass of the loop, which appends fewer."""
 LARGEST_STALL = 200
 """Number of steps in a row that take no time (1), beyond which a run ends: they would continue without end."""
 LARGEST_STORM = 10_000
@@ -206,7 +206,7 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
     """Close a round trip, and leap over the following ones in which nothing can happen.
 
     `limit` is the load (Pa or N, minus the reference strength) at which rest ends, `last_row` the round trip in which the run
-    ends. Return False, with nothing changed, if the end of the run would cut the leap and `to_the_end` is not set.
+    ends. Return False, and leave the round trip open, if the end of the run would cut the leap and `to_the_end` is not set.
     """
     if run.counts.sparse == 1:
         end_trip(run)

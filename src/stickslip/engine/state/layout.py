@@ -338,7 +338,7 @@ def trimmed(store: Store, length: int, first: int = 0) -> Store:
 def keep_only(store: Store, length: int, kept: Integers) -> Integers:
     """Keep only the given ones, in order of time, of the first `length` pieces of a history.
 
-    Return the new index of each old piece, or -1 if it was dropped; the last entry is -1 and stands for no piece.
+    Return the new index of each old piece, or -1 if it was dropped; the last entry, for no piece, is -1, too.
     """
     place = np.full(length + 1, -1)  # an `echo_of` of -1 reads the last entry, and so stays -1
     place[kept] = np.arange(len(kept))
