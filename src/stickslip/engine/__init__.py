@@ -1,1 +1,1 @@
-"""The compiled engine: it knows numbers and addresses, and never a `Problem`."""
+"""The compiled engine, which works on numbers and addresses and never sees a `Problem`."""

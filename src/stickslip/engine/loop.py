@@ -1,7 +1,39 @@
-"""The engine: brings the load round trip after round trip, lets the contact answer, and leaps over rest.
+"""The loop of the engine: it delivers the load piece by piece, moves the contact, and leaps over rest.
 
-One loop serves both bodies. A slab's load is what left the contact one round trip ago, reflected by the driver, plus what the
-driver sends; a block's is its spring. Pieces of load arrive one by one and are split wherever the contact needs it.
+One loop serves both bodies. The load of a slab is the wave that left the contact one round trip ago, reflected by the driver,
+plus what the driver sends; the load of a block is the force of its spring. A piece of load is a polynomial in xi on [0, 1]. The
+contact sticks or slips along it in steps, each of which is appended to the history, and the history of one round trip of a slab
+is the load of the next.
+
+States of the loop, with the function or the event that leads from one to the next:
+
+    from          to            by
+    ----          --            --
+    start         no load       start of the run
+    no load       delivered     next_piece
+    no load       no load       end_row, which closes the round trip and may leap over rest
+    no load       creep leap    return of PAUSED to the caller
+    creep leap    no load       next call: the leap has landed, or there was nothing to leap over
+    no load       end           last round trip done, or contact locked
+    delivered     stick, slip   arrive
+    stick         slip          onset of slip
+    stick, slip   no load       end of the piece of load
+    stick, slip   end           end of the run on this piece, or a breach: the contact equation cannot be obeyed
+    slip          stick         arrest
+    slip          near a fold   approach_fold or depart_from_fold
+    near a fold   near a fold   step in the root of time
+    near a fold   slip, stick   leave_fold_piece, to a branch or to rest
+
+The loop knows its state by these fields:
+
+    no load       counts.ready is Incoming.NONE
+    delivered     counts.ready is Incoming.BROUGHT
+    stick         counts.ready is Incoming.MET and counts.mode is 0
+    slip          counts.ready is Incoming.MET and counts.mode is +1 or -1
+    near a fold   counts.at_fold is APPROACHING, DEPARTING or PASSING (`contact_step.fold`)
+
+Where folds move with slip, counts.leaving = 1 says that a branch has ended: the loop returns NEED_BRANCHES, unless the table of
+branches already holds at this slip, and then takes another branch or rest.
 """
 
 from __future__ import annotations
@@ -23,20 +55,22 @@ from stickslip.engine.waves.echo_queue import FOREVER, NOTHING, end_trip, next_e
 from stickslip.engine.waves.varying_forcing import has_faded, rows_withstood, take_part
 
 ROOM = 8
+"""Least number of free rows in the history (1) for another pass of the loop, which appends fewer."""
 LARGEST_STALL = 200
+"""Number of steps in a row that take no time (1), beyond which a run ends: they would continue without end."""
 LARGEST_STORM = 10_000
-"""So many more slips that are too short to be resolved than others end a run: they would go on without end."""
+"""Excess (1) of slips too short to be resolved over all other slips, beyond which a run ends: they would continue without end."""
 
 
 @kernel
 def rows_leaped(run: Run, n: int) -> int:
-    """Whole rows at rest between the one of a piece of the history and the present one."""
+    """Return the number of round trips that were leaped over between that of piece n of the history and the present one."""
     return run.counts.row - run.whole[WHOLE * n + at.S_ROW] - 1
 
 
 @kernel
 def first_piece(run: Run) -> bool:
-    """The next piece of load of a first round trip, or of any period of a block; False when there is none left."""
+    """Bring the next piece of load of the first round trip, or of any period of a block; return False if none is left."""
     source = run.counts.source
     if source >= run.loads - 1:
         return False
@@ -48,7 +82,7 @@ def first_piece(run: Run) -> bool:
     if run.counts.is_block == 1 and run.counts.row > 0:
         run.load[0] = run.state.load_now + rows_leaped(run, run.counts.length - 1) * run.par.ramp
     run.counts.echo_of = -1
-    # in the first round trip of a slab the start itself comes back from the driver, from half of it on
+    # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
     run.state.amplified = (
         math.nan if run.counts.is_block == 1 else 1.0 if run.state.theta_from < 0.5 * run.par.row_time else abs(run.par.reflection)
     )
@@ -62,7 +96,7 @@ def first_piece(run: Run) -> bool:
 
 @kernel
 def echo_piece(run: Run) -> bool:
-    """The next piece of load that returns from the driver; False when the round trip is complete."""
+    """Bring the next piece of load that returns from the driver of a slab; return False if the round trip is complete."""
     if run.counts.sparse == 1:
         source = next_echo(run)
         if source == NOTHING:
@@ -87,6 +121,7 @@ def echo_piece(run: Run) -> bool:
     run.load[0] += par.inflow + par.inflow_rate * time - par.reflection * rows_leaped(run, source) * par.ramp
     run.load[1] += par.inflow_rate * run.state.speed
     run.load[2] += par.inflow_rate * run.state.bend
+    # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
     jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts.lumped == 1
     run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
     if run.counts.lumped == 1:
@@ -103,7 +138,7 @@ def width_of(run: Run) -> float:
 
 @kernel
 def lump(run: Run) -> None:
-    """A piece too short to be resolved: its load is its mean, so that it slips as a whole or not at all."""
+    """Replace the load of a piece that is too short to be resolved by its mean in time: it then slips as a whole or not at all."""
     mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.theta_to - run.state.theta_from)
     fill(run.load, 0.0)
     run.load[0] = mean
@@ -111,7 +146,7 @@ def lump(run: Run) -> None:
 
 @kernel
 def next_piece(run: Run) -> bool:
-    """Bring the next piece of load; False at the end of the round trip."""
+    """Bring the next piece of load and set `ready` to BROUGHT; return False at the end of the round trip."""
     first = run.counts.is_block == 1 or run.counts.row == 0
     if not (first_piece(run) if first else echo_piece(run)):
         return False
@@ -128,7 +163,10 @@ def next_piece(run: Run) -> bool:
 
 @kernel
 def rows_at_rest(run: Run, limit: float) -> int:
-    """Whole round trips that a contact at rest stays there for certain, judged from the one just past."""
+    """Return the number of whole round trips for which a contact at rest is certain to stay there, judged from the one just past.
+
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it never ends.
+    """
     par = run.par
     ramp = par.ramp
     if run.counts.varies == 1:
@@ -149,7 +187,7 @@ def rows_at_rest(run: Run, limit: float) -> int:
 
 @kernel
 def is_ramp(run: Run) -> bool:
-    """Whether the load of the next round trips is that of the last one plus a ramp."""
+    """Return True if each of the next round trips at rest has the load of the one before it plus the ramp."""
     if run.counts.is_block == 1:
         return True
     if run.par.reflection == -1.0:
@@ -159,15 +197,16 @@ def is_ramp(run: Run) -> bool:
 
 @kernel
 def swings_for_ever(run: Run) -> bool:
-    """Whether a contact at rest has seen all that will come: under a dead load every second round trip is the same."""
+    """Return True if a contact at rest has seen every load to come: under a dead load every second round trip is the same."""
     return run.counts.varies == 0 and run.par.reflection == 1.0 and run.par.ramp == 0.0 and run.counts.stuck_rows >= 2
 
 
 @kernel
 def end_row(run: Run, limit: float, last_row: int) -> bool:
-    """Close a round trip; leap over the following ones while nothing can happen in them.
+    """Close a round trip, and leap over the following ones in which nothing can happen.
 
-    False, and nothing done, where the end of the run would cut the leap and TO_THE_END is not set.
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends, `last_row` the round trip in which the run
+    ends. Return False, and leave the round trip open, if the end of the run would cut the leap and `to_the_end` is not set.
     """
     if run.counts.sparse == 1:
         end_trip(run)
@@ -206,19 +245,22 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
 
 @kernel
 def ended(run: Run) -> int:
-    """What to say at the end of the run."""
+    """Return the code of a run that has come to its end: LOCKED if no load can move the contact again, else FINISHED."""
     return Stop.LOCKED if run.counts.is_locked == 1 else Stop.FINISHED
 
 
 @kernel
 def is_finite(run: Run) -> bool:
-    """Return True if the contact's slip, slip rate and state are numbers."""
+    """Return True if the contact's slip, slip rate and state are finite."""
     return math.isfinite(run.state.rate_now + run.state.slip_now + run.state.state_now)
 
 
 @kernel
 def take_back(run: Run, length: int, xi: float) -> None:
-    """Drop the pieces that a step has added to a history of `length` pieces: they are not finite. The run ends before them."""
+    """Take a step back that started at `xi`, with `length` pieces in the history, because it cannot be kept.
+
+    Slip and law slip become those at its start. The run ends there.
+    """
     if run.counts.length > length:
         real = ahead(run.real, REAL * length)
         run.state.slip_now, run.state.law_slip = real[at.S_SLIP], real[at.S_LAW_SLIP]
@@ -228,14 +270,18 @@ def take_back(run: Run, length: int, xi: float) -> None:
 
 @kernel
 def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> int:
-    """The loop: bring a piece of load, let the contact stick or slip on it, close the round trip.
+    """Advance a run to the phase `last_theta` (s) of round trip `last_row`, and return a code of `Stop`, or -1.
 
-    Runs to the offset last_theta of round trip last_row, for `budget` steps, or until the store is full; says which it was.
-    NEED_BRANCHES: the caller must put the branches at the present law slip into the setup before it goes on. END_AHEAD: what
-    comes next depends on where the run ends; the caller sets TO_THE_END and goes on. Up to there a longer run is the same.
-    PAUSED: row PAUSE_AT, or one behind it, comes next. SLIPS: a run that WAITS is to take an explicit step of slip.
+    The code says why the call ended; -1 means that `budget` passes of the loop have been made. The codes that end a call but
+    not the run ask something of the caller before the next call:
 
-    `table` comes from `workspace.lend`. Its scratch array is kept between calls.
+    - FULL: lend a larger history.
+    - NEED_BRANCHES: put the branches at the present law slip into the setup.
+    - END_AHEAD: set `to_the_end`. What comes next depends on where the run ends; up to here a longer run is the same.
+    - PAUSED: look at the run. Round trip `pause_at`, or a later one, comes next.
+    - SLIPS: take the explicit step of slip that a run with `waits` set leaves to the caller, up to `target`.
+
+    `table` is the memory that `workspace.lend` has filled. Its scratch space must be kept between calls.
     """
     run = borrow(table)
     run.k.impedance, run.k.normal = run.par.impedance, run.par.normal
@@ -268,7 +314,7 @@ def advance(table: Integers, last_row: int, last_theta: float, budget: int) -> i
             arrive(run)
             run.counts.ready = Incoming.MET
             if run.counts.folds_move == 1:
-                continue  # a step that the caller may take back stands alone
+                continue  # the caller may take back the step to come: make it in a pass of its own
         is_last = run.counts.row == last_row and run.counts.at_fold == 0 and run.state.theta_to >= last_theta
         is_cut = is_last and run.state.theta_to > last_theta
         if is_cut and run.counts.to_the_end == 0:

@@ -1,1 +1,1 @@
-"""Branches and levels that move with slip, in compiled code."""
+"""Branches of the contact equation, and levels of selection rules, that move with slip."""

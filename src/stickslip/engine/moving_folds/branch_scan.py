@@ -1,7 +1,7 @@
-"""Branches of the contact equation at any law slip, in compiled code: one scan of g' over slip rates, each fold polished.
+"""Branches of the contact equation at any law slip, in compiled code: one scan of g' over slip rates, with each fold refined.
 
-The scan looks as far as the fastest slip rate that a load allows. It is for rules that must be looked at in every step; where a
-choice is due, the branches come from `contact.branches`.
+g(s) = Z s + S mu is the resistance at slip rate s. The scan ends at the fastest slip rate that a load allows. It serves rules that
+must be checked in every step; where a choice between branches is due, they come from `contact.branches`.
 """
 
 from __future__ import annotations
@@ -17,34 +17,35 @@ from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import Run, borrow
 
 FLAT = 1e-11
-"""Slope of g, relative to Z, up to which a branch does not rise."""
+"""Slope of g, relative to Z (1), up to which g counts as flat and not as rising."""
 BETWEEN = 16
-"""Parts into which two steps of the scan are divided where g' may touch zero between them."""
+"""Number of parts (1) into which a step of the scan is divided if g' may touch zero near it."""
 FIRST_PANEL = 1e5
-"""The first panel of an area ends at this many times the slowest rate of the scan: a thousandth of the law's slowest scale."""
+"""End of the first panel of an area, in units of the slowest rate scanned: a thousandth of the law's slowest scale."""
 RATE_FROM, RATE_TO, LEVEL_FROM, LEVEL_TO, STEEPNESS = range(5)
-"""Rows of the table that a scan fills: ends of the branches, g there (Pa, minus the reference), and g' along the scan."""
+"""Rows of the table that a scan fills: ends of branches (m/s), g there (Pa, minus the reference), and g' along the scan."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+"""Gauss's rule on [-1, 1] for the panels of an area."""
 
 
 class Contact(NamedTuple):
-    """A contact at one law slip: the run, its piece of a law with knots in slip, the slip, rates to scan, room for branches."""
+    """Hold a contact at one law slip, with the slip rates to scan and the table for its branches."""
 
     run: Run
-    piece: int
-    law_slip: float  # m, minus the initial one
-    scan: Floats
-    table: Floats
+    piece: int  # piece of the law that holds there, if its knots are in slip
+    law_slip: float  # m, minus its initial value
+    scan: Floats  # m/s, ascending
+    table: Floats  # (5, rates of the scan), rows RATE_FROM to STEEPNESS
 
 
 def new_branches(scan: Floats) -> Floats:
-    """An empty table with room for as many branches as there are rates in a scan."""
+    """Return an empty table of branches, with a column for each slip rate of a scan."""
     return np.zeros((5, len(scan)))
 
 
 @kernel
 def friction_there(contact: Contact, rate: float) -> None:
-    """Leave S (mu - mu_reference) at a slip rate, its derivatives and mu - mu_reference in run.value, as `friction_of` does."""
+    """Write S (mu - mu_reference) at a slip rate, its derivatives and mu - mu_reference into run.value, as `friction_of` does."""
     run = contact.run
     piece = piece_at(run, rate) if run.counts.knots_in_rate == 1 else contact.piece
     friction_of(run, piece, contact.law_slip, rate, run.value)
@@ -52,7 +53,7 @@ def friction_there(contact: Contact, rate: float) -> None:
 
 @kernel
 def level_at(contact: Contact, rate: float) -> float:
-    """g (Pa, minus the reference) at a slip rate >= 0, 0 for 0+; its slope is left in run.value[1]."""
+    """Return g (Pa, minus the reference strength) at a slip rate >= 0, where 0 means 0+, and leave g' in run.value[1]."""
     friction_there(contact, rate)
     contact.run.value[1] += contact.run.par.impedance
     return contact.run.par.impedance * rate + contact.run.value[0]
@@ -60,21 +61,21 @@ def level_at(contact: Contact, rate: float) -> float:
 
 @kernel
 def strength_at(contact: Contact) -> float:
-    """Static strength (Pa), minus the reference."""
+    """Return the static strength (Pa), minus the reference strength."""
     friction_there(contact, 0.0)
     return contact.run.par.normal * (contact.run.value[3] + contact.run.par.static_excess)
 
 
 @kernel
 def steepness(contact: Contact, rate: float) -> float:
-    """g', less what counts as flat: positive on a branch."""
+    """Return g' (Pa s/m) at a slip rate, minus the slope that counts as flat: positive on a branch."""
     level_at(contact, rate)
     return contact.run.value[1] - FLAT * contact.run.par.impedance
 
 
 @kernel
 def fold_between(contact: Contact, low: float, high: float) -> float:
-    """The slip rate at which g' changes sign, on the side of it where g rises: false position, kept from standing still."""
+    """Return the slip rate (m/s) at which g' changes sign, on the side where g rises, by safeguarded false position."""
     first, last = steepness(contact, low), steepness(contact, high)
     rises, side = first > 0.0, 0
     for k in range(200):
@@ -97,7 +98,7 @@ def fold_between(contact: Contact, low: float, high: float) -> float:
 
 @kernel
 def may_touch(before: float, here: float, after: float) -> bool:
-    """Whether a parabola through three values of one sign reaches zero between them."""
+    """Return True if zero may be near: the middle one of three values of one sign is small against their second difference."""
     if before * here <= 0.0 or here * after <= 0.0:
         return False
     bend = before - 2.0 * here + after
@@ -106,7 +107,7 @@ def may_touch(before: float, here: float, after: float) -> bool:
 
 @kernel
 def note_fold(contact: Contact, rate: float, count: int) -> int:
-    """Write where a branch begins (count even) or ends (odd) into the table. Returns the count of ends so far."""
+    """Write the begin (count even) or the end (count odd) of a branch into the table, and return the count of ends so far."""
     branch = count // 2
     if branch < contact.table.shape[1]:
         level = level_at(contact, rate)
@@ -119,7 +120,7 @@ def note_fold(contact: Contact, rate: float, count: int) -> int:
 
 @kernel
 def fold_in(contact: Contact, low: float, high: float, count: int) -> int:
-    """Note the folds where g' changes sign between slip rates that are looked at one after the other."""
+    """Write the folds between two slip rates into the table, from signs of g' at BETWEEN steps; return the count of ends so far."""
     step, before = (high - low) / BETWEEN, low
     for k in range(1, BETWEEN + 1):
         rate = high if k == BETWEEN else low + k * step
@@ -131,14 +132,14 @@ def fold_in(contact: Contact, low: float, high: float, count: int) -> int:
 
 @kernel
 def find_branches(contact: Contact, top: float) -> int:
-    """Fill the table with the branches that begin below a slip rate. Returns how many there are."""
+    """Fill the table with the branches that begin below the slip rate `top` (m/s), and return their number."""
     slope, length = contact.table[STEEPNESS], 0
     while length < len(contact.scan) and (length < 2 or contact.scan[length - 1] <= top):
         slope[length] = steepness(contact, contact.scan[length])
         length += 1
     starts_flat = slope[0] >= -2.0 * FLAT * contact.run.par.impedance and slope[1] > 0.0
     count = note_fold(contact, 0.0, 0) if slope[0] > 0.0 or starts_flat else 0
-    refined = 0  # up to this rate of the scan g' has been looked at between rates, too
+    refined = 0  # index of the scan up to which g' has been evaluated between rates, too
     for k in range(1, length):
         if (slope[k] > 0.0) != (count % 2 == 1):
             count = note_fold(contact, fold_between(contact, contact.scan[k - 1], contact.scan[k]), count)
@@ -154,13 +155,13 @@ def find_branches(contact: Contact, top: float) -> int:
 
 @kernel
 def branches_at(places: Integers, law_slip: float, piece: int, scan: Floats, table: Floats) -> int:
-    """Fill the table with all branches at a law slip (m, minus the initial one). `places` comes from `workspace.lend`."""
+    """Fill the table with all branches at a law slip (m, minus its initial value) and return their number; lend `places` before."""
     return find_branches(Contact(borrow(places), piece, law_slip, scan, table), math.inf)
 
 
 @kernel
 def branch_near(contact: Contact, rate: float, branches: int) -> int:
-    """The branch to which a slip rate belongs: the nearest one, for at a fold it may lie outside by rounding."""
+    """Return the branch nearest to a slip rate: at a fold, rounding may put the rate outside of the branch to which it belongs."""
     nearest, least = 0, math.inf
     for k in range(branches):
         away = max(contact.table[RATE_FROM, k] - rate, rate - contact.table[RATE_TO, k], 0.0)
@@ -171,7 +172,7 @@ def branch_near(contact: Contact, rate: float, branches: int) -> int:
 
 @kernel
 def rate_at(contact: Contact, load: float, low: float, high: float) -> float:
-    """The slip rate between two others, between which g rises, at which it meets a load: Newton's method, kept inside."""
+    """Return the slip rate (m/s) at which g meets a load, between two rates between which g rises, by safeguarded Newton steps."""
     s = 0.5 * (low + high)
     for _ in range(100):
         error = level_at(contact, s) - load
@@ -192,7 +193,7 @@ def rate_at(contact: Contact, load: float, low: float, high: float) -> float:
 
 @kernel
 def area(contact: Contact, load: float, low: float, high: float) -> float:
-    """Integral of g - load over slip rates, in Pa m/s: Gauss's rule between knots, on panels that double in width."""
+    """Return the integral of g - load over slip rates (Pa m/s), by Gauss's rule between knots, on panels that double in width."""
     run, whole, start, first = contact.run, 0.0, low, FIRST_PANEL * contact.scan[1]
     while start < high:
         end = min(max(first, 2.0 * start), high)

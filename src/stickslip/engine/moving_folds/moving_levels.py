@@ -1,7 +1,8 @@
 """Levels of the built-in selection rules where folds move with slip, in compiled code: along a step, and for a choice.
 
-At a place in a step the branches are found by a scan (`branch_scan`); between their levels and the load lies the room that the
-rule leaves to the present branch. Where that room runs out, the step crosses a level.
+A level is a load at which a rule leaves a branch or rest. At a place in a step the branches are found by a scan (`branch_scan`);
+the distance of the load from the levels of its branch is the *room* that the rule leaves to it. The step crosses a level where
+the room falls below zero.
 """
 
 from __future__ import annotations
@@ -30,50 +31,51 @@ from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
 
 MINIMAL, MAXIMAL, MAXWELL = range(3)
 COMPILED_RULES = {"minimal": MINIMAL, "maximal": MAXIMAL, "maxwell": MAXWELL}
-"""Rules whose levels are worked out here; any other but perfect delay is followed by its table (`branch_table.Step`)."""
+"""Rules whose levels are calculated here. Perfect delay needs none; others are followed by their tables (`branch_table.Step`)."""
 
 ROUNDING = 1e-11
-"""Loads nearer to a level, relative to the strength, have not crossed it."""
+"""Distance of a load from a level, relative to the reference strength (1), up to which it has not crossed the level."""
 EXACT, SHORTEST = 1e-14, 1e-15
-"""A crossing is found when the load is so near to the level, relative to the strength, or its place in the step so well known."""
+"""Tolerances of a crossing (1): distance of the load from the level, relative to the reference strength, and width of the bracket
+in the step. Equal areas use the first, relative to the normal stress."""
 FIRST_PLACE, LAST_PLACE = 0.5, 1.0
-"""Where in a step the rule is looked at."""
+"""Places in a step, on [0, 1], at which the rule is checked."""
 NEXT = 1e-4
-"""Share of a step: outside the level there too, a load that starts at the level leaves it at once."""
+"""Share of a step (1) after which a load that starts at a level is checked again: if it is outside there, it leaves at once."""
 
 
 class View(NamedTuple):
-    """A step of slip in the history of a run, as a rule looks at it; rates to scan, and room for branches."""
+    """Hold a step of slip to which a rule is applied, with the slip rates to scan and the table for branches."""
 
     run: Run
-    step: int
-    rule: int
-    scan: Floats
-    table: Floats
+    step: int  # its piece of the history
+    rule: int  # MINIMAL, MAXIMAL or MAXWELL
+    scan: Floats  # m/s, ascending
+    table: Floats  # from `branch_scan.new_branches`
 
 
 @kernel
 def fastest(run: Run, load: float) -> float:
-    """A slip rate that no solution at this load exceeds."""
+    """Return a slip rate (m/s) that no solution of the contact equation at this load exceeds."""
     return (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12)
 
 
 @kernel
 def rate_on(contact: Contact, load: float, branch: int) -> float:
-    """The slip rate on a branch of the table at a load between the levels of its ends."""
+    """Return the slip rate (m/s) on a branch of the table, at a load between the levels of its ends."""
     low, high = contact.table[RATE_FROM, branch], contact.table[RATE_TO, branch]
     return rate_at(contact, load, low, max(low, min(high, fastest(contact.run, load))))
 
 
 @kernel
 def better_by(contact: Contact, load: float, slow: float, fast: float) -> float:
-    """How far (Pa) the load is above the level at which two rates that meet it have equal areas; exact at the level."""
+    """Return the height (Pa) of the load above the level of equal areas of two slip rates that solve for it; exact at the level."""
     return -area(contact, load, slow, fast) / (fast - slow)
 
 
 @kernel
 def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> float:
-    """How far (Pa) the load is from the level at which another rate that solves the contact equation is the better one."""
+    """Return the distance (Pa) of the load from the level at which Maxwell's rule prefers another solution; negative beyond it."""
     room, own = math.inf, branch_near(contact, rate, branches)
     if load <= strength_at(contact):
         room = better_by(contact, load, 0.0, rate) if rate > 0.0 else room
@@ -90,7 +92,7 @@ def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> f
 
 @kernel
 def law_slip_in(run: Run, n: int, xi: float) -> float:
-    """Law slip (m), minus the initial one, at a place in a step of the history."""
+    """Return the law slip (m), minus its initial value, at the place `xi` in piece n of the history."""
     real, rate = ahead(run.real, REAL * n), ahead(run.stored_rate, TERMS * n)
     grown = real[at.S_SPEED] * integral(rate, xi, 1) + 2.0 * real[at.S_BEND] * integral(rate, xi, 2)
     mode = run.whole[WHOLE * n + at.S_MODE]
@@ -99,7 +101,7 @@ def law_slip_in(run: Run, n: int, xi: float) -> float:
 
 @kernel
 def room_in(view: View, xi: float) -> float:
-    """How far (Pa) the load is inside the interval for which the rule keeps the branch; negative outside."""
+    """Return the distance (Pa) of the load from the ends of the interval in which the rule keeps the branch; negative outside."""
     run, n = view.run, view.step
     mode, law_slip = run.whole[WHOLE * n + at.S_MODE], law_slip_in(run, n, xi)
     contact = Contact(run, run.whole[WHOLE * n + at.S_PIECE], law_slip, view.scan, view.table)
@@ -107,7 +109,7 @@ def room_in(view: View, xi: float) -> float:
     load = towards(run, evaluate(ahead(run.stored_load, TERMS * n), xi), mode)
     branches = find_branches(contact, max(rate, fastest(run, load)) * (1.0 + 1e-9))
     if branches == 0:
-        return math.inf  # the branch is narrower than the scan can see
+        return math.inf  # the branch is narrower than the spacing of the scan
     own = branch_near(contact, rate, branches)
     low, high = view.table[LEVEL_FROM, own], view.table[LEVEL_TO, own]
     if view.rule == MINIMAL:
@@ -123,9 +125,10 @@ def room_in(view: View, xi: float) -> float:
 
 @kernel
 def place_of_crossing(view: View, low: float, high: float) -> float:
-    """Where the room, not negative at low and negative at high, falls through zero: false position, kept from standing still.
+    """Return the place at which the room, not negative at `low` and negative at `high`, falls through zero.
 
-    Source: the Illinois method, Dowell & Jarratt 1971, BIT 11, 168.
+    The method is false position with the Illinois modification, which keeps an end from standing still.
+    Source: Dowell & Jarratt 1971, BIT 11, 168.
     """
     slack = EXACT * view.run.par.reference
     above, below = max(room_in(view, low), slack), room_in(view, high)
@@ -148,9 +151,9 @@ def place_of_crossing(view: View, low: float, high: float) -> float:
 
 @kernel
 def crossing_in(places: Integers, step: int, rule: int, scan: Floats, table: Floats) -> float:
-    """Where on [0, 1] of a step of slip the load first leaves what the rule keeps the branch for; NONE if it stays in it.
+    """Return the place in a step, on [0, 1], at which the load first leaves the interval in which the rule keeps the branch.
 
-    `places` comes from `workspace.lend`.
+    NONE means that it stays inside. `places` comes from `workspace.lend`, `step` is a piece of the history.
     """
     view = View(borrow(places), step, rule, scan, table)
     before, slack = 0.0, ROUNDING * view.run.par.reference
@@ -165,7 +168,7 @@ def crossing_in(places: Integers, step: int, rule: int, scan: Floats, table: Flo
 
 @kernel
 def gap(contact: Contact, slow: int, fast: int, load: float) -> tuple[float, float]:
-    """By how much the integral of g - load is larger on the faster of two branches (-1: stick), and its slope along the load."""
+    """Return the integral (Pa m/s) of g - load from a slow to a fast branch (-1: stick) and its derivative by the load (m/s)."""
     start = rate_on(contact, load, slow) if slow >= 0 else 0.0
     end = rate_on(contact, load, fast)
     return area(contact, load, start, end), start - end
@@ -173,7 +176,7 @@ def gap(contact: Contact, slow: int, fast: int, load: float) -> tuple[float, flo
 
 @kernel
 def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float) -> float:
-    """The load between two others at which two branches have equal areas: Newton's method, kept inside."""
+    """Return the load between two others at which two branches (-1: stick) have equal areas, by safeguarded Newton steps."""
     load = 0.5 * (low + high)
     for _ in range(100):
         value, slope = gap(contact, slow, fast, load)
@@ -195,7 +198,10 @@ def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float)
 
 @kernel
 def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
-    """Limit what two branches (-1: stick) are kept for to where each is better than the other; returns up to where stick is."""
+    """Limit the intervals in which two branches (-1: stick) are kept to where Maxwell's rule prefers each to the other.
+
+    Loads are in Pa, minus the reference strength. Return the load up to which stick is kept: `stick_to` or a lower one.
+    """
     run, table = contact.run, contact.table
     low = table[LEVEL_FROM, fast] if slow < 0 else max(table[LEVEL_FROM, slow], table[LEVEL_FROM, fast])
     ends = strength_at(contact) if slow < 0 else table[LEVEL_TO, slow]
@@ -218,7 +224,10 @@ def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
 
 @kernel
 def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
-    """Write the levels of Maxwell's rule at the present slip into the setup, where branches are kept up to their ends so far."""
+    """Write the levels of Maxwell's rule at the present slip into the setup, in which branches are still kept up to their ends.
+
+    `places` is the memory that `workspace.lend` has filled; a branch that is never preferred gets an empty interval.
+    """
     run = borrow(places)
     contact = Contact(run, run.counts.piece, run.state.law_slip, scan, table)
     for k in range(run.branches):

@@ -1,1 +1,1 @@
-"""Polynomials, series and step sizes."""
+"""Polynomials, Radau's points, step lengths and a sine for lanes."""

@@ -1,8 +1,8 @@
 """Polynomials on a piece of the history: TERMS coefficients, ascending, in the piece's own variable, usually on [0, 1].
 
-Coefficients come as pointers (in the engine) or as arrays (in tables made from a history): both are indexed alike. What decides
-nothing serves several polynomials side by side, too (pointers to `codegen.simd`). Sums are taken in four parts, always the same
-ones: no term waits long for the one before, and lanes add as floats do.
+Coefficients come as pointers (in the engine) or as arrays (in tables made from a history): both are indexed alike. Functions
+without a decision also work on several polynomials side by side (pointers to lanes of `codegen.simd`). Sums are taken in four
+fixed parts, which shortens the chain of additions that depend on each other and gives lanes the same bits as single floats.
 """
 
 from __future__ import annotations
@@ -18,39 +18,45 @@ from stickslip.engine.state.layout import TERMS
 Floats = NDArray[np.float64]
 
 NONE = math.inf
+"""Place that functions return if there is no root."""
 RECIPROCAL = np.array([0.0, *(1.0 / k for k in range(1, 2 * TERMS))])
+"""1 / k at index k, and 0 at index 0: a product is faster than a division."""
 LOW = 9
-"""Terms of the first, cheap test for a root."""
+"""Number of terms (1) in the first, cheap test for a root."""
 
 
 def _bernstein(terms: int) -> Floats:
-    """Row k: what the power x^k contributes to each Bernstein coefficient of a polynomial of so many terms on [0, 1]."""
+    """Return a matrix whose row k holds the Bernstein coefficients on [0, 1] of x^k, a polynomial of the given number of terms."""
     return np.array([[math.comb(j, k) / math.comb(terms - 1, k) for j in range(terms)] for k in range(terms)])
 
 
 BERNSTEIN = _bernstein(TERMS)
 LOW_BERNSTEIN = _bernstein(LOW)
+"""Bernstein coefficients of the powers of x among polynomials of TERMS and of LOW terms (1)."""
 SMALLEST_INTERVAL = 1e-15
+"""Width (1) below which an interval is not bisected further: floats near 1 are not much denser."""
 NEGLIGIBLE = 1e-300
-"""A polynomial that stays below this on an interval has no roots there that anybody could tell: near the smallest normal number
-its coefficients lose their digits, or vanish one after the other, and no bisection would ever come to an end."""
+"""Magnitude (any unit) up to which a polynomial on an interval counts as zero there: near the smallest normal number its
+coefficients lose their digits or vanish one after the other, and a bisection would never end."""
 
 
 @inlined
 def copy(source: Floats, target: Floats, n: int) -> None:
+    """Copy the first n numbers of a row to another."""
     for k in range(n):
         target[k] = source[k]
 
 
 @inlined
 def fill(target: Floats, value: float) -> None:
+    """Set all TERMS numbers of a row to a value."""
     for k in range(TERMS):
         target[k] = value
 
 
 @inlined
 def powers_of(x: float, out: Floats) -> None:
-    """1, x, x^2, ...: each from two of half its order, so that none waits long."""
+    """Write 1, x, x^2, ... into `out`, each as a product of two powers of half its order, to keep chains of products short."""
     out[0], out[1] = 1.0, x
     for k in range(2, TERMS):
         out[k] = out[k >> 1] * out[(k + 1) >> 1]
@@ -58,14 +64,14 @@ def powers_of(x: float, out: Floats) -> None:
 
 @inlined
 def multiply(c: Floats, powers: Floats, out: Floats) -> None:
-    """p(x y) in terms of y, by the powers of x."""
+    """Write into `out` the coefficients of y -> p(x y), from the powers of x."""
     for k in range(TERMS):
         out[k] = c[k] * powers[k]
 
 
 @kernel
 def evaluate(c: Floats, x: float) -> float:
-    """p(x), by Horner's rule."""
+    """Return p(x), by Horner's rule."""
     value = c[TERMS - 1]
     for k in range(TERMS - 2, -1, -1):
         value = value * x + c[k]
@@ -74,7 +80,7 @@ def evaluate(c: Floats, x: float) -> float:
 
 @kernel
 def degree(c: Floats) -> int:
-    """Index of the last coefficient that is not zero."""
+    """Return the index of the last coefficient that is not zero; 0 for the zero polynomial."""
     n = TERMS - 1
     while n > 0 and c[n] == 0.0:
         n -= 1
@@ -83,7 +89,7 @@ def degree(c: Floats) -> int:
 
 @kernel
 def restrict(c: Floats, start: float, width: float, out: Floats) -> None:
-    """Coefficients of y -> p(start + width y) into `out`: exact but for rounding."""
+    """Write into `out` the coefficients of y -> p(start + width y), exact but for rounding."""
     n = degree(c)
     for k in range(n + 1, TERMS):
         out[k] = 0.0
@@ -92,7 +98,7 @@ def restrict(c: Floats, start: float, width: float, out: Floats) -> None:
 
 @kernel
 def restrict_low(c: Floats, n: int, start: float, width: float, out: Floats) -> None:
-    """As `restrict`, for a polynomial of degree n; leaves the coefficients of `out` beyond as they are."""
+    """Do the same as `restrict` for a polynomial of degree n, and leave the coefficients of `out` above n unchanged."""
     for k in range(n + 1):
         out[k] = c[k]
     if start != 0.0:
@@ -107,7 +113,7 @@ def restrict_low(c: Floats, n: int, start: float, width: float, out: Floats) -> 
 
 @kernel
 def scale(c: Floats, width: float) -> None:
-    """Turn p(y) into p(width y), in place."""
+    """Turn the coefficients of p(y) into those of p(width y), in place."""
     power = width
     for k in range(1, TERMS):
         c[k] *= power
@@ -116,7 +122,7 @@ def scale(c: Floats, width: float) -> None:
 
 @inlined
 def magnitude(c: Floats, first: int = 1) -> float:
-    """Sum of |c_k| for k >= 1 (or later): how far p can be from c_0 on [-1, 1]."""
+    """Return the sum of |c_k| for k >= `first`: with 1, a bound on |p - c_0| on [-1, 1]."""
     a, b, d, e = abs(c[first]), abs(c[first + 1]), abs(c[first + 2]), abs(c[first + 3])
     for k in range(first + 4, TERMS - 3, 4):
         a, b, d, e = a + abs(c[k]), b + abs(c[k + 1]), d + abs(c[k + 2]), e + abs(c[k + 3])
@@ -127,7 +133,7 @@ def magnitude(c: Floats, first: int = 1) -> float:
 
 @inlined
 def slope_magnitude(c: Floats) -> float:
-    """Sum of k |c_k| for k >= 2: how far the slope can be from c_1 on [-1, 1]."""
+    """Return the sum of k |c_k| for k >= 2, a bound on |p' - c_1| on [-1, 1]."""
     even, odd = 0.0, 0.0
     for k in range(2, TERMS - 1, 2):
         even, odd = even + k * abs(c[k]), odd + (k + 1) * abs(c[k + 1])
@@ -136,7 +142,7 @@ def slope_magnitude(c: Floats) -> float:
 
 @inlined
 def total(c: Floats) -> float:
-    """p(1)."""
+    """Return p(1)."""
     a, b, d, e = c[0], c[1], c[2], c[3]
     for k in range(4, TERMS - 3, 4):
         a, b, d, e = a + c[k], b + c[k + 1], d + c[k + 2], e + c[k + 3]
@@ -147,7 +153,7 @@ def total(c: Floats) -> float:
 
 @inlined
 def moment(c: Floats, shift: int) -> float:
-    """Integral of x^(shift - 1) p(x) over [0, 1], for a shift of 1 or 2."""
+    """Return the integral of x^(shift - 1) p(x) over [0, 1], for a shift of 1 or 2."""
     a, b = RECIPROCAL[shift] * c[0], RECIPROCAL[shift + 1] * c[1]
     d, e = RECIPROCAL[shift + 2] * c[2], RECIPROCAL[shift + 3] * c[3]
     for k in range(4, TERMS - 3, 4):
@@ -160,7 +166,7 @@ def moment(c: Floats, shift: int) -> float:
 
 @inlined
 def integral(c: Floats, end: float, shift: int) -> float:
-    """Integral of x^(shift - 1) p(x) from 0 to `end`, for a shift of 1 or 2."""
+    """Return the integral of x^(shift - 1) p(x) from 0 to `end`, for a shift of 1 or 2."""
     if end == 1.0:
         return moment(c, shift)
     value = 0.0
@@ -171,13 +177,13 @@ def integral(c: Floats, end: float, shift: int) -> float:
 
 @inlined
 def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
-    """Mean in time of a polynomial on a piece so wide (s), of which theta = speed x + bend x^2."""
+    """Return the mean in time of a polynomial on a piece of length `width`, with theta - theta_from = speed x + bend x^2 (s)."""
     return (speed * moment(c, 1) + 2.0 * bend * moment(c, 2)) / width
 
 
 @kernel
 def _falling_root(c: Floats) -> float:
-    """The root in [-1, 1] of a polynomial that falls there through zero: Newton's method kept inside its bracket."""
+    """Return the root in [-1, 1] of a polynomial that falls through zero there, by Newton's method kept inside its bracket."""
     low, high, x = -1.0, 1.0, 0.0
     for _ in range(100):
         value, slope = c[TERMS - 1], 0.0
@@ -201,8 +207,10 @@ def _falling_root(c: Floats) -> float:
 
 @inlined
 def bound_below(c: Floats) -> float:
-    """If above zero p > 0 on [0, 1], if it is at 0: the least Bernstein coefficient of the first terms but for that at 0, less what
-    the rest can take away."""
+    """Return a bound that proves p > 0 on [0, 1] if it and p(0) are above zero.
+
+    It is the least Bernstein coefficient of the first LOW terms, without that at 0, minus the magnitude of the other terms.
+    """
     least = c[0] + LOW_BERNSTEIN[1, 1] * c[1]
     for j in range(2, LOW):
         coefficient = c[0]
@@ -214,16 +222,16 @@ def bound_below(c: Floats) -> float:
 
 @kernel
 def clearly_positive(c: Floats) -> bool:
-    """Whether p > 0 on [0, 1] is seen at a glance."""
+    """Return True if the cheap bound proves p > 0 on [0, 1], for a p that is positive at 0."""
     return bound_below(c) > 0.0
 
 
 @kernel
 def first_descent(c: Floats, spare: Floats) -> float:
-    """First x in [0, 1] at which p, positive before, falls below zero; NONE if there is none; 0 if it starts by falling.
+    """Return the first x in [0, 1] at which p falls below zero; NONE if it does not, 0 if it is negative right after 0.
 
-    A zero at x = 0 does not count where p rises from it: leading zero coefficients are divided out. Most calls end at a bound
-    on the coefficients or at the signs of the Bernstein coefficients (for which `spare` is).
+    A zero at x = 0 from which p rises does not count: leading zero coefficients are divided out. Most calls end at a bound on
+    the coefficients or at the signs of the Bernstein coefficients, for which `spare` is room.
     """
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:
@@ -257,7 +265,7 @@ def first_descent(c: Floats, spare: Floats) -> float:
 
 @kernel
 def _next_interval(start: float, width: float) -> tuple[float, float]:
-    """The next interval of a bisection of [0, 1] from left to right: the widest that starts where the last one ended."""
+    """Return start and width of the next interval of a bisection of [0, 1], which is the widest that begins where this one ends."""
     start += width
     while start < 1.0 and math.floor(start / (2.0 * width)) * 2.0 * width == start:
         width *= 2.0
@@ -266,7 +274,7 @@ def _next_interval(start: float, width: float) -> tuple[float, float]:
 
 @kernel
 def _isolate(q: Floats) -> float:
-    """First descent through zero on [0, 1] of a polynomial that is positive at 0, by bisection of intervals left to right."""
+    """Return the first x in [0, 1] at which a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left."""
     part, start, width = np.empty(TERMS), 0.0, 1.0
     while start < 1.0:
         restrict(q, start + 0.5 * width, 0.5 * width, part)
@@ -285,7 +293,7 @@ def _isolate(q: Floats) -> float:
 
 @kernel
 def maximum(c: Floats, sign: float = 1.0) -> float:
-    """Largest value of sign p on [0, 1], to rounding, by branch and bound."""
+    """Return the largest value of sign * p on [0, 1], to rounding, by branch and bound."""
     best = max(sign * c[0], sign * total(c))
     if degree(c) <= 1:
         return best
@@ -306,13 +314,13 @@ def maximum(c: Floats, sign: float = 1.0) -> float:
 
 @kernel
 def crossings(c: Floats, out: Floats) -> int:
-    """Every x in (0, 1) at which p changes sign, ascending into `out` (as many as fit); returns how many.
+    """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to its length; return their number.
 
     The sign is carried from interval to interval, so that a root on the border between two is found once.
     """
     found, sign = 0, 0.0
     for k in range(TERMS - 1, -1, -1):
-        sign = c[k] if c[k] != 0.0 else sign  # just right of 0 the lowest term decides
+        sign = c[k] if c[k] != 0.0 else sign  # just right of 0 p has the sign of its lowest term
     if sign == 0.0:
         return 0
     part, start, width = np.empty(TERMS), 0.0, 1.0

@@ -1,7 +1,8 @@
-"""Collocation at Radau's points: what turns values at the stages of an implicit step into derivatives, integrals and polynomials.
+"""Collocation at Radau's points: matrices that turn values at the points of an implicit step into derivatives and integrals.
 
-A step is [0, 1]; point 0 is its start, points 1 to STAGES are Radau's, the last one its end. Implicit steps over them are stable
-however stiff the contact is, and solve it also where it has no mass (Hairer & Wanner 1996, Solving ODEs II, sections IV.5, VI.1).
+A step is [0, 1]. Point 0 is its start, points 1 to STAGES are Radau's, and the last one is its end. Implicit steps over these
+points are stable for contacts of any stiffness, and also solve contacts without mass (Hairer & Wanner 1996, Solving ODEs II,
+sections IV.5, VI.1).
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import TERMS, Floats
 
 STAGES = 9
-"""Order 17 at the ends of steps, 10 between them."""
+"""Number of Radau points in a step (1), which gives order 17 at the ends of steps and 10 between them."""
 POINTS = STAGES + 1
+"""Number of points with the start of the step (1)."""
 
 
 def _radau() -> NDArray[np.float64]:
-    """0, and the zeros of P_s - P_(s-1) on [0, 1], which end at 1."""
+    """Return 0 and the zeros of P_s - P_(s-1), mapped to [0, 1] (s is STAGES, P a Legendre polynomial); the last one is 1."""
     series = np.zeros(STAGES + 1)
     series[-2:] = -1.0, 1.0
     zeros = np.sort(legendre.legroots(series).real)
@@ -31,12 +33,13 @@ def _radau() -> NDArray[np.float64]:
 
 
 def _barycentric() -> NDArray[np.float64]:
+    """Return the barycentric weights of interpolation at the points."""
     gaps = POINT[:, None] - POINT + np.eye(POINTS)
     return np.asarray(1.0 / gaps.prod(axis=1))
 
 
 def _derivatives() -> NDArray[np.float64]:
-    """Row i: what the values at the points contribute to the derivative at point i of the polynomial through them."""
+    """Return a matrix whose row i gives the derivative at point i of the polynomial through values at the points."""
     gaps = POINT[:, None] - POINT + np.eye(POINTS)
     matrix = _WEIGHT / _WEIGHT[:, None] / gaps
     np.fill_diagonal(matrix, 0.0)
@@ -45,13 +48,13 @@ def _derivatives() -> NDArray[np.float64]:
 
 
 def _values(places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Row i: the same for the value at a place that is none of the points."""
+    """Return a matrix whose row i gives the value of that polynomial at place i, which must not be one of the points."""
     basis = _WEIGHT / (places[:, None] - POINT)
     return np.asarray(basis / basis.sum(axis=1, keepdims=True))
 
 
 def _integrals(ends: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Row i: the same for the integral from 0 to end i, by Gauss's rule on each."""
+    """Return a matrix whose row i gives the integral of that polynomial from 0 to end i, by Gauss's rule."""
     nodes, weights = legendre.leggauss(POINTS)
     matrix = np.zeros((len(ends), POINTS))
     for i, end in enumerate(ends):
@@ -61,23 +64,28 @@ def _integrals(ends: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 POINT = _radau()
+"""The points of a step, from 0 to 1 (1)."""
 _WEIGHT = _barycentric()
 DERIVATIVE, INTEGRAL = _derivatives(), _integrals(POINT)
+"""Matrices from values at the points to derivatives at the points and to integrals from 0 to each of them."""
 MIDDLE = 0.5 * (POINT[1:] + POINT[:-1])
-"""Places halfway between the points, where a step is verified: what it misses of the equation is largest near them."""
+"""Places halfway between the points (1), where a step is verified: its defect in the governing equation is largest near them."""
 VALUE_IN_MIDDLE, INTEGRAL_TO_MIDDLE = _values(MIDDLE), _integrals(MIDDLE)
+"""Matrices from values at the points to values at these places and to integrals from 0 to each of them."""
 DERIVATIVE_IN_MIDDLE = VALUE_IN_MIDDLE @ DERIVATIVE
+"""Matrix from values at the points to derivatives at the places halfway between them."""
 _VANDERMONDE = np.vander(POINT, increasing=True)
 TO_POWERS = np.linalg.inv(_VANDERMONDE)
+"""Matrix from values at the points to the coefficients of the polynomial through them."""
 TO_POWERS_SUM = abs(TO_POWERS).sum(axis=1)
-"""Factors by which rounding of the values at the points is larger in the coefficients."""
+"""Largest factor (1), for each coefficient, by which rounding of the values at the points grows in it."""
 
 
 @kernel
 def interpolate(values: Floats, out: Floats, rest: Floats) -> None:
-    """Coefficients of the polynomial through values at the points; `rest` is room for POINTS numbers.
+    """Write into `out` the coefficients of the polynomial through values at the points; `rest` is room for POINTS numbers.
 
-    Twice: the second pass takes back the rounding of the first, which large factors of opposite sign have made larger.
+    A second pass corrects the rounding of the first, which large factors of opposite sign have amplified.
     """
     for k in range(TERMS):
         out[k] = 0.0
@@ -94,9 +102,9 @@ def interpolate(values: Floats, out: Floats, rest: Floats) -> None:
 
 @kernel
 def last_terms(c: Floats) -> float:
-    """Size of the last two Chebyshev terms of a polynomial of degree STAGES on [0, 1]: what more points would still change.
+    """Return the size of the last two Chebyshev terms on [0, 1] of a polynomial of degree STAGES, an estimate of its error.
 
-    The one before the last counts a tenth: it is what a last term that vanishes by symmetry hides.
+    The last but one counts a tenth: it shows an error that a last term hides if it vanishes by symmetry.
     """
     half = 2.0 ** (1 - 2 * STAGES)
     last = half * c[STAGES]

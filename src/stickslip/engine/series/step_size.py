@@ -1,4 +1,4 @@
-"""How long a Taylor step may be."""
+"""The length of a Taylor step: as long as the last terms of its series stay below the tolerance."""
 
 from __future__ import annotations
 
@@ -11,19 +11,25 @@ from stickslip.engine.codegen.simd import bits_as_number, power_of_two
 from stickslip.engine.state.layout import TERMS, Floats
 
 UNITS = 2.0**52
+"""Steps of a float's bits (1) from one power of two to the next."""
 BIAS = 1023.0
+"""Offset of the exponent in the bits of a float (1)."""
 FAR_FROM_GUESS = 0.2
+"""Length of a step, in guesses (1), below which the size of the slip rate is determined again: the guess was far too long."""
 
 
 @inlined
 def quick_log2(x: float) -> float:
-    """log2 |x| to 0.09, straight from the bits; -1023 for zero. A step's length needs an 18th of that."""
+    """Return log2 |x| to 0.09, straight from its bits; -1023 for zero.
+
+    That is accurate enough: the length of a step takes this logarithm divided by the order of its last terms.
+    """
     return bits_as_number(abs(x)) * (1.0 / UNITS) - BIAS
 
 
 @inlined
 def quick_exp2(x: float) -> float:
-    """2^x to 0.3 %, between 2^-1000 and 2^1000."""
+    """Return 2^x to 0.3 %, limited to between 2^-1000 and 2^1000."""
     x = min(max(x, -1000.0), 1000.0)
     whole = np.floor(x)
     part = x - whole
@@ -32,10 +38,10 @@ def quick_exp2(x: float) -> float:
 
 @inlined
 def usable_length(jet: Floats, tolerance: float) -> float:
-    """Longest step (in units of the guess) whose last two terms stay below the tolerance, relative to the rate over the step.
+    """Return the longest step (in guesses) whose last two terms stay below the tolerance, relative to the slip rate over the step.
 
-    The guess is usually twice the step. Where it is much longer (a first step, the way from a fold) the rate's size over the
-    step is not that over the guess, which may be larger by orders of magnitude: then it is looked at again.
+    The guess is usually twice the step. If it is much longer (for a first step, or after a fold), the slip rate over the guess
+    may be larger by orders of magnitude than over the step: the length is then calculated again with the rate over the step.
     """
     if jet[TERMS - 1] == 0.0 and jet[TERMS - 2] == 0.0:
         return length_with_gaps(jet, tolerance)
@@ -48,10 +54,10 @@ def usable_length(jet: Floats, tolerance: float) -> float:
 
 @kernel
 def length_with_gaps(jet: Floats, tolerance: float) -> float:
-    """Return the usable length where the last two terms are zero: the series is a polynomial, or has gaps.
+    """Return the usable length (in guesses) if the last two terms are zero: the series is a polynomial, or has gaps.
 
-    Under a law of u^n every n-th term alone is there where u = 0. With gaps of up to half its length a term of the upper half
-    is left, which then bounds what follows; a polynomial that ends below is right at any length.
+    Under a law in u^n only every n-th term differs from zero at u = 0. With gaps of up to half the length of the series, a term
+    of its upper half remains, and bounds the terms that follow. A polynomial of lower degree holds at any length: inf.
     """
     for n in range(TERMS - 3, TERMS // 2 - 1, -1):
         if jet[n] != 0.0:
@@ -62,7 +68,7 @@ def length_with_gaps(jet: Floats, tolerance: float) -> float:
 
 @inlined
 def length_at(jet: Floats, tolerance: float, expected: float) -> float:
-    """The usable length if the rate is as large as it is over a step of the expected length. For lanes, too."""
+    """Return the usable length (in guesses) if the slip rate is as large as over a step of the expected length. Works on lanes."""
     slow = max(abs(jet[0]), expected * abs(jet[1]))
     size = max(slow, expected * expected * max(abs(jet[2]), expected * abs(jet[3])))
     n = TERMS - 1

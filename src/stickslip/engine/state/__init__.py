@@ -1,1 +1,1 @@
-"""What the engine reads and writes."""
+"""The records and tables that the engine reads and writes."""

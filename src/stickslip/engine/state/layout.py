@@ -1,7 +1,9 @@
-"""What the compiled engine reads and writes: named places in plain arrays.
+"""The records and tables that the compiled engine reads and writes: named places in plain arrays.
 
-Loads are differences from the reference strength (static strength at the start), slips differences from the initial slip.
-Time is a round trip (`row`) and an offset theta in it; a block has rows too, one period of free oscillation long.
+Loads are differences from the reference strength (the static strength at the start), in Pa for a slab and N for a block. Slips
+are differences from the initial slip, in m. A time is a round trip (`row`) and a phase theta (s) in it. A block has rows too:
+one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
+a pure number.
 """
 
 from __future__ import annotations
@@ -19,158 +21,159 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 TERMS = ORDER + 1
+"""Coefficients of every polynomial and series (1): the orders 0 to ORDER."""
 
 
 class Params(Record):
-    """The problem's numbers, in SI. Nothing here changes during a run, but `stick_to` under a law of slip and slip rate."""
+    """Hold the numbers of a problem, in SI. They are constant during a run, except `stick_to` under a law of slip and slip rate."""
 
-    row_time: float  # s: a round trip of the slab, a period of the block
-    impedance: float  # Z of a slab, damping of a block
-    normal: float  # normal stress, or force
-    inertia: float  # mass of the contact, or of the block
-    stiffness: float  # of a block's spring; 0 for a slab
-    reflection: float  # of the driver
-    inflow: float  # what a steady driver sends, and how that grows in a second
-    inflow_rate: float
-    reference: float  # static strength at the start, from which loads are differences
-    largest_drop: float
-    counts_net: float  # 1 where the law counts net slip, 0 where it counts the path
-    static_excess: float
-    stick_to: float  # load (minus the reference) at which a contact at rest begins to slip
-    ramp: float  # by how much the load at rest grows in a round trip
-    tolerance: float  # local error of a step, relative
-    smallest_jump: float  # m/s: smaller changes of the slip rate are no shocks
-    relative_jump: float
-    state_scale: float
-    rate_floor: float  # m/s: slip rates below are not resolved
-    healed_piece: float  # of the law, where rest heals the contact; -1 where the law remembers all slip
-    shortest: float  # s: pieces of load that are shorter are lumped while `Counts.lumps` is set
-    tone: float  # of a loading that varies: the inflow has tone sin(tone_frequency t + tone_phase)
-    tone_frequency: float
-    tone_phase: float
+    row_time: float  # s: two-way travel time of a slab; length of a row of a block (a period, or longer where it never sticks)
+    impedance: float  # Pa s/m: wave impedance Z of a slab; N s/m: damping of a block
+    normal: float  # Pa: normal stress on a slab; N: normal force on a block
+    inertia: float  # kg/m^2: mass of a slab's contact, 0 if it has none; kg: mass of a block
+    stiffness: float  # N/m: stiffness of a block's spring; 0 for a slab
+    reflection: float  # 1: share of a wave that a slab's driver sends back, from -1 (rigid) to +1 (dead load)
+    inflow: float  # Pa: load that a slab's steady driver sends, at t = 0; 0 for a loading that varies
+    inflow_rate: float  # Pa/s: growth of that inflow
+    reference: float  # Pa or N: reference strength (static strength at the start), from which loads are differences
+    largest_drop: float  # Pa or N: reference strength minus the least friction of the law, or 0 if that is negative
+    counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
+    static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
+    stick_to: float  # Pa or N: load at which rest ends, minus the static strength at the present slip; never above 0
+    ramp: float  # Pa or N: growth of the load at rest in one row; 0 for a loading that varies
+    tolerance: float  # 1: local error allowed to a step, relative to the slip rate
+    smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
+    relative_jump: float  # 1: nor are changes up to this share of the slip rate
+    state_scale: float  # unit of the law's state: a size of the state below which its errors are not measured relative to it
+    rate_floor: float  # m/s: slip rate below which the errors of an implicit step are not measured relative to it
+    healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
+    shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
+    tone: float  # Pa (slab) or N/s (block): amplitude of the tone in an inflow, tone sin(tone_frequency t + tone_phase)
+    tone_frequency: float  # rad/s: angular frequency of the tone
+    tone_phase: float  # rad: phase of the tone at t = 0
 
 
 class State(Record):
-    """Where the contact is, and the piece of load that it meets."""
+    """Hold the place and motion of the contact, and the piece of load that it meets."""
 
-    xi: float  # place in the piece of load, from 0 to 1
-    slip_now: float  # m, minus the initial slip
-    law_slip: float  # m, as the law counts it, minus its initial value
-    rate_now: float  # m/s
-    load_now: float  # of a block at the end of the period before
-    last_step: float  # s: what the error allowed the last step to be
-    theta_from: float  # s, offset in the round trip: theta = theta_from + speed xi + bend xi^2
-    theta_to: float
-    speed: float
-    bend: float
-    table_slip: float  # law slip at which the branches hold
-    fold_rate: float  # m/s, at the moving fold that is approached
-    state_now: float  # of the friction law, as its formulas see it
-    new_since: float  # offsets between which the present round trip's pieces are not yet, or no longer, in the trees of echoes
-    taken_to: float
-    amplified: float  # what has become of an error of the load in the present piece
-    gain: float  # by how much slip multiplies it
-    slip_since: float  # offset at which slip began
-    taken: float  # how much of the source of load has been brought, in its xi and as an offset
-    taken_to_theta: float
-    target: float  # xi up to which a run may slip that waits for others, to take its step side by side with them
-    unbalanced: float  # force (Pa or N) that the step at hand ignores by definition, because it leaves rest: see `verify`
-    rounded: float  # m/s: rounding that was found in that step where it seemed not to obey the law
-    roughest: float  # largest share of the slip rate that rounding in the law has taken, where that is more than the tolerance
-    exit: float  # xi at which an algebraic contact leaves its branch (inf: not on this piece); nan where it is not known yet
+    xi: float  # 1: place in the present piece of load, from 0 to 1
+    slip_now: float  # m: slip, minus the initial slip
+    law_slip: float  # m: slip as the law counts it, minus its initial value
+    rate_now: float  # m/s: slip rate, with its sign
+    load_now: float  # N: load of a block at the end of the period before, minus the reference strength
+    last_step: float  # s: length that the error allowed the last step to have
+    theta_from: float  # s: phase at which the piece of load begins; theta = theta_from + speed xi + bend xi^2
+    theta_to: float  # s: phase at which the piece of load ends
+    speed: float  # s: dtheta/dxi at xi = 0
+    bend: float  # s: coefficient of xi^2 in theta, 0 except next to folds
+    table_slip: float  # m: law slip (minus its initial value) at which the table of branches holds
+    fold_rate: float  # m/s: magnitude of the slip rate at the moving fold that the contact approaches
+    state_now: float  # unit of the law's state: state variable of the law, as its formulas see it
+    new_since: float  # s: phase from which on the pieces of the present round trip are not in a tree of echoes yet
+    taken_to: float  # s: phase up to which the echoes of earlier round trips have been taken out of the tree that is ahead
+    amplified: float  # 1: size in the present piece of load of an error of 1 in the load at the start; NaN if not known
+    gain: float  # 1: factor abs(2 Z / g' - 1) by which the last step of slip multiplies an error of the load; NaN if not known
+    slip_since: float  # s: phase at which slip began, in round trip `Counts.slip_row`
+    taken: float  # 1: xi of the source of load up to which a loading that varies has delivered it; 0 if a new source is next
+    taken_to_theta: float  # s: phase that belongs to `taken`
+    target: float  # 1: xi up to which a run that waits for others may slip in the step that it takes beside them
+    unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest (`contact_step.verify`)
+    rounded: float  # m/s: allowance for rounding in the law where the step at hand seemed to miss the contact equation; else 0
+    roughest: float  # 1: largest share of the slip rate that rounding in the law has taken in any rough step (`Counts.rough`)
+    exit: float  # 1: xi at which an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
 
 
 KEPT = State.places["taken"].first
-"""Places of the state that are set aside where another piece of load comes in between."""
+"""Number of leading fields of `State` that are set aside with the piece of load while a side piece next to a fold replaces it."""
 
 
 class Counts(Record):
-    """The state in whole numbers: places in the history, flags, codes."""
+    """Hold the part of the state that is whole numbers: places in the history, flags, codes."""
 
-    row: int  # round trip, from 0
-    source: int  # where the next piece of load comes from
-    mode: int  # 0 stuck, +1 slips forwards, -1 backwards
-    piece: int  # of the law
-    branch: int
-    edge: int  # slip begins here, in this direction; 0 elsewhere
-    length: int  # pieces of the history
-    row_from: int  # first piece of this round trip, and those of the one before
-    previous_from: int
-    previous_to: int
-    moved: int  # there was slip in this round trip
-    ready: int  # what has become of the next piece of load: 0, MET or BROUGHT
-    jump: int  # the next piece of the history begins with a jump of the slip rate, and why
-    cause: int
-    echo_of: int
-    stuck_rows: int
-    stalled: int  # steps that took no time, one after the other
-    at_fold: int
-    is_block: int
-    has_inertia: int
-    is_algebraic: int
-    arriving: int  # the piece of load begins with a jump, for this cause
-    has_state: int
-    sticks: int
-    stiff: int
-    steps: int
-    folds_move: int
-    knots_in_rate: int
-    leaving: int  # a moving branch has ended
-    is_locked: int
-    to_the_end: int  # the end of the run may cut a piece or a leap, which a longer run would not
-    sparse: int  # only echoes that break are met
-    behind: int  # roots of the trees of echoes
-    ahead: int
-    new_from: int  # first piece that is not in them
-    lumped: int  # the load was lumped
-    slip_row: int  # round trip in which slip began
-    tiny: int  # slips beyond resolution, less others
-    pause_at: int  # row before which `advance` returns; rows to the pause after it
-    pause_for: int
-    creep_leaps: int
-    varies: int  # the loading; its segment now, and at the end of the row before
-    segment: int
-    row_segment: int
-    waits: int  # explicit steps of slip are left to the caller
-    creep_in: int  # round trips with slip that are still to come before `advance` returns for a look at leaps over creep
-    lumps: int  # short pieces are lumped; pieces of a round trip above which they are; row since when
-    lump_above: int
-    lumped_since: int
-    rough: int  # steps in which rounding in the law hides more than the tolerance
-    breach: int  # why no step can go on from here: OFF_THE_LAW or NEGATIVE_FRICTION; 0 where one can
-    degree: int  # of the piece of load: its coefficients beyond are zero
+    row: int  # present round trip of a slab or row of a block, from 0
+    source: int  # index of the next piece of load: of the first load (round trip 0, block), else counted from `previous_from`
+    mode: int  # 0 at rest, +1 in forward slip, -1 in backward slip
+    piece: int  # piece of the law that holds
+    branch: int  # branch on which an algebraic contact slips, as an index of the table of branches
+    edge: int  # +1 or -1: the load is exactly where slip in this direction begins, or a branch was just left; else 0
+    length: int  # number of pieces in the history
+    row_from: int  # first piece of the history in this round trip
+    previous_from: int  # first piece of the history in the last round trip that was recorded before this one
+    previous_to: int  # first piece after that round trip
+    moved: int  # 1 if there was slip in this round trip
+    ready: int  # what has become of the next piece of load, as a code of `Incoming`
+    jump: int  # 1 if load or slip rate jumps where the next piece of the history begins
+    cause: int  # cause of the shock there, as a code of `Cause`; 0 if the slip rate does not jump
+    echo_of: int  # piece of the history whose echo the present piece of load is; -1 if it is none
+    stuck_rows: int  # number of round trips at rest that were closed since the last slip; -1 after a break of the loading
+    stalled: int  # number of steps in a row that took no time, with changes of branch
+    at_fold: int  # APPROACHING, DEPARTING or PASSING on a side piece next to a fold (`contact_step.fold`), else 0
+    is_block: int  # 1 for a block, 0 for a slab
+    has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
+    is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
+    arriving: int  # cause of the jump with which the present piece of load begins, as a code of `Cause`; 0 without a jump
+    has_state: int  # 1 if the law has a state variable
+    sticks: int  # 1 if the law knows rest
+    stiff: int  # 1 while a contact with mass is stiff and takes implicit steps
+    steps: int  # number of explicit steps of a contact with mass since slip last began from rest
+    folds_move: int  # 1 if the branches change with slip
+    knots_in_rate: int  # 1 if the knots of the law are slip rates, 0 if they are slips
+    leaving: int  # 1 if a moving branch has ended and the next one has not been chosen yet
+    is_locked: int  # 1 if no load to come can move the contact
+    to_the_end: int  # 1 if the end of the run may cut a piece or a leap, as it would not do in a longer run
+    sparse: int  # 1 if only echoes under which the contact may slip are met (`waves.echo_queue`)
+    behind: int  # root of the tree of echoes that the round trip has passed, or -1
+    ahead: int  # root of the tree of echoes that it has yet to meet, or -1
+    new_from: int  # first piece of the history that is in no tree yet
+    lumped: int  # 1 if the present piece of load was replaced by its mean
+    slip_row: int  # round trip in which slip last began
+    tiny: int  # number of slips too short to be resolved, less the number of other slips, never below 0
+    pause_at: int  # round trip before which `advance` returns
+    pause_for: int  # number of round trips that the next pause waits, set by the caller
+    creep_leaps: int  # number of leaps over creep so far
+    varies: int  # 1 if the loading varies in time other than as a ramp
+    segment: int  # segment of the loading that holds at present
+    row_segment: int  # segment of the loading at the end of the row before
+    waits: int  # 1 if explicit steps of slip are left to the caller
+    creep_in: int  # number of round trips with slip before `advance` pauses for a look at leaps over creep; none if not above 0
+    lumps: int  # 1 if short pieces of load are lumped
+    lump_above: int  # number of pieces in a round trip above which lumping begins
+    lumped_since: int  # round trip from which on short pieces are lumped
+    rough: int  # number of steps in which rounding in the law hides more than the tolerance
+    breach: int  # OFF_THE_LAW or NEGATIVE_FRICTION if no step can be made from here, else 0
+    degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
 class Series(Record):
-    """What a jet receives (see `codegen.taylor_series`), in this order."""
+    """Hold the input of a law's compiled series (`codegen.taylor_series`); generated code reads it by number, k[0], k[1], ..."""
 
-    impedance: float
-    normal: float
-    chi: float
-    speed: float
-    bend: float
-    slip: float
-    offset: float
-    inertia: float
-    stiffness: float
-    rate: float
-    free: float
-    force: float
+    impedance: float  # k[0], Pa s/m or N s/m: as in `Params`
+    normal: float  # k[1], Pa or N: as in `Params`
+    chi: float  # k[2], +1 or -1: change of the law's slip over the slip q in the direction of motion
+    speed: float  # k[3], s: A in dt/deta = A + B eta, where eta is the distance in xi in units of the guess
+    bend: float  # k[4], s: B there, not 0 only next to folds (2 `State.bend` times the square of the guess)
+    slip: float  # k[5], m: law slip at the start of the step, minus the reference slip of the piece of the law
+    offset: float  # k[6], 1: sliding friction coefficient at that reference, minus the static coefficient at the start of the run
+    inertia: float  # k[7], kg/m^2 or kg: as in `Params`
+    stiffness: float  # k[8], N/m: as in `Params`
+    rate: float  # k[9], m/s: magnitude of the slip rate at the start of the step
+    free: float  # k[10], 0 if the contact leaves rest exactly at its strength (no net force by definition), else 1
+    force: float  # k[11], Pa or N: the net force where `free` is 0, which is the step from static to sliding friction; else 0
 
 
 NEVER = 2**62
-"""No row."""
+"""Number of a round trip that never comes."""
 
 
 class Incoming(IntEnum):
     """State what has become of the next piece of load."""
 
     NONE = 0
-    """The last one is done with, and none has been brought yet."""
+    """The last piece is used up, and the next one has not been brought yet."""
     MET = 1
-    """The contact has met it and moves on it."""
+    """The contact has met the piece and moves along it."""
     BROUGHT = 2
-    """It is there, and the contact has not answered it."""
+    """The piece has been brought, and the contact has not responded to it yet."""
 
 
 class Cause(IntEnum):
@@ -180,13 +183,13 @@ class Cause(IntEnum):
     START = 1
     """The run begins in motion."""
     FOLD = 2
-    """A branch of slip rates ends, or slip begins on another one than that next to rest."""
+    """A branch of slip rates ends, or slip begins on a branch other than the one next to rest."""
     ECHO = 3
-    """A jump comes back from the driver."""
+    """A jump of the load comes back from the driver."""
     LOADING = 4
     """The loading jumps."""
     HEALING = 5
-    """Rest gives the contact its first strength back."""
+    """Rest gives the contact its initial strength back."""
 
 
 class Stop(IntEnum):
@@ -196,19 +199,19 @@ class Stop(IntEnum):
     """The history has no room for another step."""
     FINISHED = 1
     LOCKED = 2
-    """Nothing will ever move the contact again."""
+    """No load to come can move the contact."""
     STORM = 3
-    """Events follow each other without any time between them."""
+    """Events follow each other with no time between them."""
     END_AHEAD = 4
-    """What comes next depends on where the run ends: the caller sets `to_the_end`."""
+    """The next step or leap depends on where the run ends: the caller sets `to_the_end`."""
     FAILED = 5
-    """A number is not finite."""
+    """Slip, slip rate or state is not finite."""
     NEED_BRANCHES = 6
-    """The caller must put the branches at the present slip into the tables."""
+    """The caller must put the branches at the present slip into the table."""
     PAUSED = 7
-    """The round trip before which the caller wanted to look has been reached."""
+    """The next round trip is the one before which the caller wants to look at the run, or a later one."""
     SLIPS = 8
-    """An explicit step of slip is left to the caller, who takes it side by side with others."""
+    """An explicit step of slip is left to the caller, who takes it beside those of other runs."""
     OFF_THE_LAW = 9
     """No step from here obeys the contact equation."""
     NEED_IMPLICIT_STEPS = 11
@@ -230,98 +233,98 @@ S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP, S_AMPLIFIED, S_GA
 
 
 class Setup(NamedTuple):
-    """A problem as the engine sees it. Nothing here changes during a run, but the branches of a law of slip and slip rate."""
+    """Hold a problem as the engine sees it. It is constant during a run, except the branches of a law of slip and slip rate."""
 
     par: Params
-    address: Integers  # (5, pieces of the law): of `value`, `rate_jet` or `motion_jet`, `state_value`, `guards`; number of guards
-    constants: Floats  # (pieces, size): what `prepare` filled for them
-    law: Floats  # (3, pieces): slip shift and offset to the piece's reference; law slip (minus the initial one) or rate at its end
-    branch: Floats  # (6, branches of the resistance g): rates, loads between which the rule keeps it, loads at its ends
-    first: Floats  # (4, pieces + 1): the load of the first round trip, linear between the thetas
-    loading: Floats  # (5, segments): row and offset from which each segment of the inflow has arrived, value there, slope, jump
+    address: Integers  # (5, pieces of the law): addresses of `value`, jet, `state_value` and `guards`; number of guards
+    constants: Floats  # (pieces of the law, size): constants that the formula's `prepare` has filled in
+    law: Floats  # (3, pieces of the law): shift of slip (m) and offset of mu to the piece's reference; knot at its end (m or m/s)
+    branch: Floats  # (6, branches): slip rates at the ends, loads between which the rule keeps it, loads (g) at the ends
+    first: Floats  # (4, pieces of load + 1): phase, load, its slope in time and a flag for a jump, in the first round trip
+    loading: Floats  # (5, segments of the inflow): row and phase at which it arrives, value there, slope, flag for a jump
 
 
 class Store(NamedTuple):
-    """The history, one row a piece: load, slip rate and the law's state, if it has one, as polynomials in xi on [0, 1].
+    """Hold the history, one line of each table per piece: load, slip rate and state of the law as polynomials in xi on [0, 1].
 
-    The properties name the columns.
+    The properties name columns of `whole` and `real`.
     """
 
-    whole: Integers
-    real: Floats
-    load: Floats  # (n, TERMS), minus the reference strength
-    rate: Floats  # (n, TERMS)
-    state: Floats  # (n, TERMS), as the law's formulas see it; (0, TERMS) for a law without one
+    whole: Integers  # (n, 6), columns S_ROW to S_ECHO_OF
+    real: Floats  # (n, 8), columns S_THETA_FROM to S_GAIN
+    load: Floats  # (n, TERMS), Pa or N, minus the reference strength
+    rate: Floats  # (n, TERMS), m/s, with its sign
+    state: Floats  # (n, TERMS), as the law's formulas see it; (0, TERMS) for a law without a state
 
     @property
     def row(self) -> Integers:
-        """Whole round trips before the piece."""
+        """Return the number of whole round trips before each piece."""
         return self.whole[:, S_ROW]
 
     @property
     def mode(self) -> Integers:
-        """0 stuck, +1 slips forwards, -1 backwards."""
+        """Return 0 for a piece at rest, +1 for forward slip, -1 for backward slip."""
         return self.whole[:, S_MODE]
 
     @property
     def cause(self) -> Integers:
-        """Of a shock where the piece starts, or 0."""
+        """Return the cause of the shock where each piece begins, as a code of `Cause`; 0 if there is none."""
         return self.whole[:, S_CAUSE]
 
     @property
     def echo_of(self) -> Integers:
-        """The piece that comes back from the driver here; -1 in the first round trip, and on a block."""
+        """Return the piece whose echo is the load of each piece; -1 in the first round trip and on a block."""
         return self.whole[:, S_ECHO_OF]
 
     @property
     def theta_from(self) -> Floats:
-        """Offset in the round trip at which the piece starts, s."""
+        """Return the phase (s) at which each piece begins."""
         return self.real[:, S_THETA_FROM]
 
     @property
     def theta_to(self) -> Floats:
-        """Offset at which it ends, s."""
+        """Return the phase (s) at which each piece ends."""
         return self.real[:, S_THETA_TO]
 
     @property
     def speed(self) -> Floats:
-        """theta = theta_from + speed xi + bend xi^2."""
+        """Return `speed` (s) in theta = theta_from + speed xi + bend xi^2."""
         return self.real[:, S_SPEED]
 
     @property
     def bend(self) -> Floats:
-        """See speed; zero but next to folds."""
+        """Return `bend` (s) in the same relation; it is zero except next to folds."""
         return self.real[:, S_BEND]
 
     @property
     def slip(self) -> Floats:
-        """Slip at the start of the piece, minus the initial slip, m."""
+        """Return the slip (m) where each piece begins, minus the initial slip."""
         return self.real[:, S_SLIP]
 
     @property
     def law_slip(self) -> Floats:
-        """Slip that the law counts at the start of the piece, minus its initial value, m."""
+        """Return the slip that the law counts (m) where each piece begins, minus its initial value."""
         return self.real[:, S_LAW_SLIP]
 
     @property
     def amplified(self) -> Floats:
-        """What has become here of an error of 1 in the load at the start of the run; NaN where that is not known (see `GAIN`)."""
+        """Return the size in each piece of an error of 1 in the load at the start of the run; NaN if not known (see `gain`)."""
         return self.real[:, S_AMPLIFIED]
 
     @property
     def gain(self) -> Floats:
-        """By how much the echo of an error in the load is larger than the error; NaN where more than the phase decides that."""
+        """Return the factor from an error in the load of each piece to its echo; NaN if it depends on more than the phase."""
         return self.real[:, S_GAIN]
 
 
 def new_store(capacity: int, has_state: bool = False) -> Store:
-    """An empty history with room for so many pieces."""
+    """Return an empty history with room for `capacity` pieces."""
     load, rate, state = (np.empty((rows, TERMS)) for rows in (capacity, capacity, capacity if has_state else 0))
     return Store(np.empty((capacity, 6), np.int64), np.empty((capacity, 8)), load, rate, state)
 
 
 def resized(store: Store, length: int, capacity: int) -> Store:
-    """The first `length` pieces in a history with room for `capacity`."""
+    """Return the first `length` pieces in a new history with room for `capacity`."""
     larger = new_store(capacity, len(store.state) > 0)
     for old, new in zip(store, larger, strict=True):
         new[:length] = old[:length]
@@ -329,14 +332,17 @@ def resized(store: Store, length: int, capacity: int) -> Store:
 
 
 def trimmed(store: Store, length: int, first: int = 0) -> Store:
-    """The history without its spare room, from a piece on (views, not copies)."""
+    """Return the pieces from `first` to `length` - 1 of a history without its spare room, as views."""
     kept = slice(first, length)
     return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
 
 
 def keep_only(store: Store, length: int, kept: Integers) -> Integers:
-    """Forget all of the first `length` pieces but these, in order of time. Returns where each is now; -1 if it is forgotten."""
-    place = np.full(length + 1, -1)  # the last one stands for "none"
+    """Keep only the given ones, in order of time, of the first `length` pieces of a history.
+
+    Return the new index of each old piece, or -1 if it was dropped; the last entry, for no piece, is -1, too.
+    """
+    place = np.full(length + 1, -1)  # an `echo_of` of -1 reads the last entry, and so stays -1
     place[kept] = np.arange(len(kept))
     for table in store:
         table[: len(kept)] = table[:length][kept] if len(table) else table[:0]

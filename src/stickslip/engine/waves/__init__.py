@@ -1,1 +1,1 @@
-"""What arrives at the contact: echoes, and loading that varies in time."""
+"""The load that arrives at the contact: echoes, and loading that varies in time."""

@@ -1,12 +1,13 @@
-"""The echoes on their way back to the contact of a slab with a rigid driver: which of them will make it slip next, and when.
+"""The queue of echoes on a slab with a rigid driver: which of them will make the contact slip next, and when.
 
-A rigid driver sends back what left the contact, round trip after round trip, and adds the same to it each time. So a piece of load
-under which the contact rests need not be met again before it breaks: the round trip in which it does is known. Of each phase of the
-round trip the last piece recorded there stands in a tree, ordered by phase; each node knows which piece below it breaks first.
+A rigid driver sends back the wave that left the contact, round trip after round trip, and adds the same ramp to it each time. A
+piece of load under which the contact rests therefore need not be met again before it *breaks*, that is, before the contact may
+slip under it: that round trip is known. For each phase of the round trip, the last piece that was recorded there is a node of a
+tree, which is ordered by phase; each node knows which piece in its subtree breaks first.
 
-It is a treap (Seidel & Aragon 1996, Algorithmica 16, 464), whose shape depends on the pieces that are in it and not on how they
-came: a run that is taken up again grows the same one. While a round trip goes on there are two: what it has passed, and what it
-has yet to meet.
+The tree is a treap (Seidel & Aragon 1996, Algorithmica 16, 464). Its shape depends on the pieces in it and not on the order in
+which they were added, so that a run that is resumed builds the same one. During a round trip there are two trees: pieces that it
+has passed (`counts.behind`), and pieces that it has yet to meet (`counts.ahead`).
 """
 
 from __future__ import annotations
@@ -25,32 +26,35 @@ from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
 
 LEFT, RIGHT, FIRST_UP, FIRST_DOWN, TRIP, RANK = range(6)
 NODE = 6
-"""Numbers of a node: its children, the pieces below (or here) that break first forwards and backwards, round trip, rank."""
+"""Length of a node (1): its children, the pieces in its subtree that break first forwards and backwards, round trip, rank."""
 PHASE, HIGH, LOW = range(3)
 HEIGHTS = 3
-"""Of a node's piece: where it begins, and the largest of its load and of minus its load one round trip later, less the ramp."""
+"""Length of the heights of a node (1): the phase (s) at which its piece begins, and the largest values of its echo and of minus its
+echo (Pa, minus the reference strength), without the ramp."""
 NOTHING = -1
+"""Index of no piece and of an empty tree."""
 FOREVER = 2**62
+"""Number of a round trip that never comes."""
 NEARLY = 2e-15
-"""Of the reference strength: rounding of a load, by which a piece is met early rather than late."""
+"""Share of the reference strength (1), for rounding of the load, by which a piece is met early rather than late."""
 MANY = 16
-"""Pieces in a round trip from which on it pays to meet only those that break, and of these at most one in `MANY // 4`."""
+"""Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `MANY // 4` of them may slip."""
 
 
 class Echoes(NamedTuple):
-    """The trees, as rows parallel to those of the history."""
+    """Hold the trees of echoes: node n is piece n of the history."""
 
     node: Integers  # (capacity, NODE)
     heights: Floats  # (capacity, HEIGHTS)
 
 
 def new_echoes(capacity: int) -> Echoes:
-    """Room for as many pieces as the history has."""
+    """Return empty trees with room for `capacity` pieces, which is that of the history."""
     return Echoes(np.empty((capacity, NODE), np.int64), np.empty((capacity, HEIGHTS)))
 
 
 def resized(echoes: Echoes, length: int, capacity: int) -> Echoes:
-    """The first `length` pieces, with room for `capacity`."""
+    """Return the trees of the first `length` pieces, with room for `capacity`."""
     larger = new_echoes(capacity)
     for old, new in zip(echoes, larger, strict=True):
         new[:length] = old[:length]
@@ -62,7 +66,7 @@ def resized(echoes: Echoes, length: int, capacity: int) -> Echoes:
 
 @kernel
 def sooner(node: Integers, heights: Floats, ramp: float, a: int, b: int, way: int) -> bool:
-    """Whether piece a breaks before piece b, forwards (way 1) or backwards (-1)."""
+    """Return True if piece a breaks before piece b, forwards (way 1) or backwards (-1), under a ramp (Pa per round trip)."""
     column = HIGH if way > 0 else LOW
     higher = heights[HEIGHTS * a + column] - heights[HEIGHTS * b + column]
     return higher > way * ramp * (node[NODE * a + TRIP] - node[NODE * b + TRIP])
@@ -70,7 +74,7 @@ def sooner(node: Integers, heights: Floats, ramp: float, a: int, b: int, way: in
 
 @kernel
 def settle(node: Integers, heights: Floats, ramp: float, n: int) -> None:
-    """What breaks first at or below a node, from what its children know."""
+    """Set the pieces that break first in the subtree of node n, from those of its children."""
     for way, column in ((1, FIRST_UP), (-1, FIRST_DOWN)):
         first = n
         for side in (LEFT, RIGHT):
@@ -82,7 +86,7 @@ def settle(node: Integers, heights: Floats, ramp: float, n: int) -> None:
 
 @kernel
 def join(node: Integers, heights: Floats, ramp: float, a: int, b: int) -> int:
-    """One tree of two, all phases of the first of which lie before those of the second."""
+    """Join two trees and return the root; all phases of tree a must lie before those of tree b."""
     if a == NOTHING:
         return b
     if b == NOTHING:
@@ -98,7 +102,7 @@ def join(node: Integers, heights: Floats, ramp: float, a: int, b: int) -> int:
 
 @kernel
 def part(node: Integers, heights: Floats, ramp: float, n: int, phase: float) -> tuple[int, int]:
-    """Two trees of one: the pieces that begin before a phase, and the others."""
+    """Split tree n and return the roots of two: the pieces that begin before a phase (s), and the others."""
     if n == NOTHING:
         return NOTHING, NOTHING
     if heights[HEIGHTS * n + PHASE] < phase:
@@ -114,7 +118,7 @@ def part(node: Integers, heights: Floats, ramp: float, n: int, phase: float) -> 
 
 @kernel
 def without_first(node: Integers, heights: Floats, ramp: float, n: int) -> int:
-    """The tree without its first piece."""
+    """Remove the first piece from tree n and return the root."""
     if node[NODE * n + LEFT] == NOTHING:
         return node[NODE * n + RIGHT]
     node[NODE * n + LEFT] = without_first(node, heights, ramp, node[NODE * n + LEFT])
@@ -124,7 +128,7 @@ def without_first(node: Integers, heights: Floats, ramp: float, n: int) -> int:
 
 @kernel
 def first_of(run: Run, n: int) -> int:
-    """The first piece in a tree."""
+    """Return the first piece in tree n, in order of phase, or NOTHING."""
     while n != NOTHING and run.node[NODE * n + LEFT] != NOTHING:
         n = run.node[NODE * n + LEFT]
     return n
@@ -132,7 +136,7 @@ def first_of(run: Run, n: int) -> int:
 
 @kernel
 def rank(phase: float, trip: int) -> int:
-    """As good as random, but always the same for a piece (the finalizer of MurmurHash3, public domain, A. Appleby)."""
+    """Return a pseudorandom number that depends on phase and trip alone (finalizer of MurmurHash3, public domain, A. Appleby)."""
     h = bits_of(phase) ^ (trip * 0x5851F42D4C957F2D)
     h = (h ^ ((h >> 33) & 0x7FFFFFFF)) * -0x00AE502812AA7333
     h = (h ^ ((h >> 33) & 0x7FFFFFFF)) * -0x3B314601E57A13AD
@@ -144,27 +148,30 @@ def rank(phase: float, trip: int) -> int:
 
 @kernel
 def room(run: Run, n: int, way: int, limit: float) -> float:
-    """How far the load of a piece stays from the limit in the round trip after its own, less the ramp."""
+    """Return the distance (Pa) of the echo of piece n from the limit at which rest ends, without the ramp.
+
+    `way` is 1 for slip forwards, -1 for slip backwards; `limit` (Pa) is measured from the reference strength.
+    """
     top = run.heights[HEIGHTS * n + HIGH] if way > 0 else run.heights[HEIGHTS * n + LOW] - 2.0 * run.par.reference
     return limit - NEARLY * abs(run.par.reference) - top
 
 
 @kernel
 def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
-    """Whether the contact may slip under a piece in a round trip."""
+    """Return True if the contact may slip in a direction under the echo of piece n in round trip `trip`."""
     return way * run.par.ramp * (trip - run.node[NODE * n + TRIP]) > room(run, n, way, limit)
 
 
 @kernel
 def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
-    """Whether it may slip under any piece of a tree."""
+    """Return True if the contact may slip under any piece of tree n in round trip `trip`, in either direction."""
     forwards = breaks(run, run.node[NODE * n + FIRST_UP], 1, limit, trip)
     return forwards or breaks(run, run.node[NODE * n + FIRST_DOWN], -1, limit, trip)
 
 
 @kernel
 def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
-    """The first piece in a tree, in order of phase, under which the contact may slip in a round trip."""
+    """Return the first piece of tree n, in order of phase, under which the contact may slip in round trip `trip`, or NOTHING."""
     if n == NOTHING or not any_breaks(run, n, limit, trip):
         return NOTHING
     while True:
@@ -179,7 +186,7 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
 
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
-    """The next round trip in which the contact may slip under any piece of a tree."""
+    """Return the next round trip in which the contact may slip under any piece of tree n, or FOREVER."""
     coming = run.counts.row + 1
     if any_breaks(run, n, limit, coming):
         return coming
@@ -199,7 +206,10 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 
 @kernel
 def leave_out_ends(run: Run, real: Floats) -> None:
-    """Of the load in a piece leave only what is not too near its ends: slip there alone would be too short to be resolved."""
+    """Restrict run.part, the load along a piece, to places further than `shortest` from its ends if short pieces are lumped.
+
+    Slip near an end alone would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
+    """
     width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
     share = run.par.shortest / width if run.counts.lumps == 1 else 0.0
     if share >= 0.5:
@@ -213,7 +223,7 @@ def leave_out_ends(run: Run, real: Floats) -> None:
 
 @kernel
 def add(run: Run, n: int) -> None:
-    """A piece that the round trip has passed: behind all those that it has passed before."""
+    """Add piece n to the tree of pieces that the round trip has passed, after all pieces in it."""
     node, heights = ahead(run.node, NODE * n), ahead(run.heights, HEIGHTS * n)
     load, rate = ahead(run.stored_load, TERMS * n), ahead(run.stored_rate, TERMS * n)
     for k in range(TERMS):
@@ -230,7 +240,7 @@ def add(run: Run, n: int) -> None:
 
 @kernel
 def add_new(run: Run) -> None:
-    """The pieces recorded since the last call."""
+    """Add the pieces that were recorded since the last call."""
     for n in range(run.counts.new_from, run.counts.length):
         add(run, n)
     run.counts.new_from = run.counts.length
@@ -238,7 +248,7 @@ def add_new(run: Run) -> None:
 
 @kernel
 def pass_to(run: Run, n: int) -> None:
-    """The round trip passes over what comes before a piece, and takes that piece."""
+    """Move the pieces before piece n to the tree of those that have been passed, and take piece n out of the tree ahead."""
     phase = run.heights[HEIGHTS * n + PHASE]
     before, rest = part(run.node, run.heights, run.par.ramp, run.counts.ahead, phase)
     run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, before)
@@ -250,13 +260,13 @@ def pass_to(run: Run, n: int) -> None:
 
 @kernel
 def goes_on(run: Run) -> bool:
-    """Whether the piece that follows must be met: the contact slips, or has come to rest just where the last one ended."""
+    """Return True if the very next piece must be met: the contact slips, or came to rest exactly where the last piece ended."""
     return run.counts.mode != 0 or run.whole[WHOLE * (run.counts.length - 1) + at.S_MODE] != 0
 
 
 @kernel
 def next_echo(run: Run) -> int:
-    """The piece of history whose echo has to be met next; NOTHING where the round trip holds no more."""
+    """Take out and return the piece of the history whose echo must be met next in this round trip, or NOTHING."""
     if goes_on(run):
         source = first_of(run, run.counts.ahead)
     else:
@@ -269,7 +279,7 @@ def next_echo(run: Run) -> int:
 
 @kernel
 def end_trip(run: Run) -> None:
-    """Close a round trip, and go to the next one in which something happens. Nothing ever will: the contact is locked."""
+    """Close a round trip, and go to the next one in which the contact may slip; set `is_locked` if there is none."""
     add_new(run)
     whole = join(run.node, run.heights, run.par.ramp, run.counts.behind, run.counts.ahead)
     trip = run.counts.row + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
@@ -283,7 +293,11 @@ def end_trip(run: Run) -> None:
 
 @kernel
 def pays(run: Run) -> bool:
-    """Whether to meet only what breaks from here on: the round trip was at rest, or, if it had many pieces, almost."""
+    """Return True if only echoes that break should be met from here on.
+
+    The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
+    loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
+    """
     if run.par.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
         return False
     if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != at.NEVER:
@@ -296,7 +310,7 @@ def pays(run: Run) -> bool:
 
 @kernel
 def plant(run: Run) -> None:
-    """From here on only echoes that break are met: those of the round trip just past are the first."""
+    """Meet only echoes that break from here on, and build the tree from the pieces of the round trip just past."""
     run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
     run.counts.behind = run.counts.ahead = NOTHING
     end_trip(run)
@@ -304,7 +318,10 @@ def plant(run: Run) -> None:
 
 @kernel
 def replant(table: Integers, pieces: Integers, past: int) -> None:
-    """The trees again: of these pieces, in order of phase; the first `past` of them lie before the round trip's place."""
+    """Build the trees of a resumed run from the given pieces, which are in order of phase.
+
+    The first `past` of them are those that the present round trip has passed. `table` comes from `workspace.lend`.
+    """
     run = borrow(table)
     run.counts.behind = NOTHING
     for k in range(past, len(pieces)):

@@ -1,8 +1,9 @@
-"""Loading that varies in time: what it adds to a piece of load, where it cuts it, and how long a contact at rest withstands it.
+"""Loading that varies in time: how it adds to a piece of load and cuts it, and how long a contact at rest withstands it.
 
-The inflow F runs straight from break to break, with a tone on top. A piece of load is cut where a segment of it arrives; from there
-on the break is an edge between pieces, and so are its echoes. A load at rest grows by F from row to row on a slab and by its
-integral on a block: over rows in which nothing but the tone changes both are closed forms, taken at the mean time.
+The inflow F (slab: Pa, block: N/s) is linear in time between breaks, plus a tone. A piece of load is cut where a new segment of F
+arrives; from then on the break is an edge between pieces, and so are its echoes. The load at rest grows by F from one round trip
+to the next on a slab, and by the integral of F on a block. Over rows in which nothing but the tone changes, both sums are closed
+forms in F at the mean time of these rows.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from stickslip.engine.state.layout import TERMS, Cause
 from stickslip.engine.state.workspace import WHOLE, Run
 
 TIE = 1e-13
-"""Breaks nearer to the edge of a piece, as a share of a row, lie on it."""
+"""Distance, as a share of a row (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 
 
 @kernel
 def take_part(run: Run) -> None:
-    """Of the source of load just brought, and not yet taken, the part up to the next break of the loading, with what it adds."""
+    """Take the part up to the next break of the loading from the present source of load, and add the loading to it."""
     begin = run.state.taken
     if begin > 0.0:
         run.counts.arriving = Cause.NO_CAUSE
@@ -42,18 +43,18 @@ def take_part(run: Run) -> None:
 
 @kernel
 def enter_segment(run: Run, theta: float) -> bool:
-    """Go on to the segment that has arrived at an offset of the present row; whether the loading jumps there."""
+    """Enter the segment of the loading that has arrived at a phase (s) of the present row; return True if the loading jumps."""
     jumps, tie = False, TIE * run.par.row_time
     while next_change(run) <= theta + tie:
         run.counts.segment += 1
-        run.counts.stuck_rows = -1  # what the last round trip at rest was says nothing of the next one
+        run.counts.stuck_rows = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.from_jump[run.counts.segment] == 1.0
     return jumps
 
 
 @kernel
 def next_change(run: Run) -> float:
-    """Offset, from the start of the present row, at which the next segment arrives; inf in later rows."""
+    """Return the phase (s) in the present row at which the next segment arrives; inf for a later row, -inf for an earlier one."""
     following = run.counts.segment + 1
     if following >= run.segments or run.from_row[following] > run.counts.row:
         return math.inf
@@ -62,7 +63,7 @@ def next_change(run: Run) -> float:
 
 @kernel
 def cut(run: Run, begin: float, end: float, theta: float, theta_to: float) -> None:
-    """Keep the part of the source between two places in it."""
+    """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `theta` and `theta_to`."""
     width = end - begin
     restrict(run.load, begin, width, run.spare)
     copy(run.spare, run.load, TERMS)
@@ -73,7 +74,7 @@ def cut(run: Run, begin: float, end: float, theta: float, theta_to: float) -> No
 
 @kernel
 def add_loading(run: Run) -> None:
-    """Add to the part what the driver sent since its load was recorded."""
+    """Add to the piece of load what the driver has sent since the load that it comes from was recorded."""
     row = float(run.counts.row)
     if run.counts.is_block == 1:
         pull_block(run)
@@ -88,7 +89,7 @@ def add_loading(run: Run) -> None:
 
 @kernel
 def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
-    """Add to a slab's load the inflow of so many rows, whose mean row is given, at the phases of the part."""
+    """Add to a slab's load the inflow of `rows` round trips, with the mean index `mean_row`, at the phases of the piece of load."""
     since = (mean_row - run.from_row[segment]) * run.par.row_time + (run.state.theta_from - run.from_offset[segment])
     slope = rows * run.from_slope[segment]
     run.load[0] += rows * run.from_value[segment] + slope * since
@@ -103,7 +104,7 @@ def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
 
 @kernel
 def dirichlet(count: float, step: float) -> float:
-    """Sum of so many unit phasors, a step (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
+    """Return the sum of `count` unit phasors that are `step` (rad) apart, along their mean: sin(count step/2) / sin(step/2)."""
     turns = math.floor(step / (2.0 * math.pi) + 0.5)
     rest = 0.5 * step - turns * math.pi  # in [-pi/2, pi/2]
     value = count if rest == 0.0 else math.sin(count * rest) / math.sin(rest)
@@ -112,9 +113,9 @@ def dirichlet(count: float, step: float) -> float:
 
 @kernel
 def tone_series(run: Run, amplitude: float, time: float) -> None:
-    """amplitude sin(frequency t + phase) along the part, which begins at a time (s): coefficients in xi, into `spare`.
+    """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s).
 
-    From the equations of sine and cosine: s' = frequency theta' c, c' = -frequency theta' s.
+    They follow from s' = frequency theta' c and c' = -frequency theta' s for the sine s and the cosine c.
     """
     frequency = run.par.tone_frequency
     turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
@@ -130,7 +131,7 @@ def tone_series(run: Run, amplitude: float, time: float) -> None:
 
 @kernel
 def pull_block(run: Run) -> None:
-    """A block's load: where it stood, and what its spring is stretched by since."""
+    """Set a block's load: its value at the end of the history, plus what the pull has added to the spring's force since."""
     n = run.counts.length - 1
     if n >= 0:
         run.load[0] = total(ahead(run.stored_load, TERMS * n))
@@ -151,7 +152,7 @@ def pull_block(run: Run) -> None:
 
 @kernel
 def pulled_in_rows(run: Run, rows: float) -> float:
-    """Force (N) that a block's spring gains in so many rows at rest before the present one."""
+    """Return the force (N) that the pull adds to a block's spring in the given number of rows at rest before the present one."""
     segment, lasting = run.counts.row_segment, rows * run.par.row_time
     middle = (run.counts.row - 0.5 * rows) * run.par.row_time
     since = (run.counts.row - 0.5 * rows - run.from_row[segment]) * run.par.row_time - run.from_offset[segment]
@@ -168,7 +169,11 @@ def pulled_in_rows(run: Run, rows: float) -> float:
 
 @kernel
 def rows_withstood(run: Run, limit: float) -> int:
-    """Whole rows, up to the one in which the loading breaks, that a contact at rest stays so for certain; FOREVER if for ever."""
+    """Return the number of whole rows, up to the next break of the loading, for which a contact at rest is certain to stay so.
+
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it
+    never ends.
+    """
     segment = run.counts.segment
     following = segment + 1
     room = run.from_row[following] - run.counts.row - 1.0 if following < run.segments else float(at.NEVER)
@@ -191,17 +196,18 @@ def rows_withstood(run: Run, limit: float) -> int:
 
 
 FORGOTTEN = 1e-17
+"""Factor (1) at which the differences between round trips at rest have faded: below rounding."""
 
 
 @kernel
 def has_faded(run: Run) -> bool:
-    """Whether the round trips of a slab at rest are the same from here on: what they differ by fades from the first one on."""
+    """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
     return run.counts.stuck_rows > 0 and abs(run.par.reflection) ** (run.counts.stuck_rows - 1) < FORGOTTEN
 
 
 @kernel
 def tops(run: Run, sign: float) -> float:
-    """Largest load of the row just past, in a direction."""
+    """Return the largest value of sign * load (Pa or N, minus the reference strength) in the row just past."""
     top = -math.inf
     for n in range(run.counts.row_from, run.counts.length):
         top = max(top, maximum(ahead(run.stored_load, TERMS * n), sign))
@@ -210,13 +216,13 @@ def tops(run: Run, sign: float) -> float:
 
 @kernel
 def withstands(run: Run, rows: float, top: float, bottom: float) -> bool:
-    """Whether the load can certainly not grow by more than `top`, nor fall by more than `bottom`, in the next so many rows."""
+    """Return True if the load is certain to grow by less than `top` and fall by less than `bottom` (Pa or N) in the next rows."""
     return growth_bound(run, rows, 1.0) < top and growth_bound(run, rows, -1.0) < bottom
 
 
 @kernel
 def growth_bound(run: Run, rows: float, sign: float) -> float:
-    """A bound on the growth of a load at rest, in a direction, over the next 0 to so many rows."""
+    """Return a bound (Pa or N) on the growth of sign * load at rest over the next rows, up to the given number of them."""
     segment, period, frequency = run.counts.segment, run.par.row_time, run.par.tone_frequency
     begin = run.counts.row * period
     end = begin + (rows + 2.0) * period
@@ -237,7 +243,7 @@ def growth_bound(run: Run, rows: float, sign: float) -> float:
 
 @kernel
 def largest_sine(begin: float, end: float, amplitude: float) -> float:
-    """Largest amplitude sin(x) for x between two angles."""
+    """Return the largest value of amplitude sin(x) for x between two angles (rad)."""
     if amplitude < 0.0:
         return largest_sine_up(begin + math.pi, end + math.pi) * -amplitude
     return largest_sine_up(begin, end) * amplitude
@@ -245,6 +251,6 @@ def largest_sine(begin: float, end: float, amplitude: float) -> float:
 
 @kernel
 def largest_sine_up(begin: float, end: float) -> float:
-    """Largest sin(x) for x between two angles."""
+    """Return the largest value of sin(x) for x between two angles (rad)."""
     peak = (math.floor((begin - 0.5 * math.pi) / (2.0 * math.pi)) + 1.0) * 2.0 * math.pi + 0.5 * math.pi
     return 1.0 if peak <= end else max(math.sin(begin), math.sin(end))
