@@ -240,7 +240,7 @@ def test_a_scheduler_that_goes_is_one_line(tmp_path: Path) -> None:
             results = stream(client, slowly, ((number, number) for number in range(100)))
             next(results)
             scheduler.kill()
-            with pytest.raises(ChunksLostError, match="the dask scheduler is gone"):
+            with pytest.raises(ChunksLostError, match="the dask scheduler is lost"):
                 list(results)
     finally:
         for process in (scheduler, worker):
