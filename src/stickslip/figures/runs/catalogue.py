@@ -119,9 +119,8 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     horizon = float(dataset["horizon"])
     if horizon < end:
         axes.axvspan(horizon / size, 1.02 * end / size, color=GREY, alpha=0.15, linewidth=0.0)
-        axes.annotate(
-            "beyond the predictability horizon ", (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha="right", color=INK
-        )
+        text, side = " shaded: beyond the predictability horizon ", "right" if horizon > 0.5 * end else "left"
+        axes.annotate(text, (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha=side, color=INK)
     axes.set_yscale("log" if _wide(slip) else "linear")
     axes.set_ylim(bottom=low)
     axes.set_xlim(-0.02 * end / size, 1.02 * end / size)

@@ -116,8 +116,7 @@ def _draw_time_lines(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     axes.set_ylabel("member (0: undisturbed)")
     letter(
         axes,
-        "A  slip events: "
-        + ("shared with the undisturbed run (blue), not shared (red)" if (same == 0).any() else "shared by all members"),
+        "A  slip events: " + ("shared with member 0 (blue), not shared (red)" if (same == 0).any() else "shared by all members"),
     )
 
 
