@@ -165,7 +165,7 @@ def test_a_checkpoint_on_a_full_disk_does_not_end_the_run(
     save_checkpoint(run, tmp_path / "run.nc")
     before = (tmp_path / "run.nc").read_bytes()
     monkeypatch.setattr(atomic_write, "sync", full)
-    with pytest.warns(RuntimeWarning, match=r"run\.nc: cannot be written: No space left on device; the run goes on"):
+    with pytest.warns(RuntimeWarning, match=r"run\.nc: cannot be written: No space left on device; the run continues"):
         save_checkpoint(run, tmp_path / "run.nc")
     assert (tmp_path / "run.nc").read_bytes() == before
 

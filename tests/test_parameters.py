@@ -54,7 +54,7 @@ def test_names_units_and_values() -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("static", "may be any of friction.slip.static, friction.rate.static: say which"),
+        ("static", "is ambiguous: give one of friction.slip.static, friction.rate.static"),
         ("alfa", "parameter 'alfa' is unknown; did you mean 'alpha'?"),
         ("friction.alpha", "did you mean 'friction.rate.alpha'?"),
         ("", "parameter '' is unknown; allowed: body.contact_mass, body.density"),

@@ -48,7 +48,7 @@ def test_file_speaks_for_itself(tmp_path: Path) -> None:
     with xr.open_dataset(path, engine="h5netcdf") as file:
         assert file.attrs["source"] == f"stickslip {ss.__version__}"
         assert file.attrs["selection_rule"] == "perfect-delay"
-        assert "rests on the rule" in file.attrs["selection_note"]
+        assert "depends on the rule" in file.attrs["selection_note"]
         assert (file.attrs["selection_regime"], file.attrs["selection_decided_shocks"]) == ("irregular", 0)
         assert 'kind = "hyperbolic-rate"' in file.attrs["scenario"]
         assert file.attrs["rtol"] == 1e-10

@@ -123,11 +123,11 @@ def test_every_law_of_many_has_a_case() -> None:
 def test_why_not() -> None:
     scenario = CASES["rate"].scenario
     assert why_not(scenario, ("friction.alpha", "body.thickness", "run.duration"), ("events",)) == ""
-    assert "not one that a batch folds" in why_not(scenario, ("friction.alpha",), ("horizon",))
+    assert "not one that a batch can keep" in why_not(scenario, ("friction.alpha",), ("horizon",))
     assert "not a plain number" in why_not(scenario, ("friction.alfa",), ("slip",))
     assert "exclude each other" in why_not(scenario, ("initial.load", "initial.excess"), ("slip",))
-    assert "so many events" in why_not(replace(scenario, events=3), ("friction.alpha",), ("slip",))
-    assert "leaps over creep" in why_not(replace(scenario, creep_rtol=1e-3), ("friction.alpha",), ("slip",))
+    assert "not until a number of events" in why_not(replace(scenario, events=3), ("friction.alpha",), ("slip",))
+    assert "leap over creep" in why_not(replace(scenario, creep_rtol=1e-3), ("friction.alpha",), ("slip",))
     maxwell = replace(scenario, problem=replace(scenario.problem, selection="maxwell"))
     assert "maxwell" in why_not(maxwell, ("friction.alpha",), ("slip",))
     stribeck = CASES["stribeck"].scenario

@@ -99,7 +99,7 @@ def test_check_says_what_jumps_and_what_rests_on_the_rule(command):
         r"^jump up \* +slip rate 0 to 4\.10204082 m/s at a load of 80000000 Pa; traction changes by -4\.02e\+07 Pa",
         r"^jump down \* +slip rate 1\.25876976 to 0 m/s at a load of 64471887\.2424 Pa; traction changes by 1\.23359e\+07 Pa",
         r"^loop \* +the load going up and down encloses 4\.62819e\+07 Pa m/s",
-        r"^\* +rests on the rule 'perfect-delay'",
+        r"^\* +depends on the rule 'perfect-delay'",
         r"the slip rate jumps to 4\.10204082 m/s",
     ):
         assert re.search(pattern, out, re.MULTILINE), pattern
@@ -124,7 +124,7 @@ def test_run_says_what_happened(command):
     shown = command("run", "fig6-slab")
     assert shown.code == 0
     assert shown.err == ""
-    for text in ("finished", "1 slip event", "23.440233", "2 shocks", "4.1020408", "this run rests on the rule"):
+    for text in ("finished", "1 slip event", "23.440233", "2 shocks", "4.1020408", "this run depends on the rule"):
         assert text in shown.out
 
 

@@ -44,7 +44,7 @@ def test_a_catalogue_goes_on(command, tmp_path: Path):
 
 def test_events_stop_a_run(command, tmp_path: Path):
     shown = command("run", "cycles-block", "--until", "10000 years", "--events", "3", "--out", "run.nc")
-    assert "enough events: the run has had its number of slip events" in shown.out
+    assert "enough events: the run reached the requested number of slip events" in shown.out
     assert "3 slip events" in shown.out
     (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", "[run]\nevents = 4\n"))
     assert "4 slip events" in command("run", "mine.toml", "--until", "10000 years").out
@@ -64,7 +64,7 @@ REFUSED = [
     (["run", "--resume", "run.nc", "--creep-rtol", "1e-6"], "run: --resume goes on as the run began: leave --rtol, --creep-rtol,"),
     (["run", "--resume", "none.nc"], "none.nc: no such file"),
     (["run", "--resume", "bad.nc"], "bad.nc: not a netCDF file that can be read"),
-    (["run", "--resume", "run.nc", "--until", "1 s"], "run.nc: the run has come to"),
+    (["run", "--resume", "run.nc", "--until", "1 s"], "run.nc: the run has already reached"),
     (["run", "fig6-slab", "--resume", "run.nc"], "run.nc: is a run of another problem than fig6-slab: its body is SpringBlock("),
 ]
 

@@ -29,7 +29,7 @@ def test_quantities_series_and_tables_are_taken(command, tmp_path: Path):
     asked = ["--list", "members.csv", "-q", "slip", "-q", "heat", "--series", "slip, load", "--samples", "7", "--out", "list.zarr"]
     shown = command("sweep", "fig6-slab", *asked)
     assert shown.code == 0
-    assert "2 members of a list over friction.alpha, body.thickness" in shown.out
+    assert "2 members from a list over friction.alpha, body.thickness" in shown.out
     with xr.open_zarr("list.zarr") as found:
         assert set(found) == {"slip", "heat", "series_slip", "series_load", "status", "reason"}
         assert found["body.thickness"].values.tolist() == [1000.0, 2000.0]
@@ -64,7 +64,7 @@ def test_failures_are_counted_with_their_reasons(command):
     [
         ([], "sweep: needs either --vary or --list, got neither"),
         (["-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
-        (["-v", "alpa=1,2"], "--vary: 'alpa' is no key of this scenario; did you mean 'alpha'?"),
+        (["-v", "alpa=1,2"], "--vary: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
         (["-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
         (["-v", "thickness=1..2 kg:3"], "--vary: body.thickness must be a number in m"),
         (["-v", "alpha=1,2", "-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),

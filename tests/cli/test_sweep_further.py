@@ -37,7 +37,7 @@ def test_it_draws_a_grid(command, tmp_path: Path):
     [
         (["--figure", "map.bmp"], "--figure map.bmp: the name must end in .png or .pdf or .svg"),
         (["--refine", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
-        (["--refine", "slip"], "refine: slip is no whole number: say by which factor it must jump"),
+        (["--refine", "slip"], "refine: slip is not a whole number: give the factor by which it must change"),
         (["--refine", "pulses", "--dry-run"], "sweep: --refine needs a grid of --vary"),
         (["--refine", "pulses", "--design", "lhs", "-m", "4"], "sweep: --refine needs a grid of --vary"),
         (["--refine", "pulses", "--depth", "-1"], "refinement: the depth must be 0 or more"),
@@ -57,11 +57,11 @@ def test_what_it_cannot_do(command, options: list[str], message: str):
 
 def test_chunks_that_a_cluster_lost_are_told(command, monkeypatch: pytest.MonkeyPatch):
     def lose(work: object, chunks: object) -> Iterator[object]:
-        raise cluster.ChunksLostError("sweep: the dask scheduler is gone")
+        raise cluster.ChunksLostError("sweep: the dask scheduler is lost")
         yield
 
     monkeypatch.setattr("stickslip.sweeps.sweep.on_threads", lambda threads: lose)
     shown = command(*MAP, "--out", "map.zarr")
-    assert (shown.code, shown.err) == (1, "stickslip: sweep: the dask scheduler is gone\n")
+    assert (shown.code, shown.err) == (1, "stickslip: sweep: the dask scheduler is lost\n")
     with xr.open_zarr("map.zarr") as found:
         assert (found.status == -1).all()

@@ -44,7 +44,7 @@ def test_it_runs_and_is_saved_by_its_name(tmp_path: Path):
     solution = ss.simulate(replace(scenario.problem, selection=halfway), scenario.duration)
     level = [jump.load for jump in ss.uniqueness(solution.problem).jumps]
     assert [float(solution.load(t)) for t in solution.shocks.time] == pytest.approx(level, rel=1e-9, abs=0)
-    assert "halfway: the contact equation has several solutions, this run rests on the rule" in repr(solution)
+    assert "halfway: the contact equation has several solutions, this run depends on the rule" in repr(solution)
     path = solution.save(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: made under the selection rule 'halfway', unknown here: .*register"):
         ss.load(path)
@@ -80,7 +80,7 @@ def test_a_name_may_be_given_anew_and_the_next_run_follows(tmp_path: Path):
 @pytest.mark.parametrize(
     ("name", "rule", "message"),
     [
-        ("maxwell", halfway, "'maxwell' is a rule of its own"),
+        ("maxwell", halfway, "'maxwell' is the name of a built-in rule"),
         ("my rule", halfway, "letters, digits"),
         ("", halfway, "letters, digits"),
         ("mine", None, "must be a function"),

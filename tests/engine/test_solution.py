@@ -199,7 +199,7 @@ def test_far_stress_rate_reloads_a_lossy_slab() -> None:
 
 def test_readable_repr() -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
-    for word in ("ElasticSlab", "HyperbolicRate", "finished", "rests on the rule", "rtol"):
+    for word in ("ElasticSlab", "HyperbolicRate", "finished", "depends on the rule", "rtol"):
         assert word in repr(run)
         assert word in run._repr_html_()
 

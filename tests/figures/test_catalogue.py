@@ -33,7 +33,7 @@ def test_every_axis_has_its_unit(cycles: ss.Solution) -> None:
     figure = catalogue.draw(catalogue.data(cycles))
     assert len(figure.axes) == 7
     texts = [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())]
-    assert all(UNIT.search(text) or text.startswith("events") for text in texts), texts
+    assert all(UNIT.search(text) or "events" in text for text in texts), texts
     assert [panel(figure, name).get_xlabel().split()[-1] for name in "BCD"] == ["(year)", "(s)", "(ms)"]
 
 

@@ -95,7 +95,7 @@ def test_what_has_no_number_is_told_apart() -> None:
     status = np.zeros((9, 13))
     status[1], status[2] = FAILED, NOT_RUN
     figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, status=status), "answer")
-    assert legend(figure) == ["1", "no such number", "not run", "failed"]
+    assert legend(figure) == ["1", "undefined for this run", "not run", "failed"]
     assert figure.axes[0].patch.get_hatch() == "////"
     blank, mesh = meshes(figure, 0), meshes(figure, 1)
     hidden = np.ma.getmaskarray(mesh.get_array())
@@ -198,7 +198,7 @@ def refined() -> xr.Dataset:
 def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
     figure = ss.plot_sweep(refined, "irregular")
     axes = figure.axes[0]
-    assert legend(figure) == ["no", "yes", "it changes"]
+    assert legend(figure) == ["no", "yes", "boundary"]
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
     assert axes.get_ylim() == (50.0, 200.0)
     known, changes = (one for one in axes.collections if isinstance(one, PolyCollection))
@@ -244,7 +244,7 @@ def test_it_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
 
 def test_what_cannot_be_drawn() -> None:
     dataset = grid(np.ones((9, 13)), ALPHA, THICKNESS)
-    with pytest.raises(ss.InputError, match="'anser' is no quantity of this sweep; did you mean 'answer'"):
+    with pytest.raises(ss.InputError, match="this sweep has no quantity 'anser'; did you mean 'answer'"):
         ss.plot_sweep(dataset, "anser")
     with pytest.raises(ss.InputError, match="one member"):
         ss.plot_sweep(grid(np.ones(1), ALPHA))

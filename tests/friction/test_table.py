@@ -69,7 +69,7 @@ FILE = 'file = "data/x.csv"'
 
 def scenario(table: str, kind: str = "table") -> str:
     text = template("slab", kind)
-    start, end = text.index(f'kind = "{kind}"  # '), text.index("# How the far side moves")
+    start, end = text.index(f'kind = "{kind}"  # '), text.index("# The motion of the driver")
     return f'{text[:start]}kind = "{kind}"\n{table}\n{text[end:]}'
 
 

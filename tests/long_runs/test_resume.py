@@ -134,7 +134,7 @@ def test_fewer_events_than_there_were_are_refused(tmp_path: Path) -> None:
 def test_an_earlier_end_is_refused(tmp_path: Path) -> None:
     problem, duration = RUNS["slip law, slab"]
     ss.simulate(problem, duration, checkpoint=tmp_path / "run.nc")
-    with pytest.raises(ss.InputError, match=r"run\.nc: the run has come to .* s already: a duration of 1 s lies before that"):
+    with pytest.raises(ss.InputError, match=r"run\.nc: the run has already reached .* s: a duration of 1 s lies before that"):
         ss.resume(tmp_path / "run.nc", 1.0)
 
 
@@ -144,11 +144,11 @@ def test_another_engine_is_refused(tmp_path: Path) -> None:
     assert run.checkpoint is not None
     other = replace(run, checkpoint=replace(run.checkpoint, engine="0123456789abcdef"))
     other.save(tmp_path / "run.nc")
-    with pytest.raises(ss.InputError, match=r"run\.nc: cannot be taken up: another version of stickslip's engine made it") as said:
+    with pytest.raises(ss.InputError, match=r"run\.nc: cannot be resumed: another version of stickslip's engine made it") as said:
         ss.resume(tmp_path / "run.nc", 2 * duration)
     assert "\n" not in str(said.value)
     replace(run, checkpoint=None).save(tmp_path / "bare.nc")
-    with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be taken up: it does not hold where the engine stood"):
+    with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be resumed: it does not hold where the engine stood"):
         ss.resume(tmp_path / "bare.nc")
     with pytest.raises(ss.InputError, match=r"none\.nc: no such file"):
         ss.resume(tmp_path / "none.nc")

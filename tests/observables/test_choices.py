@@ -21,7 +21,7 @@ def test_the_first_event_rests_on_no_choice_and_every_rule_agrees() -> None:
     for solution in runs.values():
         found = choices(solution)
         assert (found.regime, found.shocks.tolist(), found.since) == ("irregular", [False, False], None)
-        assert "this run rests on the rule; it decided none of the 2 shocks" in solution.selection_note
+        assert "this run depends on the rule; it decided none of the 2 shocks" in solution.selection_note
         assert float(solution.slip(12.0)) == pytest.approx(23.4402332474, rel=1e-10, abs=0)
 
 

@@ -133,13 +133,13 @@ def test_an_ambiguous_name_asks_which() -> None:
     text = text.replace(
         "slips = [\n    0.0,\n    1.0,\n]\ncoefficients = [\n    0.5,\n    0.2,\n]", "static = 0.4\ndynamic = 0.2\ndistance = 1.0"
     )
-    with pytest.raises(ss.InputError, match=r"'static' may be any of friction.slip.static, friction.rate.static: say which"):
+    with pytest.raises(ss.InputError, match=r"'static' is ambiguous: give one of friction.slip.static, friction.rate.static"):
         key_named(read_scenario(text, "sum"), "static", "--vary")
 
 
 BAD = {
-    "friction.alpa=1..2:3": "'friction.alpa' is no key of this scenario; did you mean 'friction.alpha'?",
-    "thicknes=1..2:3": "'thicknes' is no key of this scenario; did you mean 'thickness'?",
+    "friction.alpa=1..2:3": "'friction.alpa' is not a parameter of this scenario; did you mean 'friction.alpha'?",
+    "thicknes=1..2:3": "'thicknes' is not a parameter of this scenario; did you mean 'thickness'?",
     "friction.alpha": 'must be "KEY=LOW..HIGH:POINTS"',
     "friction.alpha=": 'must be "KEY=LOW..HIGH:POINTS"',
     "=1..2:3": 'must be "KEY=LOW..HIGH:POINTS"',
@@ -156,9 +156,9 @@ BAD = {
     "body.thickness=rigid,1": "body.thickness must be a number in m",
     "body.driver_impedance=1..rigid:5": "must go from a smaller to a larger number",
     "run.selection=maxwel": "run.selection 'maxwel' is unknown; did you mean 'maxwell'?",
-    "run.selection=a..b:3": "has no numbers between which to go",
+    "run.selection=a..b:3": "takes words, not a range",
     "friction.alpha=1,,2": "friction.alpha must be a number",
-    "body.kind=spring-block": "is no key of this scenario",
+    "body.kind=spring-block": "is not a parameter of this scenario",
 }
 
 
@@ -171,7 +171,7 @@ def test_bad_axes_are_one_line(text: str) -> None:
 
 
 BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
-    ({"vary": []}, "what is to be varied?"),
+    ({"vary": []}, "name at least one parameter to vary"),
     ({"vary": ["alpha=1,2", "friction.alpha=3"]}, "friction.alpha is varied twice"),
     ({"vary": ["initial.load=1", "initial.excess=1"]}, "exclude each other"),
     ({"vary": "alpha=1,2", "kind": "lh"}, "design 'lh' is unknown"),
@@ -179,7 +179,7 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
     ({"vary": "alpha=1..2", "kind": "lhs"}, "members must be a whole number above 0"),
     ({"vary": "alpha=1..2", "kind": "lhs", "members": 0}, "members must be a whole number above 0"),
     ({"vary": "alpha=1..2", "kind": "lhs", "members": 5, "seed": -1}, "seed must be a whole number"),
-    ({"vary": "alpha=1..2:5", "kind": "random", "members": 5}, "needs no number of points"),
+    ({"vary": "alpha=1..2:5", "kind": "random", "members": 5}, "takes no number of points"),
     ({"vary": Path("no.csv")}, "no such file"),
     ({"vary": pd.DataFrame({"alpha": []})}, "has no members"),
     ({"vary": pd.DataFrame({"alpha": ["1 km"]})}, "does not convert to s/m"),

@@ -181,8 +181,8 @@ def test_a_quantity_may_fail_in_any_way(error: Exception) -> None:
     ("wanted", "said"),
     [
         ("event", "quantity 'event' is unknown; did you mean 'events'?"),
-        (["events", "events"], "is wanted twice"),
-        ([], "no quantity is wanted"),
+        (["events", "events"], "is given twice"),
+        ([], "no quantity is given"),
         ([("mine", pieces)], "must be a name, or"),
         ([("mine", "1", 5)], "must be a name, or"),
     ],
@@ -198,7 +198,7 @@ def test_bad_quantities_are_one_line(wanted: Any, said: str) -> None:
     [
         ({"series": ["slop"]}, "series 'slop' is unknown; did you mean 'slip'?"),
         ({"series": ["state"]}, "series 'state' is unknown"),
-        ({"series": ["slip", "slip"]}, "wanted twice"),
+        ({"series": ["slip", "slip"]}, "given twice"),
         ({"series": ["slip"], "samples": 1}, "samples must be a whole number from 2"),
         ({"chunk": 0}, "chunk must be a whole number"),
         ({"threads": 0}, "threads must be a whole number"),

@@ -152,7 +152,7 @@ def test_a_jump_by_a_factor() -> None:
     assert low <= IMPEDANCE / 0.5 / 100e6 <= high
     assert high - low == pytest.approx(0.65 / 2**12, rel=1e-9)
     assert found.sizes["member"] == 4 + 12
-    with pytest.raises(ss.InputError, match="slip is no whole number: say by which factor"):
+    with pytest.raises(ss.InputError, match="slip is not a whole number: give the factor by which"):
         ss.refine("fig6-slab", {ALPHA: "0.05..2:4"}, "slip")
 
 

@@ -215,7 +215,7 @@ def test_a_full_disk_is_one_line_and_leaves_a_store_that_goes_on(
     monkeypatch.setattr(Path, "replace", replace)
     with pytest.raises(ss.InputError) as told:
         sweep(path)
-    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; what is there can be read")
+    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; the results so far can be read")
     with xr.open_zarr(path) as found:
         assert 0 < int((found.status != NOT_RUN).sum()) < MEMBERS
     monkeypatch.undo()
@@ -273,7 +273,7 @@ def test_what_is_no_sweep_is_left_alone(tmp_path: Path, kind: str) -> None:
     else:
         xr.Dataset({"mine": 1}).to_zarr(path, consolidated=False)
     before = files(tmp_path)
-    with pytest.raises(ss.InputError, match="is there, and is no store of a sweep: choose another name"):
+    with pytest.raises(ss.InputError, match="exists and is not the store of a sweep: choose another name"):
         sweep(path)
     assert files(tmp_path) == before
     assert list(tmp_path.iterdir()) == [path]

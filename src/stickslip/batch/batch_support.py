@@ -43,17 +43,17 @@ def of_quantities(quantities: Sequence[str]) -> str:
     unknown = next((name for name in quantities if name not in QUANTITIES), None)
     if unknown is None:
         return ""
-    return f"quantity {ascii(unknown)[:60]} is not one that a batch folds; {nearest(str(unknown), QUANTITIES)}"
+    return f"quantity {ascii(unknown)[:60]} is not one that a batch can keep; {nearest(str(unknown), QUANTITIES)}"
 
 
 def of_scenario(scenario: Scenario) -> str:
     """Return the reason if the run has a limit of events, a varying load or leaps over creep from its start; otherwise ""."""
     if scenario.events is not None:
-        return "[run] events: a batch runs for a time, not until so many events are over"
+        return "[run] events: a batch runs for a time, not until a number of events"
     if scenario.problem.varies:
-        return "[loading] a batch runs under a loading that does not vary in time"
+        return "[loading] a batch needs a loading that does not vary in time"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
-        return "[run] creep_rtol: a batch makes no leaps over creep from the start of a run"
+        return "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
     return ""
 
 
@@ -69,7 +69,7 @@ def of_law(scenario: Scenario, keys: Sequence[str]) -> str:
         return f"{name}: branches of the contact equation move with slip"
     chooses = is_algebraic(problem) or ("body.contact_mass" in keys and law.depends_on_rate)
     if chooses and problem.rule not in RULES:
-        return f"selection rule '{problem.rule}' is worked out for one problem at a time; a batch knows {', '.join(RULES)}"
+        return f"selection rule '{problem.rule}' is calculated for one problem at a time; a batch supports {', '.join(RULES)}"
     if not law.variation < float("inf") or not law.range()[1] < float("inf"):
         return f"{name}: friction grows without bound"
     return ""

@@ -28,7 +28,7 @@ CHUNK = 8192
 SMALLEST_CHUNK = 1024
 """Smallest number of members in a chunk: enough to make the time that a chunk spends in Python negligible."""
 NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or has more branches than a batch holds"
-NO_START = "the run ends where it starts"
+NO_START = "the run cannot start"
 
 
 class Members(NamedTuple):
@@ -202,6 +202,6 @@ class _Batch:
         self.status[n] = BAD_PARAMETERS
         try:
             self.member(n)
-            self.reason[n] = "its numbers make no problem"
+            self.reason[n] = "its parameters are invalid"
         except InputError as error:
             self.reason[n] = str(error)

@@ -52,7 +52,11 @@ class ElasticSlab:
     thickness: float = quantity("m", "thickness h", above=0)
     normal_stress: float = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
     driver_impedance: float = quantity(
-        "Pa s/m", "impedance Zd of what pulls the far side: inf rigid, 0 a dead load", at_least=0, infinite=True, default=math.inf
+        "Pa s/m",
+        "impedance Zd of the driver: inf for a rigid driver, 0 for a dead load",
+        at_least=0,
+        infinite=True,
+        default=math.inf,
     )
     contact_mass: float = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
     p_wave_speed: float | None = quantity(

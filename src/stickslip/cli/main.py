@@ -33,10 +33,10 @@ slips, how it stops, and whether the answer is even unique.
   stickslip run mine.toml          run it; --figure mine.png draws it
   stickslip compare A B            runs side by side: a table, a figure
   stickslip sweep mine.toml        many runs: maps over its numbers
-  stickslip analogy                when does a block stand for a slab
+  stickslip analogy                where a block can replace a slab
   stickslip export mine.toml F     time series for other tools
-  stickslip regularise mine.toml   which selection rule does physics choose
-  stickslip ensemble mine.toml     how far can events and statistics be trusted
+  stickslip regularise mine.toml   find the selection rule that physics chooses
+  stickslip ensemble mine.toml     find how far events and statistics can be trusted
   stickslip paper --out paper      the source paper, claim by claim
 """
 

@@ -38,5 +38,5 @@ def lumping_note(count: Counts, par: Params, shortest: float | None) -> str:
     since = count.lumped_since * par.row_time
     return (
         f"events shorter than {par.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
-        f" {MOST_PIECES} pieces: what comes after is right on average only (shortest_event = 0 resolves every event)"
+        f" {MOST_PIECES} pieces: what follows is right only on average (shortest_event = 0 resolves every event)"
     )

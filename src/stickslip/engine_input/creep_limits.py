@@ -54,7 +54,7 @@ def missing_but_pull(problem: Problem) -> str:
     if body.contact_mass > 0.0:
         return "a contact without mass (no contact_mass)"
     if law.state is not None or law.depends_on_rate:
-        return f"a friction law of slip alone, {type(law).__name__} is not"
+        return f"a friction law of slip alone ({type(law).__name__} is not one)"
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"
     if problem.varies:

@@ -140,9 +140,8 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
     if counts.sum() > MOST_PARTS:
         period = 2.0 * math.pi / tone.frequency
-        raise InputError(
-            f"the loading's period of {period:g} s is too short: at least {theta[-1] / MOST_PARTS * 16:.3g} s is needed"
-        )
+        least = 2.0 * math.pi * theta[-1] / (MOST_PARTS * LARGEST_TURN)
+        raise InputError(f"the loading's period of {period:g} s is too short: at least about {least:.3g} s is needed")
     edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(theta[:-1], theta[1:], counts, strict=True)]
     of = np.repeat(np.arange(len(counts)), counts)
     begin = np.concatenate(edges)

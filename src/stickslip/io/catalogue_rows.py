@@ -68,7 +68,7 @@ class Rows:
                     file.write(",".join(rows.columns) + "\n")
                 file.writelines(lines_of(rows))
         except OSError as error:
-            kept = "; the rows up to the last checkpoint are there, and --resume goes on from it when there is room"
+            kept = "; the rows up to the last checkpoint are kept, and --resume continues from it when there is room"
             raise cannot_be_written(self.growing, error, kept) from None
 
     def sync(self) -> None:

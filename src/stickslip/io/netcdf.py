@@ -37,8 +37,8 @@ FORMAT = 1
 CATALOGUE = "stickslip_catalogue"
 """Attribute that holds the version in the checkpoint of a catalogue."""
 KINDS = {
-    "stickslip_format": "a solution: take it up with stickslip.resume",
-    CATALOGUE: "a catalogue's checkpoint: take it up with stickslip.resume_catalogue",
+    "stickslip_format": "a solution: continue it with stickslip.resume",
+    CATALOGUE: "a catalogue's checkpoint: continue it with stickslip.resume_catalogue",
 }
 """Attributes that hold the version, each with a description of the files that have it, for messages."""
 
@@ -189,7 +189,7 @@ def save_checkpoint(solution: Solution, path: Path) -> Path:
     try:
         return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
     except FullDiskError as error:
-        warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
         return path
 
 

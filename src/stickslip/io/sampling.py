@@ -107,7 +107,7 @@ def sample(
 def _count(wanted: float, most: int) -> int:
     """Return the number of samples in `wanted` sampling intervals, the first included. Raises InputError if it exceeds `most`."""
     if not wanted < most:
-        raise InputError(f"{wanted:.3g} samples are too many: take a lower rate, or an event of it (at most {most})")
+        raise InputError(f"{wanted:.3g} samples are too many: use a lower rate, or a single event (at most {most})")
     return math.floor(wanted * (1.0 + 1e-12)) + 1
 
 

@@ -33,10 +33,10 @@ class HoldAndSlide(LoadingHistory):
     kind: ClassVar[str] = "hold-and-slide"
     example: ClassVar[dict[str, Any]] = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
 
-    slide: float = quantity(VARYING, "value while it slides")
-    slide_time: float = quantity("s", "how long it slides before each hold", above=0)
-    hold_times: tuple[float, ...] = declare(Series(Quantity("s", "how long each hold lasts", above=0), least=1))
-    hold: float = quantity(VARYING, "value while it holds", default=0.0)
+    slide: float = quantity(VARYING, "value during a slide")
+    slide_time: float = quantity("s", "duration of the slide before each hold", above=0)
+    hold_times: tuple[float, ...] = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
+    hold: float = quantity(VARYING, "value during a hold", default=0.0)
 
     @property
     def segments(self) -> tuple[Segment, ...]:

@@ -31,8 +31,8 @@ class Sinusoidal(LoadingHistory):
 
     mean: float = quantity(VARYING, "mean value")
     amplitude: float = quantity(VARYING, "amplitude of the oscillation")
-    period: float = quantity("s", "its period", above=0)
-    phase: float = quantity("rad", "its phase at the start", default=0.0)
+    period: float = quantity("s", "period of the oscillation", above=0)
+    phase: float = quantity("rad", "phase of the oscillation at the start", default=0.0)
 
     @property
     def segments(self) -> tuple[Segment, ...]:

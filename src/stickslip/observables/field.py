@@ -87,7 +87,7 @@ def slab_of(readings: Readings) -> ElasticSlab:
     """Return the slab of a run. Raises InputError for a block."""
     body = readings.problem.body
     if not isinstance(body, ElasticSlab):
-        raise InputError("field: a block is rigid, it has no inside: only an ElasticSlab has a field")
+        raise InputError("field: a block is rigid and has no interior field: only an ElasticSlab has a field")
     return body
 
 

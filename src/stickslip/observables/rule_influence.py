@@ -143,7 +143,7 @@ def selection_note(solution: Solution) -> str:
     found = choices(solution)
     if found.regime == "regular":
         return f"{found.rule}: without effect, the solution is unique"
-    rests = f"{found.rule}: the contact equation has several solutions, this run rests on the rule"
+    rests = f"{found.rule}: the contact equation has several solutions, this run depends on the rule"
     if solution.problem.friction.depends_on_slip:
         return rests
     shocks, decided = len(found.shocks), int(found.shocks.sum())

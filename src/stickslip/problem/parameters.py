@@ -86,7 +86,7 @@ def parameter(problem: Problem, name: str) -> Parameter:
         return found[name]
     fitting = [full for full in found if full.endswith(f".{name}")]
     if len(fitting) > 1:
-        raise InputError(f"parameter '{name}' may be any of {', '.join(fitting)}: say which")
+        raise InputError(f"parameter '{name}' is ambiguous: give one of {', '.join(fitting)}")
     if not fitting:
         single = [full for full in found if "[" not in full]
         hint = nearest(name, [full.rpartition(".")[2] for full in single])

@@ -77,8 +77,8 @@ class Problem:
     initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
     initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
     initial_state: float | None = field(default=None)  # not declared as a quantity, because the law determines its unit
-    far_stress: float | LoadingHistory | None = quantity("Pa", "shear stress far behind a driver of finite impedance", default=None)
-    far_stress_rate: float = quantity("Pa/s", "its rate of change", default=0.0)
+    far_stress: float | LoadingHistory | None = quantity("Pa", "shear stress far beyond a driver of finite impedance", default=None)
+    far_stress_rate: float = quantity("Pa/s", "rate of change of the far stress", default=0.0)
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:

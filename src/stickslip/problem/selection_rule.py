@@ -110,7 +110,7 @@ def register(name: str, rule: SelectionRule) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(f"selection.register: a name is made of up to 60 letters, digits, - and _, got {ascii(name)[:60]}")
     if name in SELECTION_RULES:
-        raise InputError(f"selection.register: '{name}' is a rule of its own, give yours another name")
+        raise InputError(f"selection.register: '{name}' is the name of a built-in rule; choose another name")
     if not callable(rule):
         raise InputError(f"selection.register: the rule '{name}' must be a function (g, stable) -> SelectionTable")
     registered[name] = rule

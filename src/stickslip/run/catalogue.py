@@ -203,7 +203,7 @@ class Paused:
         found = Rows(self.path.parent / self.about["catalogue"])
         for path in {found.path, found.growing}:
             if path.is_symlink():
-                raise InputError(f"{path}: is a link: a catalogue is taken up in the file itself")
+                raise InputError(f"{path}: is a link: a catalogue is resumed in the file itself")
         return found
 
     def go_on(
@@ -321,7 +321,7 @@ class CatalogueKeeper(Keeper):
         try:
             write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
         except FullDiskError as error:  # the previous checkpoint is still in the file
-            warnings.warn(f"{error}; the run goes on, and what was in the file before is still there", RuntimeWarning, stacklevel=2)
+            warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
 
     def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format.

@@ -79,17 +79,17 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
     """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit up to `duration` (s)."""
     checkpoint = stopped.checkpoint
     if checkpoint is None:
-        raise InputError(f"{path}: cannot be taken up: it does not hold where the engine stood; run it again from the start")
+        raise InputError(f"{path}: cannot be resumed: it does not hold where the engine stood; run it again from the start")
     if checkpoint.engine != engine():
         raise InputError(
-            f"{path}: cannot be taken up: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
+            f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"
             " which would go on in other digits; run it again from the start"
         )
     check_checkpoint(stopped, path)
     run = RunInProgress.at_checkpoint(stopped.history, checkpoint, stopped.rtol, stopped.creep_rtol, stopped.shortest_event)
     reached = float(stopped.history.end[run.length - 1])
     if duration is not None and duration < reached:
-        raise InputError(f"{path}: the run has come to {reached:.9g} s already: a duration of {duration:.9g} s lies before that")
+        raise InputError(f"{path}: the run has already reached {reached:.9g} s: a duration of {duration:.9g} s lies before that")
     return run
 
 

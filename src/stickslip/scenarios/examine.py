@@ -149,7 +149,7 @@ def _derived(problem: Problem) -> list[Fact]:
     if isinstance(body, SpringBlock):
         return [
             Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
-            Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "what a slip rate costs: plays Z's part"),
+            Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "impedance of the block, in place of Z"),
             Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", f"rate of loading while stuck{first}"),
             *start,
         ]
@@ -246,7 +246,10 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
     if problem.friction.memory == "since-arrest" and body.contact_mass == 0.0 and body.reflection == -1.0:
-        found.append("healing at once on a slab without contact_mass: slowly pulled, it creeps by tiny slips after the first event")
+        found.append(
+            "friction heals instantly and the slab has no contact_mass:"
+            " under slow loading it creeps in tiny slips after the first event"
+        )
     if scenario.duration < body.two_way_time:
         found.append(f"the run ends before the first echo returns at R = {body.two_way_time:.6g} s")
     if contact.plateaus:

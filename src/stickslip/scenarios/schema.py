@@ -147,7 +147,7 @@ def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
     kind = kind_of(table, raw, source.file)
     if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
         raise InputError(
-            f"{source.file}: [{table}] kind {show(raw['kind'])} is made of laws itself: it cannot be a part of another"
+            f"{source.file}: [{table}] kind {show(raw['kind'])} is itself made of laws and cannot be part of another law"
         )
     return build(table, read_table(table, kind, raw, source), source.file)
 
@@ -292,5 +292,5 @@ def _belongs(name: str, table: str) -> str:
                 and not table.startswith("friction.")
                 and name in table_model(other, body).model_fields
             ):
-                return f"it belongs into [{other}]"
+                return f"it belongs in [{other}]"
     return ""

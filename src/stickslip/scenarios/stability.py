@@ -86,7 +86,7 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
     if spring < 0 or (growth.real > 0 and growth.imag == 0):
         return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
     if growth.real > 0:
-        return f"swings with growing amplitude and does not run away: {values}; growth {growth.real:.6g} /s"
+        return f"oscillates with growing amplitude: {values}; growth {growth.real:.6g} /s"
     return f"statically stable: {values}"
 
 

@@ -26,14 +26,14 @@ _HEADER = """\
 # Every quantity is a number in SI or a text with a unit: "10 km", "0.05 m/year" (Julian year), "100 MPa".
 # Lines that begin with "#" are comments; a commented key shows its default or waits for a value.
 #
-#     stickslip check FILE     what it means, and what to know before trusting a run
+#     stickslip check FILE     show what it means, and what to know before trusting a run
 #     stickslip run FILE       run it
 """
 _ABOUT = {
-    "body": "What stands behind the contact.",
-    "friction": "What the contact resists with.",
-    "loading": "How the far side moves.",
-    "initial": "Where it starts: give either load or excess (load minus static strength).",
+    "body": "The body that slides.",
+    "friction": "The friction law of the contact.",
+    "loading": "The motion of the driver.",
+    "initial": "The initial state: give either load or excess (load minus static strength).",
     "run": "How long, how accurately, and which slip rate where the contact equation has several solutions.",
 }
 

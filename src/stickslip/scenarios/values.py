@@ -45,7 +45,7 @@ def _hint(text: str) -> str:
         float(text)
     except ValueError:
         return ""
-    return ": a number stands without quotes"
+    return ": write a number without quotes"
 
 
 def allowed(declared: Quantity) -> str:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
-    "body": ("", "what stands behind the contact"),
+    "body": ("", "the body that slides"),
     "friction": ("", "friction law"),
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),

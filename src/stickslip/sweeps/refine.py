@@ -177,7 +177,7 @@ class _Search:
         found = open_store(place)
         for name, ours in self.attributes.items():
             if found.attrs.get(name) != ours:
-                raise InputError(f"{place}: was made with another {name}: give what it was begun with, or another name")
+                raise InputError(f"{place}: was made with another {name}: use the same settings as before, or choose another name")
         return found[[*self.recipe.kept, STATUS, REASON]]
 
 
@@ -186,7 +186,7 @@ def _answers(found: xr.DataArray, factor: float | None) -> Floats:
     values = np.asarray(found.values, float)
     known = values[np.isfinite(values)]
     if factor is None and (known != np.rint(known)).any():
-        raise InputError(f"refine: {found.name} is no whole number: say by which factor it must jump")
+        raise InputError(f"refine: {found.name} is not a whole number: give the factor by which it must change")
     return values
 
 

@@ -24,8 +24,8 @@ def rounding_note(steps: int, share: float) -> str:
     if steps == 0:
         return ""
     return (
-        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: it loses"
-        " digits far from where slip began, and double precision does not decide more"
+        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: the"
+        " formula loses digits far from where slip began; double precision cannot resolve more"
     )
 
 
@@ -42,7 +42,7 @@ BAD_PARAMETERS = -6
 
 STATUSES = {
     Stop.FINISHED: Status("finished", "the run reached its duration", True),
-    ENOUGH_EVENTS: Status("enough events", "the run has had its number of slip events", True),
+    ENOUGH_EVENTS: Status("enough events", "the run reached the requested number of slip events", True),
     Stop.LOCKED: Status(
         "locked for ever", "the contact is at rest and no load will ever move it: nothing changes up to the end", True
     ),
@@ -72,8 +72,8 @@ STATUSES = {
         " events only (a catalogue), or raise max_pieces",
         False,
     ),
-    INTERRUPTED: Status("interrupted", "stopped by the user: what is there is valid up to this time", False),
-    BAD_PARAMETERS: Status("bad parameters", "a member of a batch whose numbers make no problem", False),
-    UNDER_WAY: Status("under way", "a checkpoint of a run that went on: what is there is valid up to this time", False),
+    INTERRUPTED: Status("interrupted", "stopped by the user: the results are valid up to this time", False),
+    BAD_PARAMETERS: Status("bad parameters", "the parameters of this batch member make no valid problem", False),
+    UNDER_WAY: Status("under way", "a checkpoint of a run that continued: the results are valid up to this time", False),
 }
 """Status for each code: those of the engine (`layout`) are not negative, the others are defined above."""

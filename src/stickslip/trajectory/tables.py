@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 EVENT_COLUMNS = {
     "start": ("s", "when |v| rises above the threshold"),
-    "end": ("s", "when it falls to it; NaN if the run ends first"),
+    "end": ("s", "when |v| falls to the threshold; NaN if the run ends first"),
     "duration": ("s", "end - start, without the rounding of either"),
     "recurrence": ("s", "start - start of the previous event, without the rounding of either"),
     "slip": ("m", "slip within the event, positive in either direction"),
     "peak_rate": ("m s-1", "largest |v|"),
-    "peak_time": ("s", "when"),
+    "peak_time": ("s", "time of the largest |v|"),
     "peak_after": ("s", "peak_time - start, without the rounding of either"),
     "traction_before": ("load", "friction just before"),
     "traction_after": ("load", "friction at rest after"),
@@ -40,9 +40,9 @@ EVENT_COLUMNS = {
 
 ENERGY_COLUMNS = {
     "released": ("energy", "elastic and kinetic energy that the event takes from the body"),
-    "work": ("energy", "work of the driver in the meantime, net of what radiates through it"),
+    "work": ("energy", "work of the driver during the event, net of what radiates through it"),
     "damped": ("energy", "dissipated by the block's damping"),
-    "trapped": ("energy", "of the waves that bounce in the slab at the end, beyond the same mean stress at rest"),
+    "trapped": ("energy", "energy of waves travelling in the slab at the end, beyond that of the same mean stress at rest"),
     "heat": ("energy", "friction heat, from the law"),
     "balance": ("energy", "released + work - heat - damped: zero for an exact solution"),
 }

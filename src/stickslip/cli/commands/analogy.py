@@ -35,7 +35,7 @@ def analogy(
     figure: Annotated[
         Path | None, typer.Option("--figure", "-f", help="Save the map (.png, .pdf or .svg).", show_default=False)
     ] = None,
-    within: Annotated[float, typer.Option(help="How far the answers may differ.")] = 0.1,
+    within: Annotated[float, typer.Option(help="Largest relative difference of the answers.")] = 0.1,
     duration: Annotated[
         str | None, typer.Option(help="How long to wait for the end of the event: s, or with a unit.", show_default=False)
     ] = None,

@@ -159,6 +159,6 @@ def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
         rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {jump.load:.12g} Pa"
         yield f"jump {jump.direction} *", f"{rates}; traction changes by {change:.6g} Pa"
     if contact.jumps:
-        retraced = ": it comes back the way it went" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
+        retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
         yield "loop *", f"the load going up and down encloses {contact.loop_area:.6g} Pa m/s{retraced}"
-        yield "*", f"rests on the rule '{contact.rule}': another rule gives other numbers. All else above does not."
+        yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."

@@ -36,10 +36,10 @@ def compare(
     until: Annotated[
         str | None,
         typer.Option(
-            "--until", "--duration", help='Run all this long instead: s, or with a unit ("480 year").', show_default=False
+            "--until", "--duration", help='Override the duration of all runs: s, or with a unit ("480 year").', show_default=False
         ),
     ] = None,
-    rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    rtol: Annotated[float | None, typer.Option(help="Override the relative tolerance.", show_default=False)] = None,
 ) -> None:
     """Compare runs: one table, and one figure of slip, slip rate and traction against time.
 

@@ -23,11 +23,11 @@ def ensemble(
     members: Annotated[int, typer.Option("--members", "-m", help="How many disturbed runs.")] = 8,
     size: Annotated[float, typer.Option(help="Largest disturbance of the initial load, as a share of the strength.")] = 1e-12,
     until: Annotated[
-        str | None, typer.Option("--until", help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
+        str | None, typer.Option("--until", help='Override the duration: s, or with a unit ("480 year").', show_default=False)
     ] = None,
-    events: Annotated[int | None, typer.Option(help="Stop each run after so many slip events.", show_default=False)] = None,
-    seed: Annotated[int, typer.Option(help="What the disturbances are drawn from: the same seed, the same members.")] = 0,
-    rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    events: Annotated[int | None, typer.Option(help="Stop each run after this number of slip events.", show_default=False)] = None,
+    seed: Annotated[int, typer.Option(help="Seed of the random disturbances; the same seed gives the same members.")] = 0,
+    rtol: Annotated[float | None, typer.Option(help="Override the relative tolerance.", show_default=False)] = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Save the table of events (.csv), or all that is drawn (.nc).", show_default=False),

@@ -42,7 +42,7 @@ def export(
     ] = False,
     until: Annotated[
         str | None,
-        typer.Option("--until", "--duration", help='Run this long instead: s, or with a unit ("480 year").', show_default=False),
+        typer.Option("--until", "--duration", help='Override the duration: s, or with a unit ("480 year").', show_default=False),
     ] = None,
 ) -> None:
     """Export slip, slip rate and stress of the contact at evenly spaced times, for tools of seismologists and rupture modellers.

@@ -21,7 +21,7 @@ def regularise(
     scenario: Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)],
     by: Annotated[
         str,
-        typer.Option(help="With what: contact-mass, lag or direct-effect.", autocompletion=complete_regularisation),
+        typer.Option(help="Kind of regularisation: contact-mass, lag or direct-effect.", autocompletion=complete_regularisation),
     ] = "contact-mass",
     largest: Annotated[str | None, typer.Option(help="Largest size: s, or with a unit; default R/30.", show_default=False)] = None,
     smallest: Annotated[str | None, typer.Option(help="Smallest size; default R/491520.", show_default=False)] = None,
@@ -33,9 +33,9 @@ def regularise(
         Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
     ] = None,
     duration: Annotated[
-        str | None, typer.Option(help='Run this long instead: s, or with a unit ("480 year").', show_default=False)
+        str | None, typer.Option(help='Override the duration: s, or with a unit ("480 year").', show_default=False)
     ] = None,
-    rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    rtol: Annotated[float | None, typer.Option(help="Override the relative tolerance.", show_default=False)] = None,
 ) -> None:
     """Find which selection rule physics chooses: compare runs with ever less inertia or lag at the contact with every rule.
 
@@ -107,8 +107,8 @@ def _show(scenario: Scenario, study: Regularisation) -> None:
 
     screen, kind = console(), kind_of(study.by)
     screen.print(clean(scenario.title or scenario.name), style="bold")
-    screen.print(f"{kind.title}, {len(study.sizes)} sizes; mean |slip difference| from each rule's exact answer")
-    screen.print(f"(change: from the size before; order: of the difference from {study.target})\n")
+    screen.print(f"{kind.title}, {len(study.sizes)} sizes; mean |slip difference| from the exact answer of each rule")
+    screen.print(f"(change: difference from the previous size; order: of the difference from {study.target})\n")
     rules = ["\n".join(group) + "\nm" for group in study.groups]
     ends = ("change\nm", "\norder", "\npieces", "computed\nms")
     shown = table("size\ns", f"{kind.parameter}\n{kind.unit}", *rules, *ends, numbers=True)

@@ -19,7 +19,9 @@ def run(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Save the whole solution (netCDF, .nc), now and then on the way too.", show_default=False),
+        typer.Option(
+            "--out", "-o", help="Save the whole solution (netCDF, .nc), with a checkpoint every 30 s.", show_default=False
+        ),
     ] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", "-f", help="Save a figure (.png, .pdf or .svg).", show_default=False)
@@ -48,17 +50,17 @@ def run(
         Path | None,
         typer.Option("--catalog", help="Keep slip events only, in bounded memory (.csv, .parquet or .nc).", show_default=False),
     ] = None,
-    energies: Annotated[bool, typer.Option("--energies", help="Events of --catalog with their energies (takes its time).")] = False,
+    energies: Annotated[bool, typer.Option("--energies", help="Add the energies of each event to --catalog (slow).")] = False,
     until: Annotated[
         str | None,
-        typer.Option("--until", "--duration", help='Run this long instead: s, or with a unit ("480 year").', show_default=False),
+        typer.Option("--until", "--duration", help='Override the duration: s, or with a unit ("480 year").', show_default=False),
     ] = None,
-    events: Annotated[int | None, typer.Option(help="Stop when so many slip events are over.", show_default=False)] = None,
+    events: Annotated[int | None, typer.Option(help="Stop after this number of slip events.", show_default=False)] = None,
     resume: Annotated[
         Path | None,
-        typer.Option(help="Go on with the run in a file of --out, or a checkpoint of --catalog.", show_default=False),
+        typer.Option(help="Resume the run in a file of --out, or a checkpoint of --catalog.", show_default=False),
     ] = None,
-    rtol: Annotated[float | None, typer.Option(help="Relative tolerance instead.", show_default=False)] = None,
+    rtol: Annotated[float | None, typer.Option(help="Override the relative tolerance.", show_default=False)] = None,
     creep_rtol: Annotated[
         float | None,
         typer.Option(
@@ -79,7 +81,7 @@ def run(
     max_pieces: Annotated[
         int | None,
         typer.Option(
-            help="Let the history have so many pieces (0.44 kB each), and write it whatever ended the run. Not given: a "
+            help="Largest number of pieces of history (0.44 kB each); the history is written whatever ended the run. Not given: a "
             "million, and a run that needs more is not written.",
             min=1,
             show_default=False,
@@ -88,7 +90,7 @@ def run(
     selection: Annotated[
         str | None,
         typer.Option(
-            help="Selection rule instead: perfect-delay, maxwell, minimal, maximal.",
+            help="Override the selection rule: perfect-delay, maxwell, minimal, maximal.",
             autocompletion=complete_rule,
             show_default=False,
         ),

@@ -35,17 +35,23 @@ def sweep(
     ] = None,
     table: Annotated[
         Path | None,
-        typer.Option("--list", help="Members from a table instead (.csv): a column a key, a row a member.", show_default=False),
+        typer.Option(
+            "--list", help="Members from a table instead (.csv): one column per key, one row per member.", show_default=False
+        ),
     ] = None,
     design: Annotated[
         str, typer.Option(help="grid, or samples between LOW and HIGH: random, lhs.", autocompletion=complete_design)
     ] = "grid",
     members: Annotated[int | None, typer.Option("--members", "-m", help="How many samples.", show_default=False)] = None,
-    seed: Annotated[int, typer.Option(help="What samples are drawn from: the same seed, the same members.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")] = 0,
     quantity: Annotated[
         list[str] | None,
         typer.Option(
-            "--quantity", "-q", help="What is kept of each run; several.", autocompletion=complete_quantity, show_default=False
+            "--quantity",
+            "-q",
+            help="Quantity to keep of each run; may be repeated.",
+            autocompletion=complete_quantity,
+            show_default=False,
         ),
     ] = None,
     series: Annotated[

@@ -60,7 +60,7 @@ class Pictures:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
         if inside and not isinstance(problem.body, ElasticSlab):
-            raise InputError(f"run: {inside[0]} needs a slab: a block is rigid, it has no inside")
+            raise InputError(f"run: {inside[0]} needs a slab: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact.uniqueness import uniqueness
 

@@ -188,7 +188,7 @@ def choose_branch(run: Run, load: float) -> None:
     """Leave rest for the first branch that the rule allows at this load (minus the reference)."""
     run.state.exit = math.nan
     for branch in range(run.branches):
-        if load <= run.keep_to[branch]:
+        if run.keep_from[branch] <= run.keep_to[branch] and load <= run.keep_to[branch]:
             run.counts.branch = branch
             return
 

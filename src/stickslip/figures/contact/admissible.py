@@ -60,7 +60,10 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
     contact = uniqueness(problem)
     g = contact.resistance
     if g is None:
-        raise InputError("figure of the set K: inertia makes the slip rate a state, there is no set of solutions to draw")
+        raise InputError(
+            "figure of the set K: the slip rate does not follow from the load alone (inertia or a state variable):"
+            " there is no set K to draw"
+        )
     path = _path(solution, g.strength)
     ends = [rate for b in contact.branches for rate in (b.rate_from, b.rate_to) if np.isfinite(rate)]
     rates = np.union1d(np.linspace(0.0, _fastest(contact, path["path_slip_rate"].values), _POINTS), ends)

@@ -46,7 +46,7 @@ def draw(dataset: xr.Dataset) -> Figure:
     axes.pcolormesh(x, y, regime, cmap=ListedColormap([REGULAR, IRREGULAR]), vmin=0, vmax=1, shading="nearest", rasterized=True)
     axes.add_collection(LineCollection(dataset["boundary"].values / np.array(scales), colors=INK, linewidths=1.6))
     marks = [Patch(color=REGULAR, label="regular: one slip rate"), Patch(color=IRREGULAR, label="irregular: several")]
-    marks += [Patch(color=PALE, label="refused")] if np.isnan(margin).any() else []
+    marks += [Patch(color=PALE, label="problem not valid")] if np.isnan(margin).any() else []
     own = axes.plot(
         *(dataset["present"].values / scales), "*", color=INK, markersize=11, markeredgecolor="white", label="the scenario"
     )

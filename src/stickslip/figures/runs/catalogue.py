@@ -70,7 +70,7 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     ):
         contents[f"{name}_time"] = quantity(f"{name}_point", time, "time", "t", "s")
         contents[f"{name}_slip"] = quantity(f"{name}_point", slip, "slip", "u", "m")
-    contents["horizon"] = quantity((), _horizon(solution), "end of what can be predicted event by event", "", "s")
+    contents["horizon"] = quantity((), _horizon(solution), "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
     title = f"{type(solution.problem.body).kind.replace('-', ' ')}, {type(solution.problem.friction).kind} friction"
     return xr.Dataset(contents, attrs={"title": f"{title}: {len(table)} slip event{'s' if len(table) > 1 else ''}"})
@@ -119,7 +119,8 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     horizon = float(dataset["horizon"])
     if horizon < end:
         axes.axvspan(horizon / size, 1.02 * end / size, color=GREY, alpha=0.15, linewidth=0.0)
-        axes.annotate("only statistics ", (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha="right", color=INK)
+        text, side = " shaded: beyond the predictability horizon ", "right" if horizon > 0.5 * end else "left"
+        axes.annotate(text, (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha=side, color=INK)
     axes.set_yscale("log" if _wide(slip) else "linear")
     axes.set_ylim(bottom=low)
     axes.set_xlim(-0.02 * end / size, 1.02 * end / size)
@@ -160,7 +161,7 @@ def _draw_distribution(axes: Axes, slip: Floats) -> None:
     if not _wide(slip):
         axes.set_xlim(0.0, 1.15 * ordered[-1])
     axes.set_xlabel("slip (m)")
-    axes.set_ylabel("events with at least as much")
+    axes.set_ylabel("number of events with slip ≥ $x$")
     letter(axes, "E  slip")
 
 
@@ -186,7 +187,9 @@ def _draw_recurrence(axes: Axes, recurrence: Floats) -> None:
     axes.set_ylabel("events")
     if len(times) > 1:
         variation = times.std(ddof=1) / times.mean()
-        text = axes.text(0.03, 0.97, f"variation {variation:.2g}", transform=axes.transAxes, va="top", color=VERMILLION)
+        text = axes.text(
+            0.03, 0.97, f"coefficient of variation {variation:.2g}", transform=axes.transAxes, va="top", color=VERMILLION
+        )
         text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 1.0})
 
 
@@ -204,7 +207,7 @@ def _draw_return_map(axes: Axes, recurrence: Floats) -> None:
     axes.plot([low, high], [low, high], color=GREY, linewidth=0.8, zorder=0)
     axes.set_aspect("equal")
     axes.set_xlabel(f"recurrence time ({unit})")
-    axes.set_ylabel(f"the next one ({unit})")
+    axes.set_ylabel(f"next recurrence time ({unit})")
 
 
 def _too_few(axes: Axes, recurrence: Floats, needed: int) -> bool:

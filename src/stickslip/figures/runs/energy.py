@@ -21,7 +21,7 @@ TIMES = 800
 """Number of evenly spaced times; breakpoints of the run are added, up to as many."""
 
 PARTS = {
-    "elastic": ("elastic, above its least here", BLUE),
+    "elastic": ("elastic, above its minimum", BLUE),
     "kinetic": ("kinetic", GREEN),
     "radiated": ("radiated through the driver", SKY),
     "damped": ("damped", PURPLE),
@@ -64,7 +64,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     total = parts["elastic"][0] + parts["kinetic"][0] + parts["work"] + parts["radiated"]
     contents = {name: quantity("time", parts[name], text, "", unit) for name, (text, _) in PARTS.items()}
-    contents["total"] = quantity("time", total, "at the start, and work of the driver", "", unit)
+    contents["total"] = quantity("time", total, "initial energy plus work of the driver", "", unit)
     clock = "time since the event began" if "event_slip" in readings.curves else "time $t$"
     title = f"{type(body).kind.replace('-', ' ').capitalize()}, {type(readings.problem.friction).kind} friction"
     return xr.Dataset(contents, {"time": quantity("time", time, "time", "t", "s")}, {"title": title, "clock": clock})

@@ -68,7 +68,7 @@ def _events(study: Ensemble) -> dict[str, xr.Variable]:
 
 def _growth(study: Ensemble) -> dict[str, xr.Variable]:
     growth = study.growth
-    texts = {"growth": "median of the members", "least": "least", "most": "most", "predicted": "predicted, the largest so far"}
+    texts = {"growth": "median of the members", "least": "least", "most": "most", "predicted": "running maximum of the prediction"}
     contents = {name: quantity("time", growth[name].to_numpy(float), f"growth, {text}", "", "1") for name, text in texts.items()}
     contents["small"] = xr.Variable("time", growth.small.to_numpy(np.int8), {"long_name": "whether the separation is small"})
     return contents | {"time": quantity("time", growth.time.to_numpy(float), "time", "t", "s")}
@@ -114,7 +114,10 @@ def _draw_time_lines(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     axes.set_ylim(count + 0.6, -0.6)
     axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
     axes.set_ylabel("member (0: undisturbed)")
-    letter(axes, "A  slip events: " + ("the same (blue) or not" if (same == 0).any() else "all members have the same"))
+    letter(
+        axes,
+        "A  slip events: " + ("shared with member 0 (blue), not shared (red)" if (same == 0).any() else "shared by all members"),
+    )
 
 
 def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
@@ -165,7 +168,7 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
         axes.set_xlim(0.0, 1.1 * slip.max())
     axes.set_yscale("log" if (member == 0).sum() > WIDE else "linear")
     axes.set_xlabel("slip (m)")
-    axes.set_ylabel("events with at least as much")
+    axes.set_ylabel("number of events with slip ≥ $x$")
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:

@@ -132,7 +132,7 @@ def draw(dataset: xr.Dataset) -> Figure:
         _draw_time(axes["upper"], dataset, "slip")
         letter(axes["upper"], "b   The runs, and the nearest rule")
         _draw_time(axes["lower"], dataset, "rate")
-        letter(axes["lower"], "c   The same, slip rate")
+        letter(axes["lower"], "c   Slip rate of the same runs")
         axes["lower"].get_legend().remove()
     figure.align_ylabels([axes["upper"], axes["lower"]])
     return figure
@@ -142,8 +142,10 @@ def _draw_errors(axes: Axes, dataset: xr.Dataset) -> None:
     size = shown(dataset["size"])
     for i, rule in enumerate(np.atleast_1d(dataset.attrs["rules"])):
         values = np.where(dataset["error"].values[i] > 0.0, dataset["error"].values[i], np.nan)
-        axes.loglog(size, values, "o-", color=RULE_COLOURS[i % 4], markersize=3.5, label=f"from {rule}")
-    axes.loglog(size, shown(dataset["change"]), "o--", color=GREY, markersize=3, linewidth=1.0, label="from the size before")
+        axes.loglog(size, values, "o-", color=RULE_COLOURS[i % 4], markersize=3.5, label=f"difference from {rule}")
+    axes.loglog(
+        size, shown(dataset["change"]), "o--", color=GREY, markersize=3, linewidth=1.0, label="difference from the previous size"
+    )
     if dataset.attrs["tends"] and dataset.attrs["order_points"]:
         _draw_slope(axes, size, dataset["error"].values[int(dataset.attrs["target_row"])], float(dataset.attrs["order"]))
     axes.set(xlabel=label(dataset["size"]), ylabel=label(dataset["error"]))

@@ -39,7 +39,7 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
         third = xr.DataArray(values, name=names[2], attrs=dataset[names[2]].attrs)
         figure, grid = side_by_side(third, lambda axes, k: _draw(axes, quantity, colours, cells.at(names[2], values[k]), places))
         figure.suptitle(title, fontsize=9.5, fontweight="bold")
-    change = [Patch(facecolor=INK, label="it changes")] if cells.changes.any() else []
+    change = [Patch(facecolor=INK, label="boundary")] if cells.changes.any() else []
     explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity), *change)
     return figure
 

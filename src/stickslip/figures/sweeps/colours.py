@@ -79,7 +79,7 @@ def prepare(axes: Axes, quantity: Shown) -> None:
 def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist) -> None:
     """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists."""
     marks: list[Artist] = [Patch(facecolor=colours.of(value), label=text) for value, text in colours.key]
-    marks += [Patch(facecolor=PALE, label="no such number")] if quantity.has(1) else []
+    marks += [Patch(facecolor=PALE, label="undefined for this run")] if quantity.has(1) else []
     marks += [Patch(facecolor="white", edgecolor=GREY, linewidth=0.5, label="not run")] if quantity.has(3) else []
     marks += more
     scale = not colours.key and quantity.known.size > 0

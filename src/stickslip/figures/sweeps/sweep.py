@@ -63,7 +63,7 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     names = [str(name) for name in dataset.data_vars if _can_be_drawn(dataset, str(name))]
     name = quantity or next(iter(names), "")
     if name not in names:
-        raise InputError(f"plot_sweep: {ascii(name)[:60]} is no quantity of this sweep; {nearest(name, names)}")
+        raise InputError(f"plot_sweep: this sweep has no quantity {ascii(name)[:60]}; {nearest(name, names)}")
     values = dataset[name].load()
     status = dataset["status"].transpose(*values.dims)
     kinds = [status.values >= FIRST_FAILURE, status.values == NOT_RUN, np.isnan(values.values)]

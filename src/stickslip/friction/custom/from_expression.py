@@ -66,7 +66,7 @@ class ExpressionLaw(RemembersSlip):
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
     values: tuple[Named, ...] = declare(NamedNumbers("values of the parameters", "parameters"), ())
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
-    counts: Literal["net", "path"] = declare(Choice("slip that u stands for", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
+    counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
 
     def check(self) -> None:
         self._check_names()
@@ -84,12 +84,12 @@ class ExpressionLaw(RemembersSlip):
     def _check_names(self) -> None:
         names = [value.name for value in self.values]
         if len(names) > MOST_PARAMETERS:
-            raise InputError(f"ExpressionLaw: parameters: more than {MOST_PARAMETERS}")
+            raise InputError(f"ExpressionLaw: parameters: at most {MOST_PARAMETERS} parameters are allowed")
         for name in names:
             if not (isinstance(name, str) and name.isidentifier() and name.isascii() and len(name) <= LONGEST_NAME):
                 raise InputError(f"ExpressionLaw: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
             if name in RESERVED or names.count(name) > 1:
-                raise InputError(f"ExpressionLaw: parameters: the name {name} is taken")
+                raise InputError(f"ExpressionLaw: parameters: the name {name} is reserved or used twice")
         used = {node.name for node in nodes_of(self.tree) if node.operation == "parameter"}
         for name in names:
             if name not in used:

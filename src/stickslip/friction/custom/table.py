@@ -53,9 +53,11 @@ class TableLaw(RemembersSlip, PiecewiseLaw):
     columns: ClassVar[dict[str, str]] = {"slip": "slip", "slip_rate": "rate", "friction": "friction"}
 
     friction: tuple[float, ...] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
-    slip: tuple[float, ...] | None = declare(Series(Quantity("m", "slips of the points, or else give rate"), ascending=True), None)
+    slip: tuple[float, ...] | None = declare(
+        Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None
+    )
     rate: tuple[float, ...] | None = declare(
-        Series(Quantity("m/s", "slip rates of the points, or else give slip", at_least=0), ascending=True), None
+        Series(Quantity("m/s", "slip rates of the points; give either slip or rate", at_least=0), ascending=True), None
     )
     counts: Literal["net", "path"] = declare(Choice("slip that a table of slip sees", ("path", "net")), "path")  # type: ignore[misc] # here a choice of the user
 

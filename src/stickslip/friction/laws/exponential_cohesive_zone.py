@@ -14,7 +14,8 @@ from stickslip.friction.memory import RemembersSlip
 
 @dataclass(frozen=True)
 class ExponentialCohesiveZone(RemembersSlip):
-    """mu(d) = dynamic + (static - dynamic) y exp(1 - y), y = (d + offset) / distance (d2). d is the path walked, both ways.
+    """mu(d) = dynamic + (static - dynamic) y exp(1 - y), y = (d + offset) / distance (d2).
+    d is the slip path, the accumulated length of slip in both directions.
 
     Friction equals `static` at y = 1. If the offset (d1) is less than the distance, friction rises while d < distance - offset.
 

@@ -14,7 +14,8 @@ from stickslip.friction.memory import RemembersSlip
 
 @dataclass(frozen=True)
 class ExponentialSlipWeakening(RemembersSlip):
-    """mu(d) = dynamic + (static - dynamic) exp(-d / distance). d is the path walked, in both directions.
+    """mu(d) = dynamic + (static - dynamic) exp(-d / distance).
+    d is the slip path, the accumulated length of slip in both directions.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ class LaggedFriction(FrictionLaw):
         "Campillo et al. 1996, section 3 (why a solution must be selected); Hess & Soom 1990, J. Tribol. 112, 147 (a time lag); "
         "Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
     )
-    state: ClassVar[StateVariable | None] = StateVariable("w", "m/s", "slip rate that friction has caught up with")
+    state: ClassVar[StateVariable | None] = StateVariable("w", "m/s", "lagged slip rate")
     example: ClassVar[dict[str, Any]] = {
         "rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"},
         "time": "10 ms",
@@ -65,7 +65,7 @@ class LaggedFriction(FrictionLaw):
 
     rate: FrictionLaw = declare(Part("a law of slip rate"))  # noqa: RUF009 - makes a dataclass field
     time: float = quantity("s", "time in which friction catches up with the slip rate", above=0)
-    direct: float = quantity("1", "friction gained at once per factor e of slip rate", at_least=0, default=0.0)
+    direct: float = quantity("1", "immediate increase of friction per factor e of slip rate", at_least=0, default=0.0)
     direct_rate: float = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)
 
     def check(self) -> None:

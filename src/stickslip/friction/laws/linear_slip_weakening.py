@@ -13,7 +13,8 @@ from stickslip.friction.memory import RemembersSlip
 
 @dataclass(frozen=True)
 class LinearSlipWeakening(RemembersSlip):
-    """mu falls linearly from static to dynamic over a slip `distance`, then stays. Counts the path walked, in both directions.
+    """mu falls linearly from static to dynamic over a slip `distance`, and is constant after that.
+    The slip is the slip path, the accumulated length of slip in both directions.
 
     Parameters
     ----------

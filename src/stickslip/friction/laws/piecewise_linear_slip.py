@@ -17,7 +17,8 @@ from stickslip.friction.piecewise import PiecewiseLaw, line_along_slip, lines
 
 @dataclass(frozen=True)
 class PiecewiseLinearSlip(RemembersSlip, PiecewiseLaw):
-    """mu(d) runs straight from point to point, and is constant before the first and beyond the last. d is the path walked.
+    """mu(d) runs straight from point to point, and is constant before the first and beyond the last.
+    d is the slip path, the accumulated length of slip in both directions.
 
     Parameters
     ----------

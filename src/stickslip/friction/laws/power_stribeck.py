@@ -46,10 +46,10 @@ class PowerStribeck(FrictionLaw):
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 2}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
-    dynamic: float = quantity("1", "friction coefficient at high slip rate, viscosity apart", at_least=0)
-    rate: float = quantity("m/s", "slip rate v_s at which half of the fall is done", above=0)
+    dynamic: float = quantity("1", "friction coefficient at high slip rate, without the viscous term", at_least=0)
+    rate: float = quantity("m/s", "slip rate v_s at which half of the decrease is complete", above=0)
     exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True, default=2.0)
-    viscosity: float = quantity("s/m", "friction gained per slip rate", at_least=0, default=0.0)
+    viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
 
     @staticmethod
     def formula(law: Any, u: Any, v: Any) -> Any:

@@ -13,7 +13,7 @@ from stickslip.friction.law import FrictionLaw
 
 @dataclass(frozen=True)
 class VelocityStrengthening(FrictionLaw):
-    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. One slip rate at every load.
+    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. Every load has exactly one slip rate.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ class VelocityStrengthening(FrictionLaw):
     example: ClassVar[dict[str, Any]] = {"static": 0.6, "a": 0.01, "rate": "1e-6 m/s"}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
-    a: float = quantity("1", "friction gained per factor e of slip rate beyond `rate`", at_least=0, default=0.0)
+    a: float = quantity("1", "increase of friction per factor e of slip rate beyond `rate`", at_least=0, default=0.0)
     rate: float = quantity("m/s", "slip rate at which the logarithm sets in", above=0, default=1e-6)
-    viscosity: float = quantity("s/m", "friction gained per slip rate", at_least=0, default=0.0)
+    viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
 
     @staticmethod
     def formula(law: Any, u: Any, v: Any) -> Any:

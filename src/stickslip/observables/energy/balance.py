@@ -31,12 +31,12 @@ LONG_NAMES = {
     "work": "work of the driver",
     "stored": "elastic and kinetic energy",
     "elastic": "elastic energy",
-    "kinetic": "kinetic energy, of a contact mass too",
+    "kinetic": "kinetic energy, including that of a contact mass",
     "heat": "friction heat, from the law",
     "damped": "dissipated by the block's damping",
-    "radiated": "gone in waves through a driver of finite impedance: work is net of it",
+    "radiated": "energy radiated through a driver of finite impedance; work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
-    "trapped": "of the waves inside the slab, beyond a state of uniform stress",
+    "trapped": "energy of the waves inside the slab, beyond a state of uniform stress",
 }
 """Long names of the energies in a dataset."""
 

@@ -26,10 +26,10 @@ PULSE_COLUMNS = {
     "start": ("s", "start of the event, or where |v| is smallest since the pulse before"),
     "start_after": ("s", "the same since the event began, without rounding"),
     "duration": ("s", "until the next pulse, or the end of the event"),
-    "slip": ("m", "in the meantime, positive in either direction"),
+    "slip": ("m", "slip during the pulse, positive in either direction"),
     "peak_rate": ("m s-1", "largest |v|"),
     "smallest_traction": ("load", "of the pulse while it slips, against the slip"),
-    "weakening_slip": ("m", "slip until that is reached"),
+    "weakening_slip": ("m", "slip until the smallest traction"),
     "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
 }
 """Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""

@@ -20,7 +20,7 @@ Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""
 LARGEST_AXIS = 10_000_000
 """Largest number of values of an axis, and of members of a random design: 80 MB for each key."""
-FORM = '"KEY=LOW..HIGH:POINTS", with ":log" behind it for equal ratios, or "KEY=VALUE,VALUE,..."'
+FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
 
 _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
 
@@ -85,7 +85,7 @@ def _listed(key: Key, values: Iterable[Any], where: str) -> Axis:
 
 def _range(key: Key, found: re.Match[str], where: str) -> Axis:
     if isinstance(key.declared, Choice):
-        raise InputError(f"{where}: {key.name} has no numbers between which to go: list some of {', '.join(key.declared.allowed)}")
+        raise InputError(f"{where}: {key.name} takes words, not a range: list some of {', '.join(key.declared.allowed)}")
     low, high = (float(key.read(found[end], where)) for end in ("low", "high"))
     log = bool(found["log"])
     if not np.isfinite([low, high]).all() or not low < high:
@@ -97,7 +97,7 @@ def _range(key: Key, found: re.Match[str], where: str) -> Axis:
     points = int(found["points"])
     _check_size(key, points, where)
     if points < 2:
-        raise InputError(f"{where}: {key.name} needs at least 2 points from one end to the other, got {points}")
+        raise InputError(f"{where}: {key.name} needs at least 2 points, got {points}")
     spaced = np.geomspace if log else np.linspace
     return Axis(key, np.asarray(spaced(low, high, points)), (low, high), log)
 

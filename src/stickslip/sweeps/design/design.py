@@ -80,7 +80,7 @@ class Design:
         names = {
             "random": "drawn at random",
             "lhs": "drawn as a Latin hypercube",
-            "list": "of a list",
+            "list": "from a list",
             "refined": "of a refined map",
         }
         return f"{self.size} members {names[self.kind]}"
@@ -118,7 +118,7 @@ def axes_of(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
     else:
         axes = [read_axis(scenario, text, where) for text in ([vary] if isinstance(vary, str) else vary)]
     if not axes:
-        raise InputError(f"{where} is missing: what is to be varied?")
+        raise InputError(f"{where} is missing: name at least one parameter to vary")
     _check_keys([axis.key for axis in axes], where)
     return axes
 
@@ -168,7 +168,7 @@ def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, whe
         raise InputError(f"sweep: seed must be a whole number, 0 or above, got {seed!r}")
     for axis in axes:
         if axis.ends is not None and len(axis.values):
-            raise InputError(f"{where}: {axis.key.name} needs no number of points in the design {kind}: LOW..HIGH")
+            raise InputError(f"{where}: {axis.key.name} takes no number of points in the design {kind}: give LOW..HIGH")
     if members > LARGEST_AXIS:
         raise InputError(f"sweep: members must be at most {LARGEST_AXIS} for the design {kind}, got {members}")
     shares = _shares(kind, members, len(axes), seed)

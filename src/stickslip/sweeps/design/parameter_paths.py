@@ -19,7 +19,7 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import entries_in
 from stickslip.scenarios.values import read_quantity, show
 
-EVENTS = Quantity("1", "stop after so many slip events", at_least=1)
+EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
 
 
@@ -68,11 +68,11 @@ def key_named(scenario: Scenario, name: str, where: str) -> Key:
         return found[name]
     fitting = [full for full in found if full.endswith(f".{name}")]
     if len(fitting) > 1:
-        raise InputError(f"{where}: '{name}' may be any of {', '.join(fitting)}: say which")
+        raise InputError(f"{where}: '{name}' is ambiguous: give one of {', '.join(fitting)}")
     if not fitting:
         short = nearest(name, [full.rpartition(".")[2] for full in found if "[" not in full])
         hint = short if short.startswith("did") and "." not in name else nearest(name, [full for full in found if "[" not in full])
-        raise InputError(f"{where}: {show(name)} is no key of this scenario; {hint}")
+        raise InputError(f"{where}: {show(name)} is not a parameter of this scenario; {hint}")
     return found[fitting[0]]
 
 

@@ -129,7 +129,7 @@ _ALL = (
     Summary("first_end", "s", "end of the first slip event", _first("end")),
     Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
     Summary("first_slip", "m", "slip of the first slip event", _first("slip")),
-    Summary("first_traction_drop", "load", "friction before less friction after the first slip event", _first("traction_drop")),
+    Summary("first_traction_drop", "load", "friction before minus friction after the first slip event", _first("traction_drop")),
     Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
     Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence),
     Summary("recurrence_cv", "1", "coefficient of variation of the recurrence times", _recurrence_cv),
@@ -138,18 +138,18 @@ _ALL = (
     Summary(
         "irregular",
         "1",
-        "several slip rates solve the contact equation at some load, at the slip of the start",
+        "several slip rates solve the contact equation at some load, at the initial slip",
         _irregular,
         is_flag=True,
     ),
-    Summary("branches", "1", "rising branches of the contact equation at the slip of the start", _branches),
+    Summary("branches", "1", "rising branches of the contact equation at the initial slip", _branches),
     *(
         Summary(part, "energy", meaning, _energy(part))
         for part, meaning in (
             ("work", "work of the driver"),
             ("heat", "friction heat"),
             ("damped", "energy dissipated by the block's damping"),
-            ("radiated", "energy gone in waves through a driver of finite impedance"),
+            ("radiated", "energy radiated through a driver of finite impedance"),
             ("trapped", "energy of the waves inside the slab at the end"),
             ("balance", "energy balance of the run: zero for an exact solution"),
         )
@@ -174,9 +174,9 @@ def quantities_named(wanted: Iterable[Wanted]) -> tuple[Summary, ...]:
     names = [one.name for one in found]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"sweep: the quantity '{name}' is wanted twice")
+            raise InputError(f"sweep: the quantity '{name}' is given twice")
     if not found:
-        raise InputError(f"sweep: no quantity is wanted; allowed: {', '.join(sorted(QUANTITIES))}")
+        raise InputError(f"sweep: no quantity is given; allowed: {', '.join(sorted(QUANTITIES))}")
     return found
 
 
@@ -191,5 +191,5 @@ def _one(item: Wanted) -> Summary:
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")
     name, unit, of = item
     if name in QUANTITIES or name in TAKEN or not _NAME.fullmatch(name):
-        raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, of letters, digits, blanks and _")
+        raise InputError(f"sweep: quantity {ascii(name)[:60]}: choose another name, made of letters, digits, spaces and _")
     return Summary(name, unit, name, of)

@@ -59,7 +59,7 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
         if curve not in allowed:
             raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")
     if len(set(curves)) < len(curves):
-        raise InputError("sweep: a series is wanted twice")
+        raise InputError("sweep: a series is given twice")
     if not (isinstance(samples, int) and 2 <= samples <= LARGEST):
         raise InputError(f"sweep: samples must be a whole number from 2 to {LARGEST}, got {samples!r}")
     names = [key.name for key in design.keys]

@@ -43,7 +43,7 @@ LEAST = 8
 """Smallest number of chunks in flight: a cluster that starts workers on demand does so only when chunks are waiting."""
 RETRIES = 2
 """Number of times that dask repeats a chunk that failed."""
-GONE = "sweep: the dask scheduler is gone; what is done is kept: the same command goes on"
+GONE = "sweep: the dask scheduler is lost; finished chunks are kept: the same command continues"
 GONE_AGAIN = ("lost", "pending")
 """Statuses of a chunk whose result was ready but lost with its worker before it was fetched. Dask computes it again."""
 ENVIRON = "distributed.nanny.pre-spawn-environ"
@@ -175,7 +175,9 @@ def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[t
         ready.update(send())
     if lost:
         more = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
-        raise ChunksLostError(f"sweep: no worker finished {lost[0]}{more}; all others are kept: the same command tries again")
+        raise ChunksLostError(
+            f"sweep: no worker finished {lost[0]}{more}; all other chunks are stored: the same command tries the missing ones again"
+        )
 
 
 def _submitted(client: Client, run: Callable[[Chunk], Result], chunk: Chunk) -> Future:

@@ -125,7 +125,7 @@ def writing(place: Path | MemoryStore) -> Iterator[None]:
         yield
     except OSError as error:
         full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-        kept = "; what is there can be read, and the same command goes on with it when there is room" if full else ""
+        kept = "; the results so far can be read, and the same command continues when there is room" if full else ""
         raise InputError(f"{place}: cannot be written: {error.strerror or error}{kept}") from None
 
 
@@ -136,8 +136,8 @@ def check_store(path: Path) -> set[str]:
     """
     if not is_vouched_for(path, LAYOUT):
         ours = (path / FOLDER).exists() or _mentions(path / "zarr.json", b"stickslip_sweep")
-        what = "a store without its checksums, of an older version or damaged" if ours else "no store of a sweep"
-        raise InputError(f"{path}: is there, and is {what}: choose another name")
+        what = "a store without its checksums, of an older version or damaged" if ours else "not the store of a sweep"
+        raise InputError(f"{path}: exists and is {what}: choose another name")
     return check_all(path)
 
 

@@ -27,14 +27,14 @@ def as_begun(plan: Plan, path: Path) -> Plan:
     try:
         group = zarr.open_group(path, mode="r")
     except (OSError, ValueError, KeyError):
-        raise InputError(f"{path}: is there, and is no store of a sweep: choose another name") from None
+        raise InputError(f"{path}: exists and is not the store of a sweep: choose another name") from None
     if "stickslip_sweep" not in group.attrs:
-        raise InputError(f"{path}: is there, and is no store of a sweep: choose another name")
+        raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
     ours = attributes(plan)
     different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
     different = different or _design_differs(plan, group)
     if different:
-        raise InputError(f"{path}: was made {different}: give what it was begun with, or another name")
+        raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
     return plan.with_tile(tuple(json.loads(str(group.attrs["design"]))["chunk"]))
 
 
