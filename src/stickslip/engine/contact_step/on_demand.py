@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 from numba import types
 
@@ -25,12 +26,19 @@ def rest(memory: int, xi_to: float) -> None:
 
 
 @cache
+def compiled() -> tuple[Any, Any]:
+    """Compile both functions, or take them from the cache on disk. They live as long as the process, and so does their code."""
+    kind = sealed_cfunc(types.void(types.int64, types.float64), nopython=True, error_model="numpy", fastmath={"contract"})
+    return kind(step), kind(rest)
+
+
+@cache
 def addresses() -> tuple[int, int]:
-    """Return the addresses of both functions. Compiles them, or takes them from the cache."""
+    """Return the addresses of both functions."""
     if UNCOMPILED:
         return handle_of(slip_implicitly), handle_of(stick_with_state)
-    kind = sealed_cfunc(types.void(types.int64, types.float64), nopython=True, error_model="numpy", fastmath={"contract"})
-    return int(kind(step).address), int(kind(rest).address)
+    slipping, resting = compiled()
+    return int(slipping.address), int(resting.address)
 
 
 def lend_implicit_steps(memory: Integers) -> None:
