@@ -8,6 +8,7 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
+from stickslip.engine.codegen.compiler import address_of
 from stickslip.engine.loop import advance
 
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
@@ -17,9 +18,7 @@ ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types
 @cache
 def engine_address() -> int:
     """Return the address of the machine code of `loop.advance`; compile it if no single run has done so."""
-    advance.entry.compile(ARGUMENTS)  # type: ignore[attr-defined] # numba
-    compiled = advance.entry.overloads[ARGUMENTS]  # type: ignore[attr-defined]
-    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
+    return address_of(advance, ARGUMENTS)
 
 
 @intrinsic

@@ -143,14 +143,26 @@ def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return context.get_dummy_value()
 
 
+STEP = (types.int64, types.float64)
+"""Arguments of a step of the engine that is compiled apart: the address of the run's memory, and xi_to."""
+
+
+def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
+    """Return the address of a kernel's machine code, which lives as long as the kernel. Compiles it if it is new."""
+    function.entry.compile(arguments)
+    compiled = function.entry.overloads[arguments]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
+
+
 @intrinsic
 def call_step(typingctx: Any, address: Any, run: Any, xi_to: Any) -> Any:
-    """Call a step of the engine that is compiled apart: step(memory of the run, xi_to)."""
+    """Call a step of the engine that is compiled apart, at an address: step(memory of the run, xi_to)."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        whole = ir.IntType(64)
-        kind = ir.FunctionType(ir.VoidType(), [whole, ir.DoubleType()])
-        builder.call(builder.inttoptr(args[0], kind.as_pointer()), [builder.ptrtoint(args[1], whole), args[2]])
+        convention = context.call_conv
+        function = builder.inttoptr(args[0], convention.get_function_type(types.none, STEP).as_pointer())
+        memory = builder.ptrtoint(args[1], ir.IntType(64))
+        convention.call_function(builder, function, types.none, STEP, [memory, args[2]])
         return context.get_dummy_value()
 
     return types.void(types.int64, run, types.float64), codegen
