@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
+from stickslip.engine.contact_step.on_demand import lend_implicit_steps
 from stickslip.engine.loop import advance
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
@@ -30,6 +31,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), new_echoes(CAPACITY)
     memory = memory_of(setup.par, state, count)
     lend(memory, setup, store, echoes)
+    lend_implicit_steps(memory)
     first, count = memory.copy(), counts_in(memory)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 

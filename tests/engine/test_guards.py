@@ -44,8 +44,8 @@ def pulls(formula: str, u: float, v: float) -> np.ndarray:
     compiled = compile_formula(parse(formula, ()), ())
     constants, out = np.zeros(compiled.size), np.zeros(2 * compiled.guard_count)
     double = ctypes.POINTER(ctypes.c_double)
-    compiled.prepare(None, 0.0, constants.ctypes.data_as(double))
-    at = ctypes.CFUNCTYPE(None, double, ctypes.c_double, ctypes.c_double, ctypes.c_double, double)(compiled.guards)
+    compiled.fill(np.zeros(1), 0.0, constants)
+    at = ctypes.CFUNCTYPE(None, double, ctypes.c_double, ctypes.c_double, ctypes.c_double, double)(compiled.address("guards"))
     at(constants.ctypes.data_as(double), u, v, 0.0, out.ctypes.data_as(double))
     return out.reshape(-1, 2)
 

@@ -100,10 +100,10 @@ def test_series_side_by_side_are_those_of_each_run(name: str) -> None:
     k[:] = np.array([9.8, 100.0, 1.0, 0.05, 0.01, 0.0, 0.0, 3.0, 0.5, 0.1, 1.0, 0.0])[:, None]
     k[5], k[3] = random.uniform(0.0, 0.3, WIDTH), random.uniform(0.02, 0.1, WIDTH)
     load[0] += 60.0
-    address = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(getattr(functions, part + "s"))
+    address = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 4)(functions.address(part + "s"))
     address(*(block.ctypes.data for block in (c, k, load, side_by_side)))
     for n in range(WIDTH):
         own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(side_by_side))]
-        JET(getattr(functions, part))(*(array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in own))
+        JET(functions.address(part))(*(array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in own))
         assert side_by_side[:, n].tolist() == own[3].tolist()
         assert np.isfinite(own[3]).all()
