@@ -47,7 +47,7 @@ def test_rising_load_reaches_a_fold_in_one_step_of_the_root_of_time() -> None:
 
 
 def test_maximal_rule_jumps_to_a_moving_fold_and_departs_from_it() -> None:
-    """Friction falls a little with slip, more slowly than the load rises: slip begins at the very fold and leaves it with the load."""
+    """Friction falls a little with slip while the load rises: slip begins at the very fold and leaves it with the load."""
     law = ss.friction.FromExpression("0.6 + 0.1*exp(-((v - 1)/0.3)**2) + 0.01*exp(-u/5)")
     slab = ss.ElasticSlab(2e3, 1e3, 1e3, 1e8)
     run = ss.simulate(ss.Problem(slab, law, pull_rate=2.0, initial_excess=-2e7, selection="maximal"), 8.0)
