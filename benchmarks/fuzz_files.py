@@ -39,7 +39,7 @@ SWEEP = {"friction.alpha": "0.2..2:6"}
 def prepare(folder: Path) -> None:
     """Write a checkpoint, a result, two catalogues and a store."""
     problem = ss.load_scenario("cycles-block").problem
-    ss.simulate(problem, 20 * ss.YEAR).save(folder / "run.nc")
+    ss.simulate(problem, 20 * ss.YEAR).to_netcdf(folder / "run.nc")
     for suffix in ("csv", "nc"):
         (folder / suffix).mkdir()
         ss.catalogue(problem, 20 * ss.YEAR, folder / suffix / f"events.{suffix}")
@@ -67,14 +67,14 @@ def read_checkpoint(folder: Path) -> str:
 
 def read_result(folder: Path) -> str:
     """Load the solution, and evaluate it."""
-    run = ss.load(folder / "run.nc")
+    run = ss.open_solution(folder / "run.nc")
     slip = run.slip(np.linspace(0.0, run.duration, 50)).tobytes()
     return digest(*(table.tobytes() for table in run.history.store), slip, run.events.to_csv(), run.rtol, str(run.status))
 
 
 def read_catalogue(folder: Path) -> str:
     """Go on with the catalogue."""
-    return digest(ss.resume_catalogue(folder / "events.checkpoint.nc", 30 * ss.YEAR).to_csv())
+    return digest(ss.resume(folder / "events.checkpoint.nc", 30 * ss.YEAR).to_csv())
 
 
 def read_store(folder: Path) -> str:

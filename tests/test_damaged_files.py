@@ -46,20 +46,20 @@ def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
 
 
 def test_no_single_bit_flip_passes(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.save(tmp_path / "run.nc")
+    path = run.to_netcdf(tmp_path / "run.nc")
     whole, rng = path.read_bytes(), np.random.default_rng(1)
     for place in [0, len(whole) - 1, len(whole) - 70, *rng.integers(0, len(whole), 60).tolist()]:
         damaged = bytearray(whole)
         damaged[place] ^= 1 << int(rng.integers(8))
         path.write_bytes(damaged)
-        refused(lambda: ss.load(path), "run.nc: ")
+        refused(lambda: ss.open_solution(path), "run.nc: ")
     for length in (0, 7, 8, 500, len(whole) // 2, len(whole) - 1):
         path.write_bytes(whole[:length])
-        refused(lambda: ss.load(path), "run.nc: ")
+        refused(lambda: ss.open_solution(path), "run.nc: ")
 
 
 def test_other_readers_of_netcdf_do_not_mind_the_checksum(run: ss.Solution, tmp_path: Path) -> None:
-    with h5py.File(run.save(tmp_path / "run.nc"), "r") as file:
+    with h5py.File(run.to_netcdf(tmp_path / "run.nc"), "r") as file:
         assert file["history_real"].shape == (len(run.history), 8)
 
 
@@ -107,38 +107,38 @@ def check_edit(run: ss.Solution, tmp_path: Path, edit: Callable[[Checkpoint], ob
 
 
 def test_tables_that_claim_more_than_the_file_holds_are_not_read(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.save(tmp_path / "run.nc")
+    path = run.to_netcdf(tmp_path / "run.nc")
 
     def claim(file: h5py.File) -> None:
         del file["history_real"]
         file.create_dataset("history_real", shape=(10**12, 8), dtype="f8", chunks=(1024, 8))
 
     resealed(path, claim)
-    refused(lambda: ss.load(path), "run.nc: not a file of stickslip: its tables claim")
+    refused(lambda: ss.open_solution(path), "run.nc: not a file of stickslip: its tables claim")
 
 
 def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.save(tmp_path / "run.nc")
+    path = run.to_netcdf(tmp_path / "run.nc")
     resealed(path, lambda file: file.__setitem__("elsewhere", h5py.ExternalLink("other.nc", "/x")))
-    refused(lambda: ss.load(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
+    refused(lambda: ss.open_solution(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
 
 
 @pytest.mark.parametrize("name", ["history_rate", "engine_count", "row_time"])
 def test_a_table_that_is_missing_is_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
-    path = run.save(tmp_path / "run.nc")
+    path = run.to_netcdf(tmp_path / "run.nc")
     resealed(path, lambda file: file.__delitem__(name))
-    refused(lambda: ss.load(path), "run.nc: ")
+    refused(lambda: ss.open_solution(path), "run.nc: ")
 
 
 FULL = """
 import resource, sys
 import stickslip as ss
 problem = ss.load_scenario("cycles-block").problem
-ss.simulate(problem, 20 * ss.YEAR).save("run.nc")
+ss.simulate(problem, 20 * ss.YEAR).to_netcdf("run.nc")
 solution = ss.simulate(problem, 100 * ss.YEAR)
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
 try:
-    solution.save("run.nc")
+    solution.to_netcdf("run.nc")
 except ss.InputError as error:
     assert error.solution is solution
     print(error)
@@ -152,7 +152,7 @@ def test_a_full_disk_is_one_line_and_the_file_before_stays(tmp_path: Path, room:
     done = subprocess.run([sys.executable, "-c", FULL, str(room)], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("run.nc: cannot be written: File too large")
-    assert ss.load(tmp_path / "run.nc").duration == 20 * ss.YEAR
+    assert ss.open_solution(tmp_path / "run.nc").duration == 20 * ss.YEAR
     assert [path.name for path in tmp_path.iterdir()] == ["run.nc"]
 
 

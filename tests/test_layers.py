@@ -122,9 +122,6 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 
 UPWARD_IN_FUNCTIONS: dict[str, set[str]] = {
     "scenarios/scenario.py": {"run"},
-    "solution/evaluation.py": {"figures", "io"},
-    "solution/solution.py": {"figures", "io"},
-    "solution/window.py": {"figures", "io"},
     "studies/analogy.py": {"figures"},
     "studies/compare.py": {"figures"},
     "studies/ensemble.py": {"figures"},

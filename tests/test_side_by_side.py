@@ -79,8 +79,8 @@ def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> 
 
 def test_files_scenarios_and_solutions_are_taken(tmp_path: Path) -> None:
     scenario = ss.load_scenario("fig6-slab")
-    saved = scenario.run().save(tmp_path / "saved.nc")
-    found = compare(saved, "fig6-slab", scenario, ss.load(saved))
+    saved = scenario.run().to_netcdf(tmp_path / "saved.nc")
+    found = compare(saved, "fig6-slab", scenario, ss.open_solution(saved))
     assert list(found.runs) == ["saved", "fig6-slab", "fig6-slab (2)", "run"]
     assert found.table.slip.nunique() == 1
     longer = compare("fig6-slab", scenario, until=7.0, rtol=1e-6)
@@ -153,5 +153,5 @@ def test_an_unchanged_friction_is_drawn_as_its_change() -> None:
 
 def test_the_dynamic_drop_is_exact_where_a_pulse_lasts_no_time() -> None:
     """Fig. 5, slab: from 3430 Pa above S (muS + a) down to S (muS - a), 1e8 Pa apart; relative 1e-9."""
-    row = ss.compare("fig5-slab-reconstructed", "fig5-block-reconstructed-omega").table.iloc[0]
+    row = ss.studies.compare("fig5-slab-reconstructed", "fig5-block-reconstructed-omega").table.iloc[0]
     assert row.dynamic_drop == pytest.approx(1e8 + 3430.0, rel=1e-9)

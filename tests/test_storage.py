@@ -31,7 +31,7 @@ RUNS = {
 @pytest.mark.parametrize("name", RUNS)
 def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     run = ss.simulate(*RUNS[name])
-    back = ss.load(ss.save(run, tmp_path / "run.nc"))
+    back = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     assert back.problem == run.problem
     assert (back.duration, back.rtol, back.status) == (run.duration, run.rtol, run.status)
     times = np.linspace(0.0, run.duration, 101)
@@ -39,12 +39,12 @@ def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
         assert np.array_equal(getattr(back, quantity)(times), getattr(run, quantity)(times)), quantity
     assert back.events.equals(run.events)
     assert back.shocks.equals(run.shocks)
-    again = back.save(tmp_path / "again.nc")
+    again = back.to_netcdf(tmp_path / "again.nc")
     assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
 
 
 def test_file_speaks_for_itself(tmp_path: Path) -> None:
-    path = ss.simulate(rate_law_slab(), 12.0).save(tmp_path / "run.nc")
+    path = ss.simulate(rate_law_slab(), 12.0).to_netcdf(tmp_path / "run.nc")
     with xr.open_dataset(path, engine="h5netcdf") as file:
         assert file.attrs["source"] == f"stickslip {ss.__version__}"
         assert file.attrs["selection_rule"] == "perfect-delay"
@@ -65,12 +65,12 @@ def test_file_speaks_for_itself(tmp_path: Path) -> None:
 
 def test_run_without_events_is_saved_too(tmp_path: Path) -> None:
     run = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0)
-    assert len(ss.load(run.save(tmp_path / "still.nc")).events) == 0
+    assert len(ss.open_solution(run.to_netcdf(tmp_path / "still.nc")).events) == 0
 
 
 def test_folder_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match="cannot be written"):
-        ss.simulate(rate_law_slab(), 1.0).save(tmp_path / "missing" / "run.nc")
+        ss.simulate(rate_law_slab(), 1.0).to_netcdf(tmp_path / "missing" / "run.nc")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -79,10 +79,10 @@ def test_files_that_are_not_solutions(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "wrong.nc"
     path.write_bytes(content)
     with pytest.raises(ss.InputError, match=r"wrong\.nc: not a netCDF file"):
-        ss.load(path)
+        ss.open_solution(path)
 
 
 def test_other_netcdf_files_are_refused(tmp_path: Path) -> None:
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ss.InputError, match="not a solution"):
-        ss.load(tmp_path / "other.nc")
+        ss.open_solution(tmp_path / "other.nc")

@@ -126,7 +126,7 @@ def test_why_not() -> None:
     assert "not one that a batch can keep" in why_not(scenario, ("friction.alpha",), ("horizon",))
     assert "not a plain number" in why_not(scenario, ("friction.alfa",), ("slip",))
     assert "exclude each other" in why_not(scenario, ("initial.load", "initial.excess"), ("slip",))
-    assert "not until a number of events" in why_not(replace(scenario, events=3), ("friction.alpha",), ("slip",))
+    assert "not until a number of events" in why_not(replace(scenario, max_events=3), ("friction.alpha",), ("slip",))
     assert "leap over creep" in why_not(replace(scenario, creep_rtol=1e-3), ("friction.alpha",), ("slip",))
     maxwell = replace(scenario, problem=replace(scenario.problem, selection="maxwell"))
     assert "maxwell" in why_not(maxwell, ("friction.alpha",), ("slip",))

@@ -66,7 +66,7 @@ def slower() -> dict[float, tuple[float, float, float]]:
         wavenumber = (1.0 + beyond) * SLAB.stiffness / (0.25 * SLAB.normal_stress)
         law = ss.friction.SinusoidalSlip(0.5, 0.25, wavenumber)
         slab = ss.Problem(SLAB, law, initial_slip=math.pi / wavenumber, initial_excess=2e6 * beyond**1.5)
-        a, b = (ss.simulate(one, 2e4, 1e-9, events=1).events.iloc[0] for one in (slab, block_for(slab)))
+        a, b = (ss.simulate(one, 2e4, 1e-9, max_events=1).events.iloc[0] for one in (slab, block_for(slab)))
         found[beyond] = a.slip / b.slip - 1.0, a.duration / b.duration - 1.0, a.duration / SLAB.two_way_time
     return found
 

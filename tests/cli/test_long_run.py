@@ -26,10 +26,10 @@ def test_a_run_goes_on(command, tmp_path: Path):
     assert "11 slip events" in shown.out
     assert "written: run.nc" in shown.out
     problem = ss.load_scenario("cycles-block").problem
-    assert differences(ss.load(tmp_path / "run.nc"), ss.simulate(problem, 50 * ss.YEAR)) == []
+    assert differences(ss.open_solution(tmp_path / "run.nc"), ss.simulate(problem, 50 * ss.YEAR)) == []
     assert command("run", "cycles-block", "--resume", "run.nc", "--until", "60 years", "--out", "longer.nc").code == 0
-    assert ss.load(tmp_path / "run.nc").duration == 50 * ss.YEAR
-    assert ss.load(tmp_path / "longer.nc").duration == 60 * ss.YEAR
+    assert ss.open_solution(tmp_path / "run.nc").duration == 50 * ss.YEAR
+    assert ss.open_solution(tmp_path / "longer.nc").duration == 60 * ss.YEAR
 
 
 def test_a_catalogue_goes_on(command, tmp_path: Path):
@@ -49,7 +49,7 @@ def test_events_stop_a_run(command, tmp_path: Path):
     (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", "[run]\nevents = 4\n"))
     assert "4 slip events" in command("run", "mine.toml", "--until", "10000 years").out
     scenario = ss.load_scenario(tmp_path / "mine.toml")
-    assert scenario.events == 4
+    assert scenario.max_events == 4
     (tmp_path / "again.toml").write_text(scenario.to_toml())
     assert ss.load_scenario(tmp_path / "again.toml") == scenario
 
@@ -98,11 +98,11 @@ def test_creep_is_leapt_over(command, tmp_path: Path):
     assert "creep_rtol 1e-05: no leaps over creep" in command("run", "mine.toml").out
     for option in (["--out", "again.nc"], ["--catalog", "events.csv"]):
         assert command("run", "mine.toml", "--until", "2.6 days", *option).code == 0
-    assert differences(ss.load(tmp_path / "again.nc"), ss.load(tmp_path / "run.nc")) == []
+    assert differences(ss.open_solution(tmp_path / "again.nc"), ss.open_solution(tmp_path / "run.nc")) == []
     whole = ss.simulate(scenario.problem, 3 * 86_400.0, creep_rtol=1e-5)
     for file in ("run.nc", "events.checkpoint.nc"):
         assert "2 leaps over 4" in command("run", "--resume", file, "--until", "3 days").out
-    assert differences(ss.load(tmp_path / "run.nc"), whole) == []
+    assert differences(ss.open_solution(tmp_path / "run.nc"), whole) == []
     pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole.events, check_exact=True)
 
 
@@ -139,9 +139,9 @@ def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPa
     scenario = ss.load_scenario("rate-and-state-block")
     whole = scenario.run()
     if option[0] == "--out":
-        assert 2 <= len(ss.load("run.nc").events) < len(whole.events)
+        assert 2 <= len(ss.open_solution("run.nc").events) < len(whole.events)
         assert command("run", "--resume", "run.nc").code == 0
-        assert differences(ss.load("run.nc"), whole) == []
+        assert differences(ss.open_solution("run.nc"), whole) == []
     else:
         assert 2 <= len(read_table(Path("run.csv"))) < len(whole.events)
         assert command("run", "--resume", "run.checkpoint.nc").code == 0
@@ -168,7 +168,7 @@ def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
         again = ss.load_scenario(tmp_path / "mine.toml")
         assert again == scenario
         assert (again.creep_rtol, again.shortest_event) == (expected, expected)
-    assert ss.load(tmp_path / "run.nc").creep_rtol is None
+    assert ss.open_solution(tmp_path / "run.nc").creep_rtol is None
 
 
 def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -181,4 +181,4 @@ def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, mo
     assert not (tmp_path / "run.nc").exists()
     assert "\nwritten: run.nc" in command(*arguments, "--max-pieces", "600").out
     assert command("run", "--resume", "run.nc", "--max-pieces", "20000").code == 0
-    assert ss.load(tmp_path / "run.nc").status.name == "finished"
+    assert ss.open_solution(tmp_path / "run.nc").status.name == "finished"

@@ -42,7 +42,7 @@ def steepest_by_scan(law: ss.friction.FrictionLaw) -> float:
 def test_closed_forms_against_the_root_finder(name):
     problem = slab_problem(CLOSED[name])
     place, value = CLOSED[name].critical_value(Z, S)
-    found = ss.critical_value(problem, place)
+    found = ss.studies.critical_value(problem, place)
     assert found.value == pytest.approx(value, rel=1e-12, abs=0)
     assert found.parameter.endswith(place)
     assert set(found.regimes) == {"regular", "irregular"}
@@ -63,7 +63,7 @@ def test_closed_forms_against_a_dense_scan(name):
 def test_the_regime_changes_where_it_is_said_to(name, step):
     place, value = CLOSED[name].critical_value(Z, S)
     changed = ss.parameters.parameter(slab_problem(CLOSED[name]), place).put(value * (1.0 + step))
-    found = ss.critical_value(changed, place)
+    found = ss.studies.critical_value(changed, place)
     side = found.regimes[0] if step < 0 else found.regimes[-1]
     assert ss.uniqueness(changed).regime == side
     assert (margin(changed) < 0.0) == (side == "irregular")
@@ -78,7 +78,7 @@ def test_laws_that_have_no_critical_value():
     for law in (strengthening, F.SinusoidalSlip(1.0, 0.5, 5.0), F.Coulomb(0.6, 0.5)):
         problem = slab_problem(law)
         assert critical_normal_stress(resistance(problem)) is None
-        found = ss.critical_value(problem, "normal_stress")
+        found = ss.studies.critical_value(problem, "normal_stress")
         assert (found.values, found.value) == ((), None)
         assert found.regimes == ("irregular" if isinstance(law, F.Coulomb) else "regular",)
         assert found.searched[0] < 1e2 * found.present < 1e4 * found.present < found.searched[1]
@@ -89,17 +89,17 @@ def test_the_normal_stress_of_a_law_without_closed_form():
     found = ss.uniqueness(slab_problem(law))
     assert (found.critical_parameter, found.critical_value) == ("normal_stress", pytest.approx(Z / 0.5, rel=1e-14, abs=0))
     assert "critical value is normal_stress = 19600000 Pa" in found.summary
-    assert ss.critical_value(slab_problem(law), "alpha").value == pytest.approx(0.196, rel=1e-13, abs=0)
-    assert ss.critical_value(slab_problem(law), "a").value == pytest.approx(0.3 + Z / S, rel=1e-13, abs=0)
+    assert ss.studies.critical_value(slab_problem(law), "alpha").value == pytest.approx(0.196, rel=1e-13, abs=0)
+    assert ss.studies.critical_value(slab_problem(law), "a").value == pytest.approx(0.3 + Z / S, rel=1e-13, abs=0)
 
 
 def test_parts_of_a_product_at_the_slip_that_is_reached():
     law = F.SlipTimesRate(F.LinearSlipWeakening(0.7, 0.5, 0.4), F.HyperbolicRate(1.0, 0.5, 1.0))
     for slip in (0.0, 0.2, 1.0):
         factor = max(0.7 - 0.5 * slip, 0.5)
-        found = ss.critical_value(slab_problem(law), "rate.alpha", slip)
+        found = ss.studies.critical_value(slab_problem(law), "rate.alpha", slip)
         assert found.value == pytest.approx(Z / (S * factor * 0.5), rel=1e-13, abs=0)
-    along = ss.critical_value(slab_problem(replace(law, slip=F.LinearSlipWeakening(0.7, 0.05, 0.4))), "initial.slip")
+    along = ss.studies.critical_value(slab_problem(replace(law, slip=F.LinearSlipWeakening(0.7, 0.05, 0.4))), "initial.slip")
     edge = (0.7 - 0.196) * 0.4 / 0.65  # the path counts: the same backwards
     assert along.values == pytest.approx((-edge, edge), rel=1e-12, abs=0)
     assert along.regimes == ("regular", "irregular", "regular")
@@ -108,7 +108,7 @@ def test_parts_of_a_product_at_the_slip_that_is_reached():
 def test_a_number_with_two_critical_values():
     """Friction falls by 0.5 k exp(-k), steepest at rest: irregular only for k neither too small nor too large."""
     law = F.FromExpression("0.3 + 0.5 * k * exp(-k) / (1 + v)", {"k": 1.0})
-    found = ss.critical_value(slab_problem(law), "k")
+    found = ss.studies.critical_value(slab_problem(law), "k")
     assert found.regimes == ("regular", "irregular", "regular")
     low, high = found.values
     assert low < 1.0 < high
@@ -118,7 +118,7 @@ def test_a_number_with_two_critical_values():
 
 def test_from_zero_the_search_goes_by_orders_of_magnitude():
     law = F.ExponentialStribeck(0.6, 0.4, 1.0, viscosity=0.0)
-    found = ss.critical_value(slab_problem(law), "viscosity")
+    found = ss.studies.critical_value(slab_problem(law), "viscosity")
     assert found.value == pytest.approx(0.2 - Z / S, rel=1e-13, abs=0)
     assert found.regimes == ("irregular", "regular")
 
@@ -133,15 +133,15 @@ def test_from_zero_the_search_goes_by_orders_of_magnitude():
 def test_what_has_no_critical_value(name, message):
     law = hyperbolic(1.0) if name == "alpa" else F.PowerStribeck(0.6, 0.4, 0.1, 2)
     with pytest.raises(ss.InputError, match=message.replace("?", r"\?")):
-        ss.critical_value(slab_problem(law), name)
+        ss.studies.critical_value(slab_problem(law), name)
 
 
 def test_inertia_has_none():
     block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
     with pytest.raises(ss.InputError, match="block"):
-        ss.critical_value(block, "alpha")
+        ss.studies.critical_value(block, "alpha")
     with pytest.raises(ss.InputError, match="contact mass"):
-        ss.critical_value(slab_problem(hyperbolic(1.0), contact_mass=10.0), "alpha")
+        ss.studies.critical_value(slab_problem(hyperbolic(1.0), contact_mass=10.0), "alpha")
 
 
 @settings(max_examples=25, deadline=None)

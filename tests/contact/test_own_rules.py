@@ -45,11 +45,11 @@ def test_it_runs_and_is_saved_by_its_name(tmp_path: Path):
     level = [jump.load for jump in ss.uniqueness(solution.problem).jumps]
     assert [float(solution.load(t)) for t in solution.shocks.time] == pytest.approx(level, rel=1e-9, abs=0)
     assert "halfway: the contact equation has several solutions, this run depends on the rule" in repr(solution)
-    path = solution.save(tmp_path / "run.nc")
+    path = solution.to_netcdf(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: made under the selection rule 'halfway', unknown here: .*register"):
-        ss.load(path)
+        ss.open_solution(path)
     ss.selection.register("halfway", halfway)
-    again = ss.load(path)
+    again = ss.open_solution(path)
     assert again.problem.selection == "halfway"
     assert again.shocks.equals(solution.shocks)
 

@@ -78,8 +78,8 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
 def test_taken_up_it_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
     """Stopped before the first leap, in it, and behind it."""
     file, whole = tmp_path / "run.nc", ss.simulate(printed(1), DAYS)
-    ss.simulate(printed(1), share * whole.creep.end.iloc[0]).save(file)
-    assert ss.load(file).creep_rtol is None
+    ss.simulate(printed(1), share * whole.creep.end.iloc[0]).to_netcdf(file)
+    assert ss.open_solution(file).creep_rtol is None
     resumed = ss.resume(file, DAYS)
     assert differences(resumed, whole) == []
     assert np.array_equal(resumed.history.creep, whole.history.creep)
@@ -139,10 +139,10 @@ def test_lumped_runs_are_taken_up_streamed_and_batched(tmp_path: Path) -> None:
     file, problem, end = tmp_path / "run.nc", weakening(0.15, thickness=1e3), 12.0
     whole = ss.simulate(problem, end)
     for stop in (7.0, 11.0):
-        ss.simulate(problem, stop).save(file)
+        ss.simulate(problem, stop).to_netcdf(file)
         resumed = ss.resume(file, end)
         assert differences(resumed, whole) == []
-        assert resumed.lumping_note == whole.lumping_note == ss.load(file).lumping_note
+        assert resumed.lumping_note == whole.lumping_note == ss.open_solution(file).lumping_note
     table = ss.catalogue(problem, end)
     pd.testing.assert_frame_equal(table, whole.catalogue(), check_exact=True)
     assert table.attrs["lumping"] == whole.lumping_note
@@ -171,18 +171,18 @@ def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: P
     assert full.status.name == "too many pieces"
     assert not file.exists()
     ss.simulate(printed(1), short, checkpoint=file, max_pieces=2000)
-    assert ss.load(file).status.name == "too many pieces"
+    assert ss.open_solution(file).status.name == "too many pieces"
     before = file.read_bytes()
     assert ss.resume(file).status.name == "too many pieces"
     assert file.read_bytes() == before
     assert ss.resume(file, max_pieces=20_000).status.name == "finished"
-    assert ss.load(file).status.name == "finished"
+    assert ss.open_solution(file).status.name == "finished"
 
 
 def test_a_file_is_as_large_as_is_said(tmp_path: Path) -> None:
     """0.44 GB a million pieces, to a tenth."""
     run = ss.simulate(printed(1), 150 * ROUND)
-    size = run.save(tmp_path / "run.nc").stat().st_size
+    size = run.to_netcdf(tmp_path / "run.nc").stat().st_size
     assert size / len(run.history) == pytest.approx(440.0, rel=0.1, abs=0.0)
 
 

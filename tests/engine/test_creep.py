@@ -208,7 +208,7 @@ def test_a_leap_that_lands_wrongly_is_taken_back(monkeypatch: pytest.MonkeyPatch
 def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Leaps are in the table, in the summary and in the file; the waves within are not known."""
     solution = ss.simulate(printed(100), 300 * ROUND, creep_rtol=1e-4)
-    again = ss.load(solution.save(tmp_path / "creep.nc"))
+    again = ss.open_solution(solution.to_netcdf(tmp_path / "creep.nc"))
     assert list(solution.creep.columns) == ["start", "end", "start_row", "round_trips", "error", "time_error"]
     assert again.creep.equals(solution.creep)
     time = np.linspace(0.0, 300 * ROUND, 500)

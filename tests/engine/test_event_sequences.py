@@ -44,7 +44,7 @@ def simulated(slab: Slab, count: int, rtol: float = 1e-10) -> pd.DataFrame:
     body = ss.ElasticSlab(slab.density, slab.wave_speed, slab.thickness, slab.normal_stress)
     law = ss.friction.HyperbolicRate(slab.static, slab.dynamic, slab.alpha)
     problem = ss.Problem(body, law, pull_rate=slab.pull_rate, initial_excess=0.0)
-    found = ss.simulate(problem, FOREVER, rtol, events=count).catalogue(0.0)
+    found = ss.simulate(problem, FOREVER, rtol, max_events=count).catalogue(0.0)
     assert len(found) == count
     return found
 

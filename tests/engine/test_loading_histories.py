@@ -182,7 +182,7 @@ def test_centuries_of_tides_are_leaped_over() -> None:
     """
     plate, tide, period = 1e-9, 1e-8, 44_712.0
     problem = ss.Problem(BLOCK, COULOMB, pull_rate=Sinusoidal(plate, tide, period), initial_excess=-BLOCK.stiffness * 2.5)
-    run = ss.simulate(problem, 100.0 * ss.YEAR, events=1)
+    run = ss.simulate(problem, 100.0 * ss.YEAR, max_events=1)
     turn = 2.0 * math.pi / period
 
     def missing(t: float) -> float:
@@ -202,7 +202,7 @@ def test_the_energy_over_leaped_rest() -> None:
     """A slab slips, rests for hours under a hold, a ramp and a tone, and slips again: balance to 1e-11 of the heat."""
     ramp = PiecewiseLinear((0.0, 40.0, 50.0, 4000.0, 40_000.0), (1.0, 1.0, 0.0, 0.0, 1e-3))
     for history in (ramp, Sinusoidal(1e-3, 2e-2, 300.0), HoldAndSlide(1e-3, 100.0, (3000.0, 10_000.0))):
-        run = ss.simulate(ss.Problem(SLAB, COULOMB, pull_rate=history, initial_excess=0.0), 60_000.0, events=40)
+        run = ss.simulate(ss.Problem(SLAB, COULOMB, pull_rate=history, initial_excess=0.0), 60_000.0, max_events=40)
         energy = run.energy(np.linspace(0.0, run.history.duration, 50))
         assert len(run.events) >= 4
         assert np.diff(run.history.store.row).max() > 20

@@ -220,7 +220,7 @@ def test_a_composite_remembers_as_its_slip_law(kind: str) -> None:
 
 def test_a_saved_run_keeps_what_it_forgot(tmp_path: Path) -> None:
     run = ss.simulate(pulled(WEAKENING, 0.02), 12.0)
-    again = ss.load(ss.save(run, tmp_path / "run.nc"))
+    again = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     times = np.linspace(0.0, 12.0, 121)
     assert len(run.events) > 2
     assert again.problem == run.problem

@@ -235,9 +235,9 @@ def test_bad_laws_are_told_in_one_line() -> None:
 
 def test_a_saved_run_keeps_its_state(tmp_path: Any) -> None:
     run = ss.simulate(steady(ss.SpringBlock(1e3, CRITICAL, NORMAL), LAW, 1.1), 1.0)
-    again = ss.load(run.save(tmp_path / "run.nc"))
+    again = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     times = np.linspace(0.0, 1.0, 30)
     assert (again.state(times) == run.state(times)).all()
     assert again.problem == run.problem
-    assert run.dataset(times).state.attrs["units"] == "s"
+    assert run.to_dataset(times).state.attrs["units"] == "s"
     assert run.status.ok

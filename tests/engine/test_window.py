@@ -172,7 +172,7 @@ def test_unfinished_event_has_neither_end_nor_duration() -> None:
 
 def test_epochs_and_windows_survive_a_file(tmp_path: Path) -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
-    back = ss.load(run.save(tmp_path / "run.nc"))
+    back = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     local = np.linspace(-1.0, 6.0, 201)
     assert back.window(1).epoch == run.window(1).epoch
     assert np.array_equal(back.window(1).event_slip(local), run.window(1).event_slip(local))
@@ -181,7 +181,7 @@ def test_epochs_and_windows_survive_a_file(tmp_path: Path) -> None:
 
 def test_window_as_a_dataset() -> None:
     window = ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1)
-    dataset = window.dataset([0.0, 1.0])
+    dataset = window.to_dataset([0.0, 1.0])
     assert (dataset.epoch_row, dataset.epoch_offset, dataset.row_time) == (2_589_011_266, 0.0, ROUND)
     assert dataset.event_slip.attrs["units"] == "m"
     assert float(dataset.event_slip[1]) == pytest.approx(4.10204082, rel=1e-8, abs=0.0)

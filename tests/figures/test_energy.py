@@ -48,12 +48,12 @@ def test_a_part_that_is_left_out_is_missed() -> None:
 
 def test_labels_and_what_is_shown_of_a_long_run() -> None:
     run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
-    axes = run.plot_energy().axes[0]
+    axes = run.plot.energy().axes[0]
     assert axes.get_ylabel() == "energy (MJ/m²)"
     assert axes.get_xlabel() == "time since the event began (s)"
     assert axes.get_xlim()[0] < 0.0 < axes.get_xlim()[1] < 20.0
-    block = ss.simulate(BLOCK_PROBLEM, 5.0).plot_energy(0.0, 3.0).axes[0]
+    block = ss.simulate(BLOCK_PROBLEM, 5.0).plot.energy(0.0, 3.0).axes[0]
     assert block.get_ylabel().endswith("J)")
     assert block.get_xlim() == (0.0, 3.0)
     with pytest.raises(ss.InputError, match="must end after"):
-        run.plot_energy(3.0, 3.0)
+        run.plot.energy(3.0, 3.0)

@@ -186,7 +186,7 @@ def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: 
 @pytest.mark.parametrize("rules", [("perfect-delay", "maxwell"), ("maxwell",)])
 def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
     """Around a jump where the runs tend to a rule, all the way where they do not."""
-    study = ss.regularise(LOOP, 5.7, sizes=[1e-2, 1e-3, 1e-4], rules=rules)
+    study = ss.studies.regularise(LOOP, 5.7, sizes=[1e-2, 1e-3, 1e-4], rules=rules)
     dataset = regularise.data(study)
     assert list(dataset.error[0].values) == list(study.errors(rules[0]))
     assert ("jump_time" in dataset.attrs) == (len(rules) == 2)
@@ -199,7 +199,9 @@ def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
 
 
 def test_an_ensemble_draws_what_members_share_and_how_they_part() -> None:
-    study = ss.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4)
+    study = ss.studies.ensemble(
+        ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4
+    )
     data = ensemble.data(study)
     assert data.sizes["event"] == sum(len(table) for table in study.catalogues)
     assert int((data.same.values * (data.of_member.values > 0)).sum()) == int(study.table.members.sum())
@@ -217,7 +219,7 @@ def test_an_ensemble_draws_what_members_share_and_how_they_part() -> None:
 
 def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
     for excess, duration in ((-1e6, 100.0), (-1e6, 1.0), (0.0, 1.0)):
-        study = ss.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=excess), duration, members=2)
+        study = ss.studies.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=excess), duration, members=2)
         assert image(study.plot(), "png")
     assert study.catalogues[0].empty
 

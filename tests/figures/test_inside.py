@@ -124,7 +124,7 @@ def test_a_long_run_is_shown_around_an_event() -> None:
 @pytest.mark.parametrize("name", ["rate law", "pulses", "laboratory"])
 def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -> None:
     shown = {"rate law": run, "pulses": PULSES.run(), "laboratory": LABORATORY.run()}[name]
-    figure = shown.plot_field()
+    figure = shown.plot.field()
     assert len(figure.axes) == 6  # with two colour bars
     assert without_unit(figure) == []
     height = "(mm)" if name == "laboratory" else "(km)"
@@ -148,7 +148,7 @@ def test_snapshots_are_the_field(run: ss.Solution) -> None:
     assert np.array_equal(dataset.velocity[1], at.velocity)
     assert np.array_equal(dataset.stress[1], at.stress)
     assert np.array_equal(dataset.displacement[1], at.displacement - start.displacement)
-    figure = run.plot_snapshots([1.0, 4.0])
+    figure = run.plot.snapshots([1.0, 4.0])
     assert without_unit(figure) == []
     line = figure.axes[1].lines[1].get_xydata()
     assert np.array_equal(line, np.stack([at.velocity, x / 1e3], axis=1))
@@ -181,7 +181,7 @@ def test_a_frame_shows_its_moment(run: ss.Solution) -> None:
 
 def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path) -> None:
     told: list[tuple[int, int]] = []
-    path = run.animate(tmp_path / "slab.gif", 0.0, 8.0, frames=5, progress=lambda *news: told.append(news))
+    path = run.plot.animation(tmp_path / "slab.gif", 0.0, 8.0, frames=5, progress=lambda *news: told.append(news))
     assert told == [(n, 5) for n in range(1, 6)]
     assert [file.name for file in tmp_path.iterdir()] == ["slab.gif"]
     with Image.open(path) as film:
@@ -203,7 +203,7 @@ def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path)
 @NEEDS_FFMPEG
 @pytest.mark.parametrize(("suffix", "begins"), [(".mp4", b"ftyp"), (".webm", b"\x1aE\xdf\xa3")])
 def test_videos(suffix: str, begins: bytes, run: ss.Solution, tmp_path: Path) -> None:
-    path = run.window(0).animate(tmp_path / f"slab{suffix}", frames=4)
+    path = run.window(0).plot.animation(tmp_path / f"slab{suffix}", frames=4)
     assert begins in path.read_bytes()[:12]
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
@@ -213,7 +213,7 @@ def test_a_failure_leaves_no_file(run: ss.Solution, tmp_path: Path) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run.animate(tmp_path / "slab.gif", frames=3, progress=fail)
+        run.plot.animation(tmp_path / "slab.gif", frames=3, progress=fail)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -223,19 +223,19 @@ def test_what_cannot_be_animated(run: ss.Solution, tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     missing = r"slab\.mp4: MP4 and WebM need ffmpeg \(pip install 'stickslip\[video\]'\); \.gif does not"
     with pytest.raises(ss.InputError, match=missing):
-        run.animate(tmp_path / "slab.mp4")
+        run.plot.animation(tmp_path / "slab.mp4")
     with pytest.raises(ss.InputError, match=r"slab\.avi: the name must end in \.gif or \.mp4 or \.webm"):
-        run.animate(tmp_path / "slab.avi")
+        run.plot.animation(tmp_path / "slab.avi")
     with pytest.raises(ss.InputError, match="at least 2 frames, got 1"):
-        run.animate(tmp_path / "slab.gif", frames=1)
+        run.plot.animation(tmp_path / "slab.gif", frames=1)
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("draw", ["plot_field", "plot_snapshots"])
+@pytest.mark.parametrize("draw", ["field", "snapshots"])
 def test_a_block_has_no_inside_to_draw(draw: str) -> None:
     run = ss.simulate(BLOCK_PROBLEM, 2.0)
     with pytest.raises(ss.InputError, match="a block is rigid"):
-        getattr(run, draw)()
+        getattr(run.plot, draw)()
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def legend(figure: Figure) -> list[str]:
 
 def test_a_map_shows_every_member_at_its_place() -> None:
     values = np.add.outer(np.arange(9.0), np.arange(13.0) // 6)
-    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
     axes, mesh = figure.axes[0], meshes(figure, 1)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("friction.alpha (s/m)", "body.thickness (km)")
     assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
@@ -74,7 +74,7 @@ def test_a_map_shows_every_member_at_its_place() -> None:
 
 def test_few_whole_numbers_have_a_colour_each_and_a_key() -> None:
     values = np.add.outer(np.arange(9) % 2, 2.0 * (np.arange(13) % 2))
-    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
     assert legend(figure) == ["0", "1", "2", "3"]
     assert figure.legends[0].get_title().get_text() == "pulses of all slip events"
     mesh = meshes(figure, 1)
@@ -85,7 +85,7 @@ def test_few_whole_numbers_have_a_colour_each_and_a_key() -> None:
 
 
 def test_yes_and_no() -> None:
-    figure = ss.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS, flag_meanings="no yes"), "answer")
+    figure = ss.figures.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS, flag_meanings="no yes"), "answer")
     assert legend(figure) == ["no", "yes"]
 
 
@@ -94,7 +94,7 @@ def test_what_has_no_number_is_told_apart() -> None:
     values[:3] = np.nan
     status = np.zeros((9, 13))
     status[1], status[2] = FAILED, NOT_RUN
-    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, status=status), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS, status=status), "answer")
     assert legend(figure) == ["1", "undefined for this run", "not run", "failed"]
     assert figure.axes[0].patch.get_hatch() == "////"
     blank, mesh = meshes(figure, 0), meshes(figure, 1)
@@ -108,14 +108,14 @@ def test_what_has_no_number_is_told_apart() -> None:
 
 
 def test_without_failures_there_is_no_hatching() -> None:
-    figure = ss.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS), "answer")
+    figure = ss.figures.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS), "answer")
     assert figure.axes[0].patch.get_hatch() is None
     assert legend(figure) == ["1"]
 
 
 def test_numbers_over_decades_have_a_logarithmic_scale_in_a_readable_unit() -> None:
     values = np.outer(np.geomspace(1.0, 1e4, 9), np.linspace(1.0, 2.0, 13)) * ss.YEAR
-    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, units="s", long_name="recurrence"), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS, units="s", long_name="recurrence"), "answer")
     bar = figure.axes[1]
     assert bar.get_ylabel() == "recurrence (year)"
     norm = meshes(figure, 1).norm
@@ -125,7 +125,7 @@ def test_numbers_over_decades_have_a_logarithmic_scale_in_a_readable_unit() -> N
 
 def test_three_keys_are_maps_side_by_side_with_the_same_colours() -> None:
     values = np.add.outer(np.add.outer(np.arange(9) % 2, np.arange(13) % 2), np.array([0.0, 2.0]))
-    figure = ss.plot_sweep(grid(values, ALPHA, THICKNESS, STRESS), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS, STRESS), "answer")
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["normal stress 50 MPa", "normal stress 100 MPa"]
     for k, axes in enumerate(figure.axes):
         mesh = [one for one in axes.collections if isinstance(one, QuadMesh)][1]
@@ -135,7 +135,7 @@ def test_three_keys_are_maps_side_by_side_with_the_same_colours() -> None:
 
 def test_one_key_is_a_curve_with_gaps() -> None:
     values = np.array([1.0, 2.0, np.nan, 4.0, 5.0])
-    figure = ss.plot_sweep(grid(values, ALPHA, status=[0, 0, FAILED, 0, 0]), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, status=[0, 0, FAILED, 0, 0]), "answer")
     curve, cross = figure.axes[0].lines
     assert np.array_equal(curve.get_ydata(), values, equal_nan=True)
     assert cross.get_xdata().tolist() == [AXES[ALPHA][2]]
@@ -145,7 +145,7 @@ def test_one_key_is_a_curve_with_gaps() -> None:
 
 def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
     values = np.add.outer(0.5 * np.arange(9), np.array([0.0, 10.0]))
-    figure = ss.plot_sweep(grid(values, ALPHA, STRESS), "answer")
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, STRESS), "answer")
     assert legend(figure) == ["normal stress 50 MPa", "normal stress 100 MPa"]
     for k, line in enumerate(figure.axes[0].lines):
         assert np.array_equal(line.get_xydata(), np.stack([AXES[ALPHA], values[:, k]], axis=1))
@@ -153,7 +153,7 @@ def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
 
 def test_words_have_their_place() -> None:
     dataset = grid(np.arange(9.0), ALPHA).assign_coords({ALPHA: ("friction.alpha", [f"rule{k}" for k in range(9)])})
-    figure = ss.plot_sweep(dataset, "answer")
+    figure = ss.figures.plot_sweep(dataset, "answer")
     assert [text.get_text() for text in figure.axes[0].get_xticklabels()] == [f"rule{k}" for k in range(9)]
 
 
@@ -163,7 +163,7 @@ def scattered(axes: Axes) -> list[PathCollection]:
 
 def test_samples_over_two_keys_are_points() -> None:
     alpha, thickness = np.array([0.1, 0.5, 2.0, 1.0]), np.array([1e3, 2e3, 50e3, 4e3])
-    figure = ss.plot_sweep(
+    figure = ss.figures.plot_sweep(
         members(np.array([0.5, 1.5, 3.0, np.nan]), [0, 0, 0, FAILED], friction__alpha=alpha, body__thickness=thickness)
     )
     crosses, points = scattered(figure.axes[0])
@@ -179,7 +179,7 @@ def test_samples_over_three_keys_are_drawn_over_each() -> None:
         "body__thickness": AXES[THICKNESS][:9],
         "body__normal_stress": np.linspace(5e7, 9e7, 9),
     }
-    figure = ss.plot_sweep(members(np.arange(9.0) / 2.0, **columns), "answer")
+    figure = ss.figures.plot_sweep(members(np.arange(9.0) / 2.0, **columns), "answer")
     assert [axes.get_xlabel() for axes in figure.axes] == [
         "friction.alpha (s/m)",
         "body.thickness (km)",
@@ -196,7 +196,7 @@ def refined() -> xr.Dataset:
 
 
 def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
-    figure = ss.plot_sweep(refined, "irregular")
+    figure = ss.figures.plot_sweep(refined, "irregular")
     axes = figure.axes[0]
     assert legend(figure) == ["no", "yes", "boundary"]
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
@@ -212,13 +212,13 @@ def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
 
 
 def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
-    points = scattered(ss.plot_sweep(refined, "slip").axes[0])[-1]
+    points = scattered(ss.figures.plot_sweep(refined, "slip").axes[0])[-1]
     assert len(points.get_offsets()) == refined.sizes["member"]
 
 
 def test_cuts_through_three_keys() -> None:
     vary = {ALPHA: "0.1..0.4:3", STRESS: "50 MPa..200 MPa:3", "body.wave_speed": "2 km/s, 5 km/s"}
-    figure = ss.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
+    figure = ss.figures.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["wave speed 2000 m/s", "wave speed 5000 m/s"]
     for axes, speed in zip(figure.axes, (2e3, 5e3), strict=True):
         for cell in next(one for one in axes.collections if isinstance(one, PolyCollection)).get_paths():
@@ -229,27 +229,31 @@ def test_cuts_through_three_keys() -> None:
 @pytest.mark.parametrize("status", [FAILED, NOT_RUN, 0])
 def test_nothing_to_be_seen(status: int) -> None:
     nothing = np.full((9, 13), np.nan)
-    assert len(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status)).axes) == 1  # no scale of nothing
-    assert not meshes(ss.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status, units="s"), "answer"), 1).get_array().count()
-    ss.plot_sweep(grid(nothing[:, 0], ALPHA, status=status), "answer")
+    assert len(ss.figures.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status)).axes) == 1  # no scale of nothing
+    assert (
+        not meshes(ss.figures.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status, units="s"), "answer"), 1)
+        .get_array()
+        .count()
+    )
+    ss.figures.plot_sweep(grid(nothing[:, 0], ALPHA, status=status), "answer")
     assert not scattered(
-        ss.plot_sweep(members(nothing[0], status, friction__alpha=AXES[THICKNESS], body__thickness=AXES[THICKNESS])).axes[0]
+        ss.figures.plot_sweep(members(nothing[0], status, friction__alpha=AXES[THICKNESS], body__thickness=AXES[THICKNESS])).axes[0]
     )[1:]
 
 
 def test_it_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
-    ss.plot_sweep(refined, path=tmp_path / "map.png")
+    ss.figures.plot_sweep(refined, path=tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
 
 def test_what_cannot_be_drawn() -> None:
     dataset = grid(np.ones((9, 13)), ALPHA, THICKNESS)
     with pytest.raises(ss.InputError, match="this sweep has no quantity 'anser'; did you mean 'answer'"):
-        ss.plot_sweep(dataset, "anser")
+        ss.figures.plot_sweep(dataset, "anser")
     with pytest.raises(ss.InputError, match="one member"):
-        ss.plot_sweep(grid(np.ones(1), ALPHA))
+        ss.figures.plot_sweep(grid(np.ones(1), ALPHA))
     with pytest.raises(ss.InputError, match="a grid of 4 keys: select some values first"):
-        ss.plot_sweep(dataset.expand_dims({"a": 2, "b": 2}), "answer")
+        ss.figures.plot_sweep(dataset.expand_dims({"a": 2, "b": 2}), "answer")
 
 
 @pytest.mark.parametrize(

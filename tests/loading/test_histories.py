@@ -160,8 +160,8 @@ def test_an_own_history_runs_and_is_saved_once_it_is_known(tmp_path: Path, monke
     times = np.linspace(0.0, 5.0, 301)
     np.testing.assert_allclose(mine.slip(times), steady.slip(times), rtol=1e-9, atol=1e-12)
     with pytest.raises(ss.InputError, match=r'^save: Own is not known to files: stickslip.loading.HISTORIES\["own"\] = Own tells'):
-        mine.save(tmp_path / "mine.nc")
+        mine.to_netcdf(tmp_path / "mine.nc")
     monkeypatch.setitem(HISTORIES, "own", Own)
-    loaded = ss.load(mine.save(tmp_path / "mine.nc"))
+    loaded = ss.open_solution(mine.to_netcdf(tmp_path / "mine.nc"))
     assert loaded.problem == mine.problem
     assert (loaded.slip(times) == mine.slip(times)).all()

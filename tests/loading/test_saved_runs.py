@@ -49,7 +49,7 @@ def test_a_saved_run_gives_the_same_readings(problem: ss.Problem, tmp_path: Path
     run = ss.simulate(problem, 20.0)
     assert run.status.ok
     assert len(run.catalogue(event_rate=0.0)) > 0
-    loaded = ss.load(run.save(tmp_path / "run.nc"))
+    loaded = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     assert loaded.problem == problem
     assert differences(loaded, run) == []
     times = np.linspace(0.0, run.history.span[1], 301)

@@ -24,7 +24,7 @@ from stickslip.run.run_loop import drive
 from stickslip.run.session import RunInProgress
 from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
-from tests.long_runs.problems import RUNS, SLOW, bundled
+from tests.long_runs.problems import RUNS, SLOW, bundled, differences
 from tests.long_runs.test_resume import killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
@@ -74,8 +74,8 @@ def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
         path = tmp_path / f"events.{suffix}"
         first = ss.catalogue(problem, float(end), path)
         assert len(first) < len(whole)
-        same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration), whole)
-        same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc"), whole)
+        same(ss.resume(tmp_path / "events.checkpoint.nc", duration), whole)
+        same(ss.resume(tmp_path / "events.checkpoint.nc"), whole)
 
 
 @pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals", "block that heals"])
@@ -85,7 +85,7 @@ def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path
     problem, duration = RUNS[name]
     whole = ss.simulate(problem, duration).catalogue(energies=True)
     ss.catalogue(problem, 0.7 * duration, tmp_path / "events.csv", energies=True)
-    found = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration)
+    found = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     assert list(found.columns) == list(whole.columns)
     for energy in ENERGY_COLUMNS:
         np.testing.assert_allclose(found[energy], whole[energy], rtol=0.0, atol=1e-12 * whole.released.abs().max(), err_msg=energy)
@@ -98,12 +98,12 @@ def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path
 @pytest.mark.parametrize("events", [1, 5])
 def test_events_stop_it_where_they_stop_a_run(events: int, tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]
-    short = ss.catalogue(problem, duration, tmp_path / "events.csv", events=events)
-    same(short, ss.simulate(problem, duration, events=events).catalogue())
+    short = ss.catalogue(problem, duration, tmp_path / "events.csv", max_events=events)
+    same(short, ss.simulate(problem, duration, max_events=events).catalogue())
     assert short.attrs["status"] == "enough events"
-    longer = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", events=events + 2)
-    same(longer, ss.simulate(problem, duration, events=events + 2).catalogue())
-    same(ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration), ss.simulate(problem, duration).catalogue())
+    longer = ss.resume(tmp_path / "events.checkpoint.nc", max_events=events + 2)
+    same(longer, ss.simulate(problem, duration, max_events=events + 2).catalogue())
+    same(ss.resume(tmp_path / "events.checkpoint.nc", duration), ss.simulate(problem, duration).catalogue())
 
 
 def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,7 +166,7 @@ def test_killed_or_interrupted_it_ends_with_the_same_rows(suffix: str, with_sign
     if with_signal == "SIGKILL":
         with growing.open("a") as file:
             file.write("1.5,2.5,half a row")  # what a process that dies while it writes leaves behind
-    same(ss.resume_catalogue(checkpoint, end), ss.simulate(paused.stopped.problem, end).catalogue())
+    same(ss.resume(checkpoint, end), ss.simulate(paused.stopped.problem, end).catalogue())
     assert not (tmp_path / "events.rows.csv").exists()
 
 
@@ -182,17 +182,27 @@ def test_lost_rows_are_noticed(tmp_path: Path) -> None:
     ss.catalogue(problem, duration, tmp_path / "events.csv")
     (tmp_path / "events.csv").write_text("start,end\n")
     with pytest.raises(ss.InputError, match=r"events\.csv: has lost rows that the checkpoint counts on"):
-        ss.resume_catalogue(tmp_path / "events.checkpoint.nc", 2 * duration)
+        ss.resume(tmp_path / "events.checkpoint.nc", 2 * duration)
 
 
 def test_solution_and_checkpoint_are_not_taken_for_each_other(tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]
     ss.catalogue(problem, duration, tmp_path / "events.csv")
-    ss.simulate(problem, duration).save(tmp_path / "run.nc")
-    with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a solution .*resume_catalogue"):
-        ss.resume(tmp_path / "events.checkpoint.nc")
+    ss.simulate(problem, duration).to_netcdf(tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a solution .*stickslip\.resume\)"):
+        ss.open_solution(tmp_path / "events.checkpoint.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: not a catalogue's checkpoint .*stickslip\.resume\)"):
-        ss.resume_catalogue(tmp_path / "run.nc")
+        module.Paused.read(tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: a catalogue is resumed in its own file"):
+        ss.resume(tmp_path / "events.checkpoint.nc", checkpoint=tmp_path / "other.nc")
+
+
+def test_resume_looks_at_the_file(tmp_path: Path) -> None:
+    problem, duration = RUNS["slab that heals"]
+    table = ss.catalogue(problem, duration, tmp_path / "events.csv")
+    run = ss.simulate(problem, duration, checkpoint=tmp_path / "run.nc")
+    same(ss.resume(tmp_path / "events.checkpoint.nc"), table)
+    assert differences(ss.resume(tmp_path / "run.nc"), run) == []
 
 
 def test_bad_arguments(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,7 +211,7 @@ def test_bad_arguments(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ({"path": tmp_path / "events.txt"}, r"events\.txt: the name must end in \.csv, \.parquet or \.nc"),
         ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
         ({"event_rate": np.nan}, "event_rate must be a slip rate in m/s, got nan"),
-        ({"events": -1}, "catalogue: events must be a whole number above 0, got -1"),
+        ({"max_events": -1}, "catalogue: max_events must be a whole number above 0, got -1"),
     ):
         with pytest.raises(ss.InputError, match=message):
             ss.catalogue(problem, duration, **arguments)

@@ -36,7 +36,7 @@ def test_a_path_in_a_checkpoint_is_not_followed(tmp_path: Path, name: str) -> No
     checkpoint = began(folder)
     changed(checkpoint, catalogue=name, bytes=0)
     with pytest.raises(ss.InputError, match="which is no bare name"):
-        ss.resume_catalogue(checkpoint, DURATION)
+        ss.resume(checkpoint, DURATION)
     assert (tmp_path / "victim.csv").read_text() == "precious\n"
 
 
@@ -49,7 +49,7 @@ def test_a_link_is_not_followed(tmp_path: Path) -> None:
     (folder / "events.csv").unlink()
     (folder / "events.csv").symlink_to(tmp_path / "victim.csv")
     with pytest.raises(ss.InputError, match=r"events\.csv: is a link"):
-        ss.resume_catalogue(checkpoint, DURATION)
+        ss.resume(checkpoint, DURATION)
     assert (tmp_path / "victim.csv").read_text() == "precious\n"
 
 
@@ -58,7 +58,7 @@ def test_numbers_of_a_checkpoint_are_checked(tmp_path: Path, wrong: dict[str, ob
     checkpoint = began(tmp_path)
     changed(checkpoint, **wrong)
     with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a file that stickslip has written"):
-        ss.resume_catalogue(checkpoint, DURATION)
+        ss.resume(checkpoint, DURATION)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs locks")
@@ -68,11 +68,11 @@ def test_two_runs_do_not_write_into_one_catalogue(tmp_path: Path, other: str) ->
     checkpoint = began(tmp_path)
     before = (tmp_path / "events.csv").read_bytes()
     with module.alone_with(Rows(tmp_path / "events.csv")):
-        for begin in (lambda: ss.catalogue(PROBLEM, DURATION, tmp_path / other), lambda: ss.resume_catalogue(checkpoint, DURATION)):
+        for begin in (lambda: ss.catalogue(PROBLEM, DURATION, tmp_path / other), lambda: ss.resume(checkpoint, DURATION)):
             with pytest.raises(ss.InputError, match="another run is writing its catalogue there: choose another name"):
                 begin()
     assert (tmp_path / "events.csv").read_bytes() == before
-    ss.resume_catalogue(checkpoint, DURATION)
+    ss.resume(checkpoint, DURATION)
 
 
 @pytest.mark.parametrize("left", ["", "start,end\n1.0,", "begun"])
@@ -85,7 +85,7 @@ def test_a_kill_while_a_finished_table_is_lengthened(tmp_path: Path, left: str) 
         left = text[: len(text) // 2]
     rows.growing.write_text(left)
     whole = ss.simulate(PROBLEM, DURATION).catalogue()
-    pd.testing.assert_frame_equal(ss.resume_catalogue(checkpoint, DURATION), whole, check_exact=True)
+    pd.testing.assert_frame_equal(ss.resume(checkpoint, DURATION), whole, check_exact=True)
 
 
 def test_rows_that_were_changed_are_noticed(tmp_path: Path) -> None:
@@ -94,5 +94,5 @@ def test_rows_that_were_changed_are_noticed(tmp_path: Path) -> None:
     place = text.index("\n") + 3
     (tmp_path / "events.csv").write_text(text[:place] + ("1" if text[place] != "1" else "2") + text[place + 1 :])
     with pytest.raises(ss.InputError, match=r"events\.csv: has other rows than the checkpoint counts on"):
-        ss.resume_catalogue(checkpoint, DURATION)
+        ss.resume(checkpoint, DURATION)
     assert checkpoint_of(Rows(tmp_path / "events.csv")) == checkpoint

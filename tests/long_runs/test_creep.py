@@ -61,7 +61,7 @@ def begun(name: str) -> tuple[RunInProgress, tuple[int, float]]:
 
 def gone_on(path: Path, duration: float) -> ss.Solution:
     """As `resume`, which would also write the file again."""
-    return go_on(taken_up(ss.load(path), path, duration), Orders(duration))
+    return go_on(taken_up(ss.open_solution(path), path, duration), Orders(duration))
 
 
 def step(run: RunInProgress, last: tuple[int, float]) -> bool:
@@ -125,12 +125,12 @@ def test_events_stop_it(events: int, tmp_path: Path) -> None:
     """However often the run is looked at; and it says that it creeps."""
     problem, duration, rtol = RUNS["up to a pulse"]
     path, seen = tmp_path / "run.nc", list[Report]()
-    short = ss.simulate(problem, 2 * duration, creep_rtol=rtol, events=events, checkpoint=path)
+    short = ss.simulate(problem, 2 * duration, creep_rtol=rtol, max_events=events, checkpoint=path)
     assert short.status.name == "enough events"
     assert short.events.end.notna().sum() == events
-    again = ss.simulate(problem, 2 * duration, creep_rtol=rtol, events=events, progress=seen.append, checkpoint_every=0.0)
+    again = ss.simulate(problem, 2 * duration, creep_rtol=rtol, max_events=events, progress=seen.append, checkpoint_every=0.0)
     assert differences(again, short) == []
-    assert differences(ss.resume(path, duration), replace(whole_run("up to a pulse"), events_wanted=None)) == []
+    assert differences(ss.resume(path, duration), replace(whole_run("up to a pulse"), max_events=None)) == []
     assert "creeping" in {report.doing for report in seen} or events == 1
 
 
@@ -145,7 +145,7 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
         assert table.attrs["creep"] == whole_run(name).creep_note
     path, short = tmp_path / "events.csv", float(whole_run(name).creep.end.iloc[-1]) - ROUND
     ss.catalogue(problem, short, path, creep_rtol=rtol)
-    resumed = ss.resume_catalogue(tmp_path / "events.checkpoint.nc", duration)
+    resumed = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     pd.testing.assert_frame_equal(resumed, whole_run(name).catalogue(), check_exact=True)
     assert resumed.attrs["creep"] == whole_run(name).creep_note
 
@@ -164,7 +164,7 @@ ss.simulate(problem, 20 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpo
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 def test_killed_it_goes_on(tmp_path: Path) -> None:
     killed(CREEPING, tmp_path, "run.nc", signal.SIGKILL, times=2)
-    stopped = ss.load(tmp_path / "run.nc")
+    stopped = ss.open_solution(tmp_path / "run.nc")
     assert stopped.status.name == "under way"
     assert len(stopped.creep) > 0
     end = stopped.history.duration * 1.01

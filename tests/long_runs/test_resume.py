@@ -59,9 +59,9 @@ def test_stopped_anywhere_and_taken_up(name: str, tmp_path: Path) -> None:
     stops = {steps - 1} if name in SLOW else {1, 2, *rng.integers(1, steps + 1, 5).tolist(), steps}
     for stop in stops:
         stopped(problem, duration, int(stop), path)
-        assert ss.load(path).status.name == "under way"
+        assert ss.open_solution(path).status.name == "under way"
         assert differences(ss.resume(path), whole) == [], f"after {stop} of {steps} steps"
-        assert differences(ss.load(path), whole) == []
+        assert differences(ss.open_solution(path), whole) == []
 
 
 def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_a_finished_run_goes_on_as_if_it_had_not_ended(name: str, tmp_path: Path
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
     for share in (0.99,) if name in SLOW else np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
-        ss.simulate(problem, share * duration).save(path)
+        ss.simulate(problem, share * duration).to_netcdf(path)
         assert differences(ss.resume(path, duration), whole) == [], f"from {share} of the way"
         assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
 
@@ -99,7 +99,7 @@ def test_what_is_not_restored_is_noticed(tmp_path: Path) -> None:
     problem, duration = RUNS["slip law, slab"]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
     stopped(problem, duration, 50, path)
-    half = ss.load(path)
+    half = ss.open_solution(path)
     assert half.checkpoint is not None
     State(half.checkpoint.state).law_slip *= 1.0 + 1e-15
     save_checkpoint(half, path)
@@ -111,24 +111,24 @@ def test_events_stop_a_run_where_the_last_one_is_known(events: int, tmp_path: Pa
     problem, duration = RUNS["slab that heals"]
     path = tmp_path / "run.nc"
     whole = ss.simulate(problem, 10 * duration)
-    short = ss.simulate(problem, 10 * duration, events=events, checkpoint=path)
+    short = ss.simulate(problem, 10 * duration, max_events=events, checkpoint=path)
     assert short.status.name == "enough events"
     assert short.status.ok
     assert short.events.end.notna().sum() == events
     assert short.events.iloc[:events].equals(whole.events.iloc[:events])
     seen: list[Report] = []
-    again = ss.simulate(problem, 10 * duration, events=events, progress=seen.append, checkpoint_every=0.0)
+    again = ss.simulate(problem, 10 * duration, max_events=events, progress=seen.append, checkpoint_every=0.0)
     assert differences(again, short) == []
-    more = ss.resume(path, events=events + 5)
-    assert differences(more, ss.simulate(problem, 10 * duration, events=events + 5)) == []
-    assert differences(ss.resume(path, 10 * duration), replace(whole, events_wanted=None)) == []
+    more = ss.resume(path, max_events=events + 5)
+    assert differences(more, ss.simulate(problem, 10 * duration, max_events=events + 5)) == []
+    assert differences(ss.resume(path, 10 * duration), replace(whole, max_events=None)) == []
 
 
 def test_fewer_events_than_there_were_are_refused(tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]
-    ss.simulate(problem, duration, events=5, checkpoint=tmp_path / "run.nc")
+    ss.simulate(problem, duration, max_events=5, checkpoint=tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: the run has had 5 events already: it cannot stop after 3"):
-        ss.resume(tmp_path / "run.nc", events=3)
+        ss.resume(tmp_path / "run.nc", max_events=3)
 
 
 def test_an_earlier_end_is_refused(tmp_path: Path) -> None:
@@ -143,11 +143,11 @@ def test_another_engine_is_refused(tmp_path: Path) -> None:
     run = ss.simulate(problem, duration)
     assert run.checkpoint is not None
     other = replace(run, checkpoint=replace(run.checkpoint, engine="0123456789abcdef"))
-    other.save(tmp_path / "run.nc")
+    other.to_netcdf(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: cannot be resumed: another version of stickslip's engine made it") as said:
         ss.resume(tmp_path / "run.nc", 2 * duration)
     assert "\n" not in str(said.value)
-    replace(run, checkpoint=None).save(tmp_path / "bare.nc")
+    replace(run, checkpoint=None).to_netcdf(tmp_path / "bare.nc")
     with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be resumed: it does not hold where the engine stood"):
         ss.resume(tmp_path / "bare.nc")
     with pytest.raises(ss.InputError, match=r"none\.nc: no such file"):
@@ -157,8 +157,8 @@ def test_another_engine_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"events": 0}, "events must be a whole number above 0, got 0"),
-        ({"events": 2.5}, "events must be a whole number above 0, got 2.5"),
+        ({"max_events": 0}, "max_events must be a whole number above 0, got 0"),
+        ({"max_events": 2.5}, "max_events must be a whole number above 0, got 2.5"),
         ({"checkpoint_every": -1.0}, "checkpoint_every must be a time in s, got -1.0"),
         ({"checkpoint": "nowhere/run.nc"}, "nowhere/run.nc: cannot be written"),
     ],
@@ -199,7 +199,7 @@ def killed(code: str, folder: Path, file: str, with_signal: signal.Signals, time
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 def test_kill_leaves_a_checkpoint_that_goes_on(tmp_path: Path) -> None:
     killed(LONG, tmp_path, "run.nc", signal.SIGKILL, times=3)
-    begun = ss.load(tmp_path / "run.nc")
+    begun = ss.open_solution(tmp_path / "run.nc")
     assert begun.status.name == "under way"
     end = begun.history.duration * 1.1
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
@@ -209,7 +209,7 @@ def test_kill_leaves_a_checkpoint_that_goes_on(tmp_path: Path) -> None:
 def test_ctrl_c_leaves_a_solution_that_goes_on(tmp_path: Path) -> None:
     done = killed(LONG, tmp_path, "run.nc", signal.SIGINT)
     assert (done.returncode, done.stderr) == (0, "")
-    begun = ss.load(tmp_path / "run.nc")
+    begun = ss.open_solution(tmp_path / "run.nc")
     assert begun.status.name == "interrupted"
     end = begun.history.duration * 1.1
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []

@@ -218,12 +218,12 @@ def test_a_dataset_with_places() -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
     x, t = np.linspace(0.0, THICKNESS, 5), np.linspace(0.0, 8.0, 7)
     for readings in (run, run.window(1)):
-        dataset = readings.dataset(t, x=x)
+        dataset = readings.to_dataset(t, x=x)
         assert dataset.stress.dims == ("time", "x")
         assert {dataset[name].attrs["units"] for name in ("displacement", "velocity", "stress", "x")} == {"m", "m s-1", "Pa"}
         assert np.array_equal(dataset.velocity, readings.field(x, t[:, None]).velocity)
         assert dataset.attrs["scenario"]
-        assert "displacement" not in readings.dataset(t)
+        assert "displacement" not in readings.to_dataset(t)
 
 
 def test_a_block_has_no_inside() -> None:
@@ -231,7 +231,7 @@ def test_a_block_has_no_inside() -> None:
     with pytest.raises(ss.InputError, match="field: a block is rigid"):
         run.field(0.0, 1.0)
     with pytest.raises(ss.InputError, match="field: a block is rigid"):
-        run.dataset([1.0], x=[0.0])
+        run.to_dataset([1.0], x=[0.0])
 
 
 @pytest.mark.parametrize(

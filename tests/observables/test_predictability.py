@@ -59,9 +59,9 @@ def test_the_horizon() -> None:
     assert found.largest > 1e10
     assert found.horizon / TRIP == pytest.approx(24_645, abs=1.0)
     assert "only statistics" in found.text
-    slow = ss.simulate(replace(critical, friction=WEAKENING), 1e12, events=58).catalogue(0.0)
+    slow = ss.simulate(replace(critical, friction=WEAKENING), 1e12, max_events=58).catalogue(0.0)
     of_events = predictability_of_events(slow, 1e-10)
-    streamed = ss.catalogue(replace(critical, friction=WEAKENING), 1e12, events=58, event_rate=0.0)
+    streamed = ss.catalogue(replace(critical, friction=WEAKENING), 1e12, max_events=58, event_rate=0.0)
     assert streamed.attrs["predictability"] == of_events.text
     assert slow.start[39] <= of_events.horizon <= slow.start[57]
     assert slow.amplification[1:30].to_numpy() == pytest.approx(slow.amplification[1] ** np.arange(1, 30), rel=1e-3)
@@ -84,7 +84,7 @@ def test_other_problems_are_refused_in_one_line() -> None:
 
 def test_files_say_it(tmp_path: Path) -> None:
     run = run_of(1.0, 60.0)
-    run.save(tmp_path / "run.nc")
+    run.to_netcdf(tmp_path / "run.nc")
     ss.catalogue(run.problem, run.duration, tmp_path / "events.nc", rtol=1e-12)
     of_events = predictability_of_events(run.catalogue(), 1e-12)
     for name, found in (("run.nc", predictability(run)), ("events.nc", of_events)):

@@ -19,7 +19,7 @@ TABLE = pd.DataFrame(
 
 
 def test_by_hand() -> None:
-    found = ss.catalogue_statistics(TABLE)
+    found = ss.studies.catalogue_statistics(TABLE)
     assert list(found.index) == ["recurrence", "slip"]
     recurrence, slip = found.loc["recurrence"], found.loc["slip"]
     assert (recurrence["count"], recurrence["mean"], recurrence["median"]) == (4, 3.0, 3.0)
@@ -32,23 +32,25 @@ def test_by_hand() -> None:
 
 
 def test_equal_values_follow_each_other_without_correlation() -> None:
-    found = ss.catalogue_statistics(ss.load_scenario("cycles-block").run().events)
+    found = ss.studies.catalogue_statistics(ss.load_scenario("cycles-block").run().events)
     assert found.variation["recurrence"] < 1e-9
     assert found.variation["slip"] < 1e-9
     assert np.isnan(found.next["recurrence"])
 
 
 def test_too_few_events() -> None:
-    one = ss.catalogue_statistics(ss.simulate(rate_law_slab(), 12.0).events)
+    one = ss.studies.catalogue_statistics(ss.simulate(rate_law_slab(), 12.0).events)
     assert one.loc["recurrence", "count"] == 0
     assert one.loc["slip", "mean"] == pytest.approx(23.4402332474, rel=1e-10, abs=0.0)
     assert np.isnan(one.loc["slip", "deviation"])
-    none = ss.catalogue_statistics(ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0).events)
+    none = ss.studies.catalogue_statistics(
+        ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=1e6), 10.0).events
+    )
     assert (none["count"] == 0).all()
     assert none["mean"].isna().all()
 
 
 def test_energies_are_described_where_the_table_has_them() -> None:
     run = ss.load_scenario("cycles-block").run()
-    found = ss.catalogue_statistics(run.catalogue(energies=True))
+    found = ss.studies.catalogue_statistics(run.catalogue(energies=True))
     assert found.loc["released", "variation"] < 1e-9

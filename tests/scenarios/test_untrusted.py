@@ -111,7 +111,7 @@ def test_a_whole_number_beyond_all_floats() -> None:
 def test_a_dataset_larger_than_memory_is_refused() -> None:
     solution = load_scenario("fig6-slab").run()
     with pytest.raises(ss.InputError, match=r"dataset: 2e\+08 values are too many"):
-        solution.dataset(np.broadcast_to(1.0, 200_000_000))
+        solution.to_dataset(np.broadcast_to(1.0, 200_000_000))
     with pytest.raises(ss.InputError, match="times must be finite numbers"):
         solution.slip(10**400)
 

@@ -44,7 +44,7 @@ def parted() -> Ensemble:
 def test_measured_growth_is_the_predicted_one(fast: Ensemble) -> None:
     """Exponents by the same fit: 5 %; that of `predictability`, from the end only: 15 %. They are near 2.2e-3 1/s."""
     assert fast.exponent == pytest.approx(fast.predicted_exponent, rel=0.05, abs=0.0)
-    assert fast.exponent == pytest.approx(ss.predictability(fast.reference).exponent, rel=0.15, abs=0.0)
+    assert fast.exponent == pytest.approx(ss.studies.predictability(fast.reference).exponent, rel=0.15, abs=0.0)
     assert fast.growth.growth.iloc[-1] > 30.0
     assert fast.growth.small.all()
     assert fast.text == "all 4 members have the same 35 slip events"
@@ -53,7 +53,7 @@ def test_measured_growth_is_the_predicted_one(fast: Ensemble) -> None:
 
 def test_each_echo_multiplies_by_the_closed_form() -> None:
     """Real pull rate: an event a recurrence time, each multiplies by 2 / (1 - alpha_c / alpha) - 1 = 1.4876: exponent to 3 %."""
-    found = ensemble(SLOW, 1e13, members=3, events=30)
+    found = ensemble(SLOW, 1e13, members=3, max_events=30)
     q2 = 1.0 / 0.196
     factor = 2.0 / (1.0 - 1.0 / q2) - 1.0
     assert found.exponent == pytest.approx(math.log(factor) / found.table.recurrence.mean(), rel=0.03, abs=0.0)
@@ -98,7 +98,7 @@ def test_just_above_critical_one_echo_shifts_all_that_follows() -> None:
 
 def test_at_the_real_pull_rate_the_storm_is_lost() -> None:
     """50 digits (`tests/truth`) lose the order of events at the 57th: members keep 50 events at least, and not all 64."""
-    found = ensemble(SLOW, 1e13, members=3, events=65)
+    found = ensemble(SLOW, 1e13, members=3, max_events=65)
     assert found.first_lost is not None
     assert 50 < found.first_lost < 64
     assert (found.table.members.iloc[: found.first_lost] == 3).all()
@@ -107,7 +107,7 @@ def test_at_the_real_pull_rate_the_storm_is_lost() -> None:
 def test_from_rest_all_is_the_same_but_earlier_or_later() -> None:
     """The problem knows no clock: starts are apart by push / (rate of loading), to 1e-3 (rounding of loads), however loads grow."""
     rest = replace(SLOW, initial_excess=-1e6)
-    found = ensemble(rest, 1e13, members=3, events=20)
+    found = ensemble(rest, 1e13, members=3, max_events=20)
     late = math.sqrt(float(np.mean(found.pushes**2))) / (SLAB.stiffness * SLOW.pull_rate)
     assert found.table.start_spread.to_numpy() == pytest.approx(np.full(20, late), rel=1e-3, abs=0.0)
     assert found.growth.growth.iloc[-1] > 1e3

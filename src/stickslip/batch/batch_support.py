@@ -48,7 +48,7 @@ def of_quantities(quantities: Sequence[str]) -> str:
 
 def of_scenario(scenario: Scenario) -> str:
     """Return the reason if the run has a limit of events, a varying load or leaps over creep from its start; otherwise ""."""
-    if scenario.events is not None:
+    if scenario.max_events is not None:
         return "[run] events: a batch runs for a time, not until a number of events"
     if scenario.problem.varies:
         return "[loading] a batch needs a loading that does not vary in time"

@@ -97,7 +97,7 @@ class Request:
 
         assert self.name is not None
         loaded = load_scenario(self.name)
-        changes: dict[str, Any] = {"duration": self.duration, "events": self.wanted_events}
+        changes: dict[str, Any] = {"duration": self.duration, "max_events": self.wanted_events}
         if self.rtol is not None:
             changes["rtol"] = check_rtol(self.rtol, "run", "--rtol")
         if self.creep_rtol is not None:
@@ -119,14 +119,14 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
-    from stickslip.io.netcdf import load
-    from stickslip.run.resume import resume
+    from stickslip.io.netcdf import open_solution
+    from stickslip.run.resume import resume_run
     from stickslip.scenarios.scenario import Scenario
 
-    check_same(request, load(request.resume).problem)
+    check_same(request, open_solution(request.resume).problem)
     with progress(request.resume.stem) as report:
-        how: dict[str, Any] = {"events": request.wanted_events, "checkpoint": request.out, "max_pieces": request.max_pieces}
-        solution = resume(request.resume, request.duration, progress=report, **how)
+        out = request.resume if request.out is None else request.out
+        solution = resume_run(request.resume, request.duration, request.wanted_events, report, out, max_pieces=request.max_pieces)
     return Scenario.of(solution, request.resume.stem), solution
 
 
@@ -143,7 +143,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
         check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
             creep_rtol = leaps_with(request.energies, chosen.creep_rtol)
-            orders = Orders(chosen.duration, chosen.events, report, max_pieces=request.max_pieces)
+            orders = Orders(chosen.duration, chosen.max_events, report, max_pieces=request.max_pieces)
             run = RunInProgress.begin(chosen.problem, chosen.rtol, creep_rtol, chosen.shortest_event)
             return chosen, begin(run, orders, request.catalog, energies=request.energies)
     paused = Paused.read(request.resume)

@@ -1,1 +1,8 @@
-"""The figures of the package: most modules have `data(...)`, which makes a dataset, and `draw(dataset)`, which draws it."""
+"""The figures of the package: most modules have `data(...)`, which makes a dataset, and `draw(dataset)`, which draws it.
+
+Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figures of datasets: `ss.figures.plot_sweep(dataset)`.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

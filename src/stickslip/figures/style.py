@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from stickslip import YEAR
+from stickslip.foundation.constants import YEAR
 
 P = ParamSpec("P")
 T = TypeVar("T")

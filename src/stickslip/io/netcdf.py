@@ -38,7 +38,7 @@ CATALOGUE = "stickslip_catalogue"
 """Attribute that holds the version in the checkpoint of a catalogue."""
 KINDS = {
     "stickslip_format": "a solution: continue it with stickslip.resume",
-    CATALOGUE: "a catalogue's checkpoint: continue it with stickslip.resume_catalogue",
+    CATALOGUE: "a catalogue's checkpoint: continue it with stickslip.resume",
 }
 """Attributes that hold the version, each with a description of the files that have it, for messages."""
 
@@ -102,25 +102,22 @@ def origin(solution: Solution) -> dict[str, Any]:
     }
 
 
-def solution_dataset(solution: Solution, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-    """Return the curves of a solution at times t (s), right limits, with units and provenance.
+def to_dataset(run: Readings, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+    """Return the curves of a solution, or of a window on it, at times t (s), right limits, with units and provenance.
 
     The curves are slip, slip rate, traction, load and, if the law has one, the state. With x (m from the contact) the dataset also
     holds the field inside the slab.
+
+    In a window t is local time, s since the start of the event. The event begins `epoch_row` whole rows of `row_time` seconds and
+    `epoch_offset` seconds after the start of the run: these three are attributes.
     """
-    return _readings(solution, t, x).assign_attrs(provenance(solution))
-
-
-def window_dataset(window: Window, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-    """Return the dataset of `solution_dataset` in local time t (s since the start of the event).
-
-    The event begins `epoch_row` whole rows of `row_time` seconds and `epoch_offset` seconds after the start of the run: these three
-    are attributes.
-    """
-    dataset = _readings(window, t, x)
-    dataset.time.attrs["long_name"] = "time since the start of the event"
-    about = {"epoch_row": window.epoch.row, "epoch_offset": window.epoch.offset, "row_time": window.history.row_time}
-    return dataset.assign_attrs(provenance(window.solution) | about)
+    dataset = _readings(run, t, x)
+    if isinstance(run, Window):
+        dataset.time.attrs["long_name"] = "time since the start of the event"
+        about = {"epoch_row": run.epoch.row, "epoch_offset": run.epoch.offset, "row_time": run.history.row_time}
+        return dataset.assign_attrs(provenance(run.solution) | about)
+    assert isinstance(run, Solution)
+    return dataset.assign_attrs(provenance(run))
 
 
 def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Dataset:
@@ -149,8 +146,8 @@ def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, N
     return xr.Dataset(variables, coords={"time": time})
 
 
-def save(solution: Solution, path: str | Path) -> Path:
-    """Write a solution to a netCDF file, from which `load` gives it back bit for bit.
+def write_solution(solution: Solution, path: str | Path) -> Path:
+    """Write a solution to a netCDF file, from which `open_solution` gives it back bit for bit.
 
     Besides the history, the file holds curves for drawing (with both limits at shocks), the tables of events and shocks, and as
     attributes the version, the full scenario, the selection rule and the tolerance.
@@ -182,7 +179,7 @@ def save(solution: Solution, path: str | Path) -> Path:
 
 
 def save_checkpoint(solution: Solution, path: Path) -> Path:
-    """Write only what `load` and `resume` need of a run under way, without curves and tables, to save time.
+    """Write only what `open_solution` and `resume` need of a run under way, without curves and tables, to save time.
 
     A full disk does not end the run: the previous checkpoint stays in the file, and a warning says so.
     """
@@ -266,8 +263,8 @@ def column_unit(name: str, load_unit: str) -> str:
     return load_unit if unit == "load" else unit
 
 
-def load(path: str | Path) -> Solution:
-    """Read a solution from a netCDF file that `save` or a run wrote.
+def open_solution(path: str | Path) -> Solution:
+    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote.
 
     Parameters
     ----------
@@ -338,7 +335,7 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
-    about = scenario.events, scenario.creep_rtol, scenario.shortest_event
+    about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
     return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding)
 

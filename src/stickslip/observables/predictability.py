@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
+from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 

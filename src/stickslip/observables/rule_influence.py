@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import YEAR
 from stickslip.contact.branches import Branch, branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.foundation.constants import YEAR
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from stickslip import YEAR
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.contact.uniqueness import uniqueness
+from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import problem
 

@@ -46,7 +46,7 @@ def catalogue(
     rtol: float = 1e-10,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
-    events: int | None = None,
+    max_events: int | None = None,
     event_rate: float | None = None,
     energies: bool = False,
     progress: Progress | None = None,
@@ -65,10 +65,10 @@ def catalogue(
         Latest end of the run, s.
     path : str or Path, optional
         File for the table (.csv, .parquet or .nc). NAME.checkpoint.nc beside it is renewed while the run continues, and
-        `stickslip.resume_catalogue` resumes from it. Without a path the rows are kept in memory.
+        `stickslip.resume` resumes from it. Without a path the rows are kept in memory.
     rtol, creep_rtol, shortest_event, progress
         See `stickslip.simulate`.
-    events : int, optional
+    max_events : int, optional
         Number of slip events after which the run stops.
     event_rate : float, optional
         Slip rate (m/s) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a block sqrt(K m)
@@ -93,7 +93,7 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
-    check_run("catalogue", duration, rtol, events, checkpoint_every)
+    check_run("catalogue", duration, rtol, max_events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "catalogue")
     check_shortest_event(problem, shortest_event, "catalogue")
     rate = default_event_rate(problem) if event_rate is None else event_rate
@@ -103,7 +103,7 @@ def catalogue(
         check_catalogue(Path(path))
     check_energies(creep_rtol, energies, "catalogue")
     run = RunInProgress.begin(problem, rtol, leaps_with(energies, creep_rtol), shortest_event)
-    orders = Orders(duration, events, progress, None, checkpoint_every, max_pieces)
+    orders = Orders(duration, max_events, progress, None, checkpoint_every, max_pieces)
     if path is not None:
         return begin(run, orders, Path(path), rate, energies).read()
     return follow(run, orders, stream_of(run, rate, energies), RowsInMemory()).read()
@@ -140,45 +140,6 @@ def alone_with(rows: Rows) -> AbstractContextManager[None]:
     return held(checkpoint_of(rows), f"{rows.path}: another run is writing its catalogue there: choose another name")
 
 
-def resume_catalogue(
-    checkpoint: str | Path,
-    duration: float | None = None,
-    *,
-    events: int | None = None,
-    progress: Progress | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
-) -> pd.DataFrame:
-    """Continue a `catalogue` from its checkpoint.
-
-    Rows that were written after the checkpoint are cut off and computed again: the table is the same, bit for bit, as if the run
-    had never stopped.
-
-    Parameters
-    ----------
-    checkpoint : str or Path
-        The file NAME.checkpoint.nc, with the rows in the same folder.
-    duration : float, optional
-        New latest end of the run, s from its start; the previous one by default.
-    events : int, optional
-        Number of slip events, counted from the start of the run, after which it stops.
-    progress, checkpoint_every, max_pieces
-        See `catalogue`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        The whole table, as from `catalogue`.
-
-    Raises
-    ------
-    InputError
-        As from `stickslip.resume`, and if rows are missing, have been changed, or are behind a symbolic link.
-    """
-    paused = Paused.read(Path(checkpoint))
-    return paused.go_on(duration, events, progress, checkpoint_every, max_pieces).read()
-
-
 @dataclass(frozen=True)
 class Paused:
     """The state of a catalogue's run, as read from its checkpoint."""
@@ -209,17 +170,17 @@ class Paused:
     def go_on(
         self,
         duration: float | None = None,
-        events: int | None = None,
+        max_events: int | None = None,
         progress: Progress | None = None,
         checkpoint_every: float = CHECKPOINT_EVERY,
         max_pieces: int | None = None,
     ) -> Catalogue:
-        """Continue the run to its end. Raises InputError as `resume_catalogue` does."""
+        """Continue the run to its end. Raises InputError as `stickslip.resume` does."""
         stopped, about = self.stopped, self.about
-        wanted, rows = events_wanted(stopped, events), self.rows
+        wanted, rows = events_wanted(stopped, max_events), self.rows
         run = taken_up(stopped, self.path, duration)
         orders = Orders(stopped.duration if duration is None else duration, wanted, progress, None, checkpoint_every, max_pieces)
-        check_run("resume_catalogue", orders.duration, stopped.rtol, wanted, checkpoint_every)
+        check_run("resume", orders.duration, stopped.rtol, wanted, checkpoint_every)
         if wanted is not None:
             check_events(self.path, wanted, int(about["told"]))
         check_catalogue(rows.path)

@@ -32,7 +32,7 @@ class Orders:
     """The options of a run: when it ends, and what to report and store on the way (see `simulate`)."""
 
     duration: float
-    events: int | None = None
+    max_events: int | None = None
     progress: Progress | None = None
     checkpoint: Path | None = None
     checkpoint_every: float = CHECKPOINT_EVERY
@@ -55,7 +55,7 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     whole = code in (Stop.FINISHED, Stop.LOCKED)
     reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
     history = History(kept, run.problem, row_time(run.problem), float(run.setup.par.ramp), reached, creep=run.creep)
-    found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
+    found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.max_events)
     found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
     return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
 
@@ -78,7 +78,7 @@ class Keeper:
     def of(cls, run: RunInProgress, orders: Orders, stream: EventStream | None = None) -> Self:
         """Return a monitor for a run with these options. A stream that is given has already reported the earlier events."""
         stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
-        reporter = Reporter.of(orders.progress, orders.duration, orders.events, stream.threshold)
+        reporter = Reporter.of(orders.progress, orders.duration, orders.max_events, stream.threshold)
         keeper = cls(orders=orders, stream=stream, reporter=reporter, saving=NowAndThen.from_now(orders.checkpoint_every))
         keeper.looked = keeper.stands(run)
         return keeper
@@ -86,7 +86,7 @@ class Keeper:
     @property
     def counts(self) -> bool:
         """Return True if events must be counted."""
-        return self.reporter is not None or self.orders.events is not None
+        return self.reporter is not None or self.orders.max_events is not None
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
         """Count events, report progress and write a checkpoint where each is due: see `run_loop.Watch`."""
@@ -103,7 +103,7 @@ class Keeper:
 
     def count(self, run: RunInProgress) -> bool:
         """Count new events. Returns True if they are enough; the run then goes back to the piece by which the last one is known."""
-        look, wanted = self.stream.look(run.store, run.length), self.orders.events
+        look, wanted = self.stream.look(run.store, run.length), self.orders.max_events
         missing = None if wanted is None else wanted - self.stream.told
         if missing is None or len(look.known_by) < missing:
             self.note(run, look)
@@ -120,7 +120,7 @@ class Keeper:
 
     def stands(self, run: RunInProgress) -> Checkpoint | None:
         """Return a checkpoint if the run may have to return here, which is so only if it stops after a number of events."""
-        return None if self.orders.events is None else run.stands()
+        return None if self.orders.max_events is None else run.stands()
 
     def save(self, run: RunInProgress) -> None:
         """Renew the checkpoint if a file for it was given."""

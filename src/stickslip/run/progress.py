@@ -21,7 +21,7 @@ class Report(NamedTuple):
         Simulated time so far and at the end of the run, s.
     events : int
         Number of slip events that are over.
-    events_wanted : int or None
+    max_events : int or None
         Number of slip events after which the run stops, if there is one.
     pieces : int
         Number of pieces of history computed so far, including those that have been discarded.
@@ -36,7 +36,7 @@ class Report(NamedTuple):
     time: float
     duration: float
     events: int
-    events_wanted: int | None
+    max_events: int | None
     pieces: int
     doing: Doing
     pace: float
@@ -57,28 +57,28 @@ class Reporter:
 
     tell: Progress
     duration: float
-    events_wanted: int | None
+    max_events: int | None
     event_rate: float
     started: float = field(default_factory=time.monotonic)
     from_share: float | None = None
     from_time: float = 0.0
 
     @classmethod
-    def of(cls, tell: Progress | None, duration: float, events_wanted: int | None, event_rate: float) -> Self | None:
+    def of(cls, tell: Progress | None, duration: float, max_events: int | None, event_rate: float) -> Self | None:
         """Return a reporter, or None if there is no callback."""
-        return None if tell is None else cls(tell, duration, events_wanted, event_rate)
+        return None if tell is None else cls(tell, duration, max_events, event_rate)
 
     def report(self, run: RunInProgress, events: int) -> None:
         """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
-        share = max(now / self.duration, events / self.events_wanted if self.events_wanted else 0.0)
+        share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
         if self.from_share is None:
             self.from_share, self.from_time = share, now
         took, done = time.monotonic() - self.started, share - self.from_share
         pace = (now - self.from_time) / took if took > 0 else float("nan")
         left = took * (1.0 - share) / done if done > 0 else float("nan")
         doing = self._doing(run)
-        self.tell(Report(now, self.duration, events, self.events_wanted, run.forgotten + run.length, doing, pace, left))
+        self.tell(Report(now, self.duration, events, self.max_events, run.forgotten + run.length, doing, pace, left))
 
     def _doing(self, run: RunInProgress) -> Doing:
         if run.count.mode == 0:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import load
+from stickslip.io.netcdf import is_catalogue, open_solution
 from stickslip.io.soundness import check_checkpoint
 from stickslip.run.monitor import CHECKPOINT_EVERY, Orders
 from stickslip.run.progress import Progress
@@ -17,55 +18,84 @@ from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES
 from stickslip.trajectory.tables import default_event_rate
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 def resume(
     path: str | Path,
     duration: float | None = None,
     *,
-    events: int | None = None,
+    max_events: int | None = None,
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
-) -> Solution:
-    """Continue the run in a file that `simulate`, `save` or Ctrl-C left.
+) -> Solution | pd.DataFrame:
+    """Continue a run or a catalogue where its file left it.
 
     The result is the same, bit for bit, as if the run had never stopped, and as if it had had this duration from the start.
 
     Parameters
     ----------
     path : str or Path
-        File of the run (.nc).
+        File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
+        catalogue's rows in the same folder.
     duration : float, optional
         New end of the run, s from its start; the previous one by default.
-    events : int, optional
+    max_events : int, optional
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.
     progress, checkpoint_every, max_pieces
-        See `simulate`.
+        See `simulate`, for a catalogue `catalogue`.
     checkpoint : str or Path, optional
-        File for checkpoints and, at the end, the solution; `path` by default.
+        File for checkpoints and, at the end, the solution; `path` by default. A catalogue keeps its own file.
 
     Returns
     -------
-    Solution
-        The whole run, from t = 0.
+    Solution or pandas.DataFrame
+        The whole run from t = 0, or the whole table of a catalogue.
 
     Raises
     ------
     InputError
-        If the file holds no solution or no state of the engine, if another version of the engine's code has made it, if
-        `duration` lies before the time that the run has reached, or if the run has already had the wanted number of events.
+        If the file holds no run or no state of the engine, if another version of the engine's code has made it, if `duration` lies
+        before the time that the run has reached, or if the run has already had the wanted number of events. For a catalogue also if
+        rows are missing, have been changed, or are behind a symbolic link, or if `checkpoint` is given.
+
+    Notes
+    -----
+    Rows of a catalogue that were written after its checkpoint are cut off and computed again.
     """
     path = Path(path)
-    stopped = load(path)
-    wanted = events_wanted(stopped, events)
+    if not is_catalogue(path):
+        kept = path if checkpoint is None else Path(checkpoint)
+        return resume_run(path, duration, max_events, progress, kept, checkpoint_every, max_pieces)
+    from stickslip.run.catalogue import Paused
+
+    if checkpoint is not None:
+        raise InputError(f"resume: {path}: a catalogue is resumed in its own file: leave checkpoint away")
+    return Paused.read(path).go_on(duration, max_events, progress, checkpoint_every, max_pieces).read()
+
+
+def resume_run(
+    path: Path,
+    duration: float | None,
+    max_events: int | None,
+    progress: Progress | None,
+    checkpoint: Path,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    max_pieces: int | None = None,
+) -> Solution:
+    """Continue the run in a file: see `resume`."""
+    stopped = open_solution(path)
+    wanted = events_wanted(stopped, max_events)
     run = taken_up(stopped, path, duration)
     orders = Orders(
         stopped.duration if duration is None else duration,
         wanted,
         progress,
-        path if checkpoint is None else Path(checkpoint),
+        checkpoint,
         checkpoint_every,
         max_pieces,
     )
@@ -93,10 +123,10 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
     return run
 
 
-def events_wanted(stopped: Solution, events: int | None) -> int | None:
+def events_wanted(stopped: Solution, max_events: int | None) -> int | None:
     """Return the number of events after which to stop: if none is given, the previous one, unless the run has reached it."""
     had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
-    return events if events is not None or had_them else stopped.events_wanted
+    return max_events if max_events is not None or had_them else stopped.max_events
 
 
 def events_in(run: RunInProgress) -> int:

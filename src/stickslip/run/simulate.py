@@ -24,7 +24,7 @@ def simulate(
     *,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
-    events: int | None = None,
+    max_events: int | None = None,
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
@@ -46,7 +46,7 @@ def simulate(
     shortest_event : float, optional
         Duration (s) below which slip events are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
         default (see Notes).
-    events : int, optional
+    max_events : int, optional
         Number of slip events after which the run stops.
     progress : callable, optional
         A function that is called with a `stickslip.run.progress.Report` while the run continues.
@@ -85,22 +85,22 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    check_run("simulate", duration, rtol, events, checkpoint_every)
+    check_run("simulate", duration, rtol, max_events, checkpoint_every)
     check_creep_rtol(problem, creep_rtol, "simulate")
     check_shortest_event(problem, shortest_event, "simulate")
     run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
     kept = None if checkpoint is None else Path(checkpoint)
-    return go_on(run, Orders(duration, events, progress, kept, checkpoint_every, max_pieces))
+    return go_on(run, Orders(duration, max_events, progress, kept, checkpoint_every, max_pieces))
 
 
-def check_run(who: str, duration: float, rtol: float, events: int | None, checkpoint_every: float) -> None:
+def check_run(who: str, duration: float, rtol: float, max_events: int | None, checkpoint_every: float) -> None:
     """Refuse options with which nothing can be run. Raises InputError."""
     if not 0 < as_float(duration) <= LARGEST:
         raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {as_float(duration)!r}")
     if not 1e-15 <= rtol <= 1e-2:
         raise InputError(f"{who}: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
-    if events is not None and not (isinstance(events, int) and events > 0):
-        raise InputError(f"{who}: events must be a whole number above 0, got {events!r}")
+    if max_events is not None and not (isinstance(max_events, int) and max_events > 0):
+        raise InputError(f"{who}: max_events must be a whole number above 0, got {max_events!r}")
     if not checkpoint_every >= 0:
         raise InputError(f"{who}: checkpoint_every must be a time in s, got {checkpoint_every!r}")
 
@@ -120,5 +120,5 @@ def go_on(run: RunInProgress, orders: Orders) -> Solution:
     check_started(run, code, "simulate")
     solution = as_solution(run, orders, code)
     if orders.checkpoint is not None and orders.keeps(code):
-        solution.save(orders.checkpoint)
+        solution.to_netcdf(orders.checkpoint)
     return solution

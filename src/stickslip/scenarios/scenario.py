@@ -49,7 +49,7 @@ class Scenario:
         Relative tolerance.
     title, description : str
         Texts for users.
-    events : int or None
+    max_events : int or None
         Number of slip events after which the run stops.
     creep_rtol, shortest_event : float or None
         Options of `stickslip.simulate` (shortest_event in s); None stands for automatic.
@@ -64,7 +64,7 @@ class Scenario:
     rtol: float = 1e-10
     title: str = ""
     description: str = ""
-    events: int | None = None
+    max_events: int | None = None
     creep_rtol: float | None = None
     shortest_event: float | None = None
     name: str = field(default="scenario", compare=False)
@@ -77,7 +77,7 @@ class Scenario:
             problem=solution.problem,
             duration=solution.duration,
             rtol=solution.rtol,
-            events=solution.events_wanted,
+            max_events=solution.max_events,
             creep_rtol=solution.creep_rtol,
             shortest_event=solution.shortest_event,
             name=name,
@@ -100,7 +100,7 @@ class Scenario:
         """
         from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
-        how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "events": self.events}
+        how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "max_events": self.max_events}
         return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
 
     def to_toml(self) -> str:
@@ -114,7 +114,7 @@ class Scenario:
         loading = {name: value for name, value in given.items() if not name.startswith("initial_")}
         tables["loading"] = {n: to_table(value) if isinstance(value, LoadingHistory) else value for n, value in loading.items()}
         tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
-        run = {"duration": self.duration, "events": self.events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
+        run = {"duration": self.duration, "events": self.max_events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
         run["shortest_event"] = self.shortest_event
         tables["run"] = _without_none(run | {"selection": problem.rule})
         return tomli_w.dumps(tables, multiline_strings=True)
@@ -195,7 +195,7 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
     about = {"title": content["title"], "description": content["description"], "name": file}
     check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
     check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
-    how = {name: run[name] for name in ("events", "creep_rtol", "shortest_event")}
+    how = {"max_events": run["events"], "creep_rtol": run["creep_rtol"], "shortest_event": run["shortest_event"]}
     return Scenario(problem, run["duration"], run["rtol"], **how, **about)
 
 

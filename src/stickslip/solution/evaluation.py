@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,23 +16,13 @@ from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from stickslip.observables.field import Field
 
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
-MOST_VALUES = 20_000_000
-"""Largest number of times multiplied by places in one dataset; each value takes up to 0.5 kB of memory while it is computed."""
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
-
-
-def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
-    """Raise InputError if a dataset is larger than the memory of most machines."""
-    wanted = np.size(t) * (1 if x is None else np.size(x))
-    if wanted > MOST_VALUES:
-        raise InputError(f"dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
 
 
 class Readings:
@@ -129,48 +117,6 @@ class Readings:
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
-    def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
-        """Write time, slip, slip rate and shear stress as SCEC's on-fault time series.
-
-        Parameters
-        ----------
-        path : str or Path
-            File to write.
-        sampling_rate : float
-            Samples per second, Hz.
-        **options
-            Options of `stickslip.io.scec.write_scec`.
-
-        Returns
-        -------
-        Path
-            The file that was written.
-        """
-        from stickslip.io.scec import write_scec
-
-        return write_scec(self, path, sampling_rate, **options)
-
-    def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
-        """Write miniSEED or SAC files through ObsPy.
-
-        Parameters
-        ----------
-        path : str or Path
-            File to write.
-        sampling_rate : float
-            Samples per second, Hz.
-        **options
-            Options of `stickslip.io.seismogram.write_seismogram`.
-
-        Returns
-        -------
-        list of Path
-            The files that were written.
-        """
-        from stickslip.io.seismogram import write_seismogram
-
-        return write_seismogram(self, path, sampling_rate, **options)
-
     def state(self, t: ArrayLike) -> Floats:
         """Return the state variable of the friction law.
 
@@ -223,105 +169,6 @@ class Readings:
         from stickslip.observables.field import field
 
         return field(self, x, t, side)
-
-    def plot_field(self, start: float | None = None, end: float | None = None) -> Figure:
-        """Plot velocity and stress in the slab over time, with characteristics, above the curves of the contact.
-
-        Parameters
-        ----------
-        start, end : float, optional
-            First and last time to show, s. The default is the whole run; for a long run, the last of its largest slip events.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        Raises
-        ------
-        InputError
-            For a block.
-        """
-        from stickslip.figures.runs import space_time
-
-        return space_time.plot(self, start, end)
-
-    def plot_snapshots(self, t: ArrayLike | None = None) -> Figure:
-        """Plot displacement, velocity and stress across the slab at several times.
-
-        Parameters
-        ----------
-        t : array_like, optional
-            Times, s. The default is six times over one round trip of the waves.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        Raises
-        ------
-        InputError
-            For a block.
-        """
-        from stickslip.figures.runs import snapshots
-
-        return snapshots.plot(self, t)
-
-    def plot_energy(self, start: float | None = None, end: float | None = None) -> Figure:
-        """Plot elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.
-
-        Parameters
-        ----------
-        start, end : float, optional
-            First and last time to show, s. The default is the whole run; for a long run, the last of its largest slip events.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        See Also
-        --------
-        stickslip.figures.runs.energy
-        """
-        from stickslip.figures.runs import energy
-
-        return energy.plot(self, start, end)
-
-    def animate(
-        self,
-        path: str | Path,
-        start: float | None = None,
-        end: float | None = None,
-        *,
-        frames: int | None = None,
-        progress: Callable[[int, int], object] | None = None,
-    ) -> Path:
-        """Write an animation of the slab, beside the curves of the contact, to a file.
-
-        Parameters
-        ----------
-        path : str or Path
-            File to write: .gif; .mp4 and .webm need ffmpeg.
-        start, end : float, optional
-            First and last time to show, s; defaults as for `plot_field`.
-        frames : int, optional
-            Number of frames, shown at 20 per second. The default is 150.
-        progress : callable, optional
-            Function that is called with the number of finished frames and the number of all frames.
-
-        Returns
-        -------
-        Path
-            The file that was written.
-
-        Raises
-        ------
-        InputError
-            For a block, for fewer than two frames, and if the software that writes such a file is missing.
-        """
-        from stickslip.figures.runs import animation
-
-        animation.check_animation(Path(path), "animate:")
-        return animation.write(animation.data(self, start, end, frames), path, progress=progress)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.solution.evaluation import Readings, check_size
+from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
@@ -22,11 +22,10 @@ from stickslip.trajectory.tables import creep_note, creep_table, default_event_r
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Solution(Readings):
+class Solution(Exports):
     """A finished run.
 
     Times are in s from the start of the run. Methods take scalars or arrays and return arrays of the same shape. `side` ("left"
@@ -41,7 +40,7 @@ class Solution(Readings):
     history: History
     checkpoint: Checkpoint | None = None
     """State from which the run, or a longer one, can continue (`stickslip.resume`)."""
-    events_wanted: int | None = None
+    max_events: int | None = None
     """Number of slip events after which the run was told to stop."""
     creep_rtol: float | None = None
     """Tolerance of leaps over creep as the user gave it: None is automatic, 0 computes every round trip."""
@@ -185,32 +184,7 @@ class Solution(Readings):
 
         return energy(self, t)
 
-    def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-        """Return slip, slip rate, traction and load as an xarray Dataset with units and provenance.
-
-        Parameters
-        ----------
-        t : array_like
-            Times (s), one-dimensional.
-        x : array_like, optional
-            Distances from the contact (m), one-dimensional. With them the dataset also holds displacement, velocity and
-            stress inside the slab, over time and x.
-
-        Returns
-        -------
-        xarray.Dataset
-
-        Raises
-        ------
-        InputError
-            For more than 2e7 values of a quantity.
-        """
-        from stickslip.io.netcdf import solution_dataset
-
-        check_size(t, x)
-        return solution_dataset(self, t, x)
-
-    def save(self, path: str | Path) -> Path:
+    def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file.
 
         Parameters
@@ -221,27 +195,14 @@ class Solution(Readings):
         Returns
         -------
         Path
-            The file that was written. `stickslip.load` restores this solution from it bit for bit.
+            The file that was written. `stickslip.open_solution` restores this solution from it bit for bit.
         """
-        from stickslip.io.netcdf import save
+        return to_netcdf(self, path)
 
-        return save(self, path)
-
-    def plot(self, start: float | None = None, end: float | None = None) -> Figure:
-        """Plot slip, slip rate, traction and load against time.
-
-        Parameters
-        ----------
-        start, end : float, optional
-            First and last time to show, s. The default is the whole run.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
-        from stickslip.figures.runs.run import plot_run
-
-        return plot_run(self, start, end)
+    @property
+    def plot(self) -> SolutionPlots:
+        """Return the figures: `plot()` draws the default one, `plot.energy()`, `plot.catalogue()` ... draw others."""
+        return SolutionPlots(self)
 
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events

@@ -11,14 +11,14 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.solution.evaluation import Curve, Floats, Readings, check_size
+from stickslip.solution.accessors import Exports
+from stickslip.solution.evaluation import Curve, Floats
 from stickslip.trajectory.history import Epoch, History
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
-    from matplotlib.figure import Figure
 
     from stickslip.solution.solution import Solution
 
@@ -27,7 +27,7 @@ MARGIN = 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Window(Readings):
+class Window(Exports):
     """The run around a slip event.
 
     Times are in s since the event began. They are exact to their own rounding, however late in the run the event is, because the
@@ -100,36 +100,6 @@ class Window(Readings):
         from stickslip.observables.energy.balance import energy
 
         return energy(self, t, origin=0.0)
-
-    def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-        """Return slip since the event began, slip rate, traction and load, with units, provenance and the epoch.
-
-        Parameters
-        ----------
-        t : array_like
-            Local times (s), one-dimensional.
-        x : array_like, optional
-            Distances from the contact (m), one-dimensional: adds the quantities inside the slab, as in `Solution.dataset`.
-
-        Returns
-        -------
-        xarray.Dataset
-
-        Raises
-        ------
-        InputError
-            For more than 2e7 values of a quantity.
-        """
-        from stickslip.io.netcdf import window_dataset
-
-        check_size(t, x)
-        return window_dataset(self, t, x)
-
-    def plot(self) -> Figure:
-        """Plot slip since the event began, slip rate, traction and load against local time."""
-        from stickslip.figures.runs.run import plot_run
-
-        return plot_run(self)
 
     def __repr__(self) -> str:
         row, offset = self.epoch

@@ -1,1 +1,9 @@
-"""Studies that run a problem several times and compare the runs."""
+"""Studies that answer one question about a problem, mostly by running it several times: `ss.studies.compare(...)`.
+
+The results of those that run a problem draw themselves with `.plot()`. The names are those of `__init__.pyi`; each is imported when
+it is first used.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -226,7 +226,7 @@ def weakening(problem: Problem) -> dict[str, float]:
 
 
 def _first_event(problem: Problem, duration: float, rtol: float) -> dict[str, Any]:
-    solution = simulate(problem, duration, rtol, events=1)
+    solution = simulate(problem, duration, rtol, max_events=1)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
     if solution.events.empty:

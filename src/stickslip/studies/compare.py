@@ -13,7 +13,7 @@ import pandas as pd
 import stickslip
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import PAPER, load
+from stickslip.io.netcdf import PAPER, open_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.rule_influence import choices
@@ -80,7 +80,7 @@ def read_source(source: str | Path | Scenario | Solution, until: float | None = 
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if finished:
-        solution = load(str(source))
+        solution = open_solution(str(source))
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = source if isinstance(source, Scenario) else load_scenario(source)
     changed = replace(scenario, duration=until or scenario.duration, rtol=rtol or scenario.rtol)
@@ -137,7 +137,7 @@ class Comparison:
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
         for name, solution in self.runs.items():
             yield f"\n---- {name}: {solution.status}"
-            yield Scenario(solution.problem, solution.duration, solution.rtol, events=solution.events_wanted).to_toml()
+            yield Scenario(solution.problem, solution.duration, solution.rtol, max_events=solution.max_events).to_toml()
 
     def plot(self) -> Figure:
         """Plot slip, slip rate and traction against time, with one line for each run."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import YEAR
+from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
@@ -203,7 +203,7 @@ class Ensemble:
         -------
         pandas.DataFrame
             One row each for recurrence (s), slip (m) and peak_rate (m/s). Columns: count, mean and variation of the undisturbed run
-            (see `stickslip.catalogue_statistics`); mean_members, variation_members and mean_deviation, variation_deviation, the
+            (see `studies.catalogue_statistics`); mean_members, variation_members and mean_deviation, variation_deviation, the
             mean and standard deviation over the members of their own mean and variation; chance, deviation / sqrt(count), the
             standard deviation of the mean of as many independent events. Statistics are stable if mean_deviation is no larger
             than chance.
@@ -274,7 +274,7 @@ def ensemble(
     size: float = 1e-12,
     rtol: float = 1e-10,
     *,
-    events: int | None = None,
+    max_events: int | None = None,
     seed: int = 0,
     event_rate: float | None = None,
     progress: Report | None = None,
@@ -294,7 +294,7 @@ def ensemble(
         Largest disturbance, as a share of the static strength S mu_s (for a law that never sticks, of the initial load).
     rtol : float
         Relative tolerance of the runs.
-    events : int, optional
+    max_events : int, optional
         Number of slip events after which each run ends.
     seed : int
         Seed of the random numbers from which signs and sizes of the disturbances are drawn.
@@ -325,29 +325,29 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    check_run("ensemble", duration, rtol, events, 0.0)
+    check_run("ensemble", duration, rtol, max_events, 0.0)
     pushes = drawn(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
     tell = progress or (lambda text: None)
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     tell("undisturbed")
-    reference = _run(problem, duration, rtol, events, most)
+    reference = _run(problem, duration, rtol, max_events, most)
     runs: list[Solution] = []
     try:
         for i, push in enumerate(pushes.tolist()):
             tell(f"member {i + 1} of {members}")
-            runs.append(_run(disturbed(problem, push), duration, rtol, events, most))
+            runs.append(_run(disturbed(problem, push), duration, rtol, max_events, most))
     except KeyboardInterrupt:
         if not runs:
             raise
     return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, event_rate)
 
 
-def _run(problem: Problem, duration: float, rtol: float, events: int | None, max_pieces: int) -> Solution:
+def _run(problem: Problem, duration: float, rtol: float, max_events: int | None, max_pieces: int) -> Solution:
     # leaps over creep and lumped events would hide the small differences between the runs
     exact: dict[str, Any] = {"creep_rtol": 0.0, "shortest_event": 0.0}
-    solution = simulate(problem, duration, rtol, events=events, max_pieces=max_pieces, **exact)
+    solution = simulate(problem, duration, rtol, max_events=max_events, max_pieces=max_pieces, **exact)
     if solution.status.name == "interrupted":
         raise KeyboardInterrupt
     return solution

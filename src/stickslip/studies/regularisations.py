@@ -71,7 +71,7 @@ KINDS = {
     "lag": Kind("lagged friction", "time", "s", lambda problem, size: size, _with_lag),
     "direct-effect": Kind("lag and direct effect", "direct", "1", _direct, _with_direct_effect),
 }
-"""All kinds of regularisation, keyed by the argument `by` of `stickslip.regularise`."""
+"""All kinds of regularisation, keyed by the argument `by` of `stickslip.studies.regularise`."""
 
 
 def kind_of(by: str) -> Kind:

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip import YEAR
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown

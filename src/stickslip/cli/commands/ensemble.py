@@ -77,7 +77,7 @@ def _adjusted(name: str, until: str | None, events: int | None, rtol: float | No
     if until is not None:
         loaded = replace(loaded, duration=read_duration(until, "ensemble", "--until"))
     if events is not None:
-        loaded = replace(loaded, events=check_events(events, "ensemble", "--events"))
+        loaded = replace(loaded, max_events=check_events(events, "ensemble", "--events"))
     if rtol is not None:
         loaded = replace(loaded, rtol=check_rtol(rtol, "ensemble", "--rtol"))
     return loaded
@@ -89,7 +89,7 @@ def _study(scenario: Scenario, members: int, size: float, seed: int) -> Ensemble
 
     with progress_to(f"{scenario.name}:") as report:
         run = scenario.problem, scenario.duration, members, size, scenario.rtol
-        return study(*run, events=scenario.events, seed=seed, progress=report)
+        return study(*run, max_events=scenario.max_events, seed=seed, progress=report)
 
 
 def _show(scenario: Scenario, study: Ensemble) -> None:

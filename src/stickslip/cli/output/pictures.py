@@ -72,10 +72,10 @@ class Pictures:
         """Draw all that are wanted, and yield each file when it is complete."""
         still: tuple[tuple[Path | None, Callable[[Solution], Figure]], ...] = (
             (self.figure, lambda run: run.plot()),
-            (self.path, _path),
-            (self.catalog_figure, _catalogue),
-            (self.energy, lambda run: run.plot_energy()),
-            (self.space_time, lambda run: run.plot_field()),
+            (self.path, lambda run: run.plot.path()),
+            (self.catalog_figure, lambda run: run.plot.catalogue()),
+            (self.energy, lambda run: run.plot.energy()),
+            (self.space_time, lambda run: run.plot.field()),
         )
         for target, figure in still:
             if target is not None:
@@ -84,20 +84,8 @@ class Pictures:
             yield _animate(solution, self.animation)
 
 
-def _path(solution: Solution) -> Figure:
-    from stickslip.figures.contact import admissible
-
-    return admissible.draw(admissible.data(solution.problem, solution))
-
-
-def _catalogue(solution: Solution) -> Figure:
-    from stickslip.figures.runs import catalogue
-
-    return catalogue.draw(catalogue.data(solution))
-
-
 def _animate(solution: Solution, target: Path) -> Path:
     from stickslip.cli.output.show import progress_to
 
     with progress_to(f"{target}:") as report:
-        return solution.animate(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))
+        return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from stickslip import YEAR
+from stickslip.foundation.constants import YEAR
 
 if TYPE_CHECKING:
     from stickslip.run.progress import Report
@@ -83,7 +83,7 @@ def about_time(seconds: float) -> str:
 def so_far(report: Report) -> str:
     """Format the progress of a run in one line."""
     length, unit = in_unit(report.duration)
-    wanted = f" of {report.events_wanted}" if report.events_wanted else ""
+    wanted = f" of {report.max_events}" if report.max_events else ""
     parts = [
         f"{number(report.time / length, 6)} of {number(report.duration / length, 6)} {unit}",
         f"{report.events}{wanted} slip event{'' if report.events == 1 and not wanted else 's'}",

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip import YEAR
 from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict

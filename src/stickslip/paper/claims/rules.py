@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.roots import sign_change
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict

@@ -1,0 +1,45 @@
+# The public interface: what a user writes after `ss.`. These imports are carried out when a name is first used.
+
+# What slides, what resists it, what drives it
+# Many runs
+from . import figures, friction, loading, studies
+from .bodies import ElasticSlab, SpringBlock
+
+# One run
+from .contact.uniqueness import uniqueness
+from .foundation.constants import YEAR
+from .foundation.errors import InputError
+from .io.netcdf import open_solution
+from .problem import Problem, parameters, selection
+from .run.catalogue import catalogue
+from .run.resume import resume
+from .run.simulate import simulate
+from .scenarios import load_scenario
+from .solution.solution import Solution
+from .sweeps.refine import refine
+from .sweeps.sweep import sweep
+
+__version__: str
+
+__all__ = [
+    "YEAR",
+    "ElasticSlab",
+    "InputError",
+    "Problem",
+    "Solution",
+    "SpringBlock",
+    "catalogue",
+    "figures",
+    "friction",
+    "load_scenario",
+    "loading",
+    "open_solution",
+    "parameters",
+    "refine",
+    "resume",
+    "selection",
+    "simulate",
+    "studies",
+    "sweep",
+    "uniqueness",
+]

@@ -1,0 +1,3 @@
+from .sweeps.sweep import plot_sweep
+
+__all__ = ["plot_sweep"]

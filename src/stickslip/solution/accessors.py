@@ -1,0 +1,273 @@
+"""Figures and files of a run: the one door through which a solution reaches the packages above it.
+
+`solution.plot()` draws the default figure and `solution.plot.energy()`, `.field()` ... draw others; `to_dataset`, `to_netcdf`,
+`to_scec` and `to_seismogram` hand a run to other tools. Each imports what it needs when it is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.foundation.errors import InputError
+from stickslip.solution.evaluation import Curve, Readings
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from stickslip.solution.solution import Solution
+
+MOST_VALUES = 20_000_000
+"""Largest number of times multiplied by places in one dataset; each value takes up to 0.5 kB of memory while it is computed."""
+
+Run = TypeVar("Run", bound=Readings)
+
+
+class Plots(Generic[Run]):
+    """Figures of a run, or of a window on it: `solution.plot()` draws the default one, `solution.plot.energy()` that of energies.
+
+    Methods with `start` and `end` draw between these times (s); the default is the whole run, or what the window shows. All return
+    a `matplotlib.figure.Figure`, and all but `animation` leave it to the caller to save it.
+    """
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+
+    def __call__(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw slip, slip rate, traction and load against time, each in a panel of its own."""
+        from stickslip.figures.runs.run import plot_run
+
+        return plot_run(self._run, start, end)
+
+    def slip(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw the slip against time; in a window, the slip since the event began."""
+        return self._curve(self._run.curves[0], start, end)
+
+    def slip_rate(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw the slip rate against time."""
+        return self._curve("slip_rate", start, end)
+
+    def traction(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw the friction on the contact against time."""
+        return self._curve("traction", start, end)
+
+    def load(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw the load on the contact against time."""
+        return self._curve("load", start, end)
+
+    def state(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw the state variable of the friction law against time. Raises InputError if the law has none."""
+        return self._curve("state", start, end)
+
+    def _curve(self, name: Curve, start: float | None, end: float | None) -> Figure:
+        from stickslip.figures.runs import one_curve
+
+        return one_curve.plot(self._run, name, start, end)
+
+    def field(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.
+
+        The default for a long run is the last of its largest slip events. Raises InputError for a block.
+        """
+        from stickslip.figures.runs import space_time
+
+        return space_time.plot(self._run, start, end)
+
+    def snapshots(self, t: ArrayLike | None = None) -> Figure:
+        """Draw displacement, velocity and stress across the slab at several times.
+
+        Parameters
+        ----------
+        t : array_like, optional
+            Times, s. The default is six times over one round trip of the waves.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InputError
+            For a block.
+        """
+        from stickslip.figures.runs import snapshots
+
+        return snapshots.plot(self._run, t)
+
+    def energy(self, start: float | None = None, end: float | None = None) -> Figure:
+        """Draw elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.
+
+        The default for a long run is the last of its largest slip events.
+        """
+        from stickslip.figures.runs import energy
+
+        return energy.plot(self._run, start, end)
+
+    def animation(
+        self,
+        path: str | Path,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        frames: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write an animation of the slab, beside the curves of the contact, to a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write: .gif; .mp4 and .webm need ffmpeg.
+        start, end : float, optional
+            First and last time to show, s; defaults as for `field`.
+        frames : int, optional
+            Number of frames, shown at 20 per second. The default is 150.
+        progress : callable, optional
+            Function that is called with the number of finished frames and the number of all frames.
+
+        Returns
+        -------
+        Path
+            The file that was written.
+
+        Raises
+        ------
+        InputError
+            For a block, for fewer than two frames, and if the software that writes such a file is missing.
+        """
+        from stickslip.figures.runs import animation
+
+        animation.check_animation(Path(path), "animation:")
+        return animation.write(animation.data(self._run, start, end, frames), path, progress=progress)
+
+
+class SolutionPlots(Plots["Solution"]):
+    """Figures of a whole run: those of `Plots`, its catalogue, and its path through the solutions of the contact equation."""
+
+    def catalogue(self, event: int | None = None) -> Figure:
+        """Draw the slip events, one of them in ever closer zooms, and their distributions.
+
+        Parameters
+        ----------
+        event : int, optional
+            Row number in `solution.events`; negative ones count from the last. The default is the last event whose slip is at
+            least 99 % of the largest.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InputError
+            If the run has no slip event, or not the one asked for.
+        """
+        from stickslip.figures.runs import catalogue
+
+        return catalogue.draw(catalogue.data(self._run, event))
+
+    def path(self) -> Figure:
+        """Draw the solutions of the contact equation (the set K) and the path of the run through them.
+
+        Raises InputError for a block, a contact mass, or a law with a state variable, which have no such set.
+        """
+        from stickslip.figures.contact import admissible
+
+        return admissible.draw(admissible.data(self._run.problem, self._run))
+
+
+class Exports(Readings):
+    """A run, or a window on it, that draws itself and hands itself to other tools."""
+
+    @property
+    def plot(self) -> Plots[Any]:
+        """Return the figures: `plot()` draws the default one, `plot.energy()`, `plot.field()` ... draw others."""
+        return Plots(self)
+
+    def to_dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
+        """Return slip, slip rate, traction and load at given times, with units and provenance.
+
+        In a window the slip is that since the event began, and attributes hold the epoch.
+
+        Parameters
+        ----------
+        t : array_like
+            Times (s), one-dimensional.
+        x : array_like, optional
+            Distances from the contact (m), one-dimensional. With them the dataset also holds displacement, velocity and
+            stress inside the slab, over time and x.
+
+        Returns
+        -------
+        xarray.Dataset
+
+        Raises
+        ------
+        InputError
+            For more than 2e7 values of a quantity.
+        """
+        from stickslip.io.netcdf import to_dataset
+
+        check_size(t, x)
+        return to_dataset(self, t, x)
+
+    def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
+        """Write time, slip, slip rate and shear stress as SCEC's on-fault time series.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+        sampling_rate : float
+            Samples per second, Hz.
+        **options
+            Options of `stickslip.io.scec.write_scec`.
+
+        Returns
+        -------
+        Path
+            The file that was written.
+        """
+        from stickslip.io.scec import write_scec
+
+        return write_scec(self, path, sampling_rate, **options)
+
+    def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
+        """Write miniSEED or SAC files through ObsPy.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+        sampling_rate : float
+            Samples per second, Hz.
+        **options
+            Options of `stickslip.io.seismogram.write_seismogram`.
+
+        Returns
+        -------
+        list of Path
+            The files that were written.
+        """
+        from stickslip.io.seismogram import write_seismogram
+
+        return write_seismogram(self, path, sampling_rate, **options)
+
+
+def to_netcdf(solution: Solution, path: str | Path) -> Path:
+    """Write a solution to a netCDF file: see `Solution.to_netcdf`."""
+    from stickslip.io.netcdf import write_solution
+
+    return write_solution(solution, path)
+
+
+def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
+    """Raise InputError if a dataset is larger than the memory of most machines."""
+    wanted = np.size(t) * (1 if x is None else np.size(x))
+    if wanted > MOST_VALUES:
+        raise InputError(f"to_dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
