@@ -172,7 +172,7 @@ def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
 
 
 def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.run.monitor.MAX_PIECES", 500)
+    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 500)
     arguments = "run", "fig5-slab-printed", "--until", "10 minutes", "--out", "run.nc"
     shown = command(*arguments)
     assert shown.code == 1

@@ -166,7 +166,7 @@ def test_laws_of_slip_lump_nothing() -> None:
 
 def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file, short = tmp_path / "run.nc", 0.5 * PATIENCE * ROUND
-    monkeypatch.setattr("stickslip.run.monitor.MAX_PIECES", 1000)
+    monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 1000)
     full = ss.simulate(printed(1), short, checkpoint=file)
     assert full.status.name == "too many pieces"
     assert not file.exists()

@@ -9,8 +9,9 @@ import stickslip as ss
 from stickslip.engine.state import layout as at
 from stickslip.engine.waves.echo_queue import NOTHING
 from stickslip.engine_input.forcing import row_time
+from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import split_time
-from stickslip.run.session import RunInProgress
+from stickslip.run.session import Session
 from stickslip.trajectory.phase_index import Phases
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
@@ -56,7 +57,7 @@ def test_at_an_edge_the_side_decides() -> None:
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
 def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
-    run, last, met = RunInProgress.begin(problem, 1e-10), split_time(2000.0, row_time(problem)), 0
+    run, last, met = Session.begin(problem, RunOptions(2000.0)), split_time(2000.0, row_time(problem)), 0
     impedance, ramp = SLAB.impedance, float(run.setup.par.ramp)
     while run.advance(last, 1) == -1 and met < 150:
         between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING

@@ -15,7 +15,8 @@ from stickslip.contact.branches import search_grid
 from stickslip.contact.equation import resistance as contact_resistance
 from stickslip.engine.moving_folds.branch_scan import branches_at, new_branches
 from stickslip.engine_input import branch_table
-from stickslip.run.session import RunInProgress
+from stickslip.run.options import RunOptions
+from stickslip.run.session import Session
 
 F = ss.friction
 Z, S = 9.8e6, 1e8
@@ -252,7 +253,7 @@ def test_compiled_levels_are_those_of_the_table(
 def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.FrictionLaw, law_slip: float) -> None:
     """Ends and levels of the branches at a law slip, in compiled code and by `contact.branches`, to rounding of g."""
     case = ss.Problem(SLAB, law, initial_excess=1e6)
-    run = RunInProgress.begin(case, 1e-10)
+    run = Session.begin(case, RunOptions(1.0))
     scan = search_grid(contact_resistance(case))
     table = new_branches(scan)
     found = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan, table)

@@ -17,11 +17,13 @@ import xarray as xr
 import stickslip as ss
 from stickslip.io.catalogue_rows import RowsInMemory
 from stickslip.run import catalogue as module
-from stickslip.run.catalogue import CatalogueKeeper
-from stickslip.run.monitor import Orders
+from stickslip.run.catalogue import EventRows
+from stickslip.run.monitor import Monitor
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.run.run_loop import drive
-from stickslip.run.session import RunInProgress
+from stickslip.run.resume import PausedCatalogue
+from stickslip.run.run_loop import run_loop
+from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
 from tests.long_runs.problems import RUNS, SLOW, bundled, differences
@@ -109,14 +111,13 @@ def test_events_stop_it_where_they_stop_a_run(events: int, tmp_path: Path) -> No
 def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten thousand cycles, of which the history would be two hundred thousand pieces."""
     problem, duration = bundled("cycles-block", 1500.0)
-    run = RunInProgress.begin(problem, 1e-10)
-    monkeypatch.setattr(module.CatalogueKeeper, "note", lambda self, run, look: (look.tell(), self._remember(run)))
+    run = Session.begin(problem, RunOptions(duration))
+    monkeypatch.setattr(EventRows, "record", lambda self, run, stream, look: (look.tell(), self._remember(run, stream)))
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
-    keeper = CatalogueKeeper.of(run, Orders(duration), stream)
-    keeper.rows = RowsInMemory()
+    monitor = Monitor.of(run, EventRows(RowsInMemory()), stream)
     capacities = {len(run.store.whole)}
     for share in (0.01, 0.1, 1.0):
-        drive(run, share * duration, keeper)
+        run_loop(run, share * duration, monitor)
         run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.whole))
     assert stream.told > 9_000
@@ -145,9 +146,9 @@ def test_progress_counts_what_was_forgotten(monkeypatch: pytest.MonkeyPatch) -> 
 LONG = """
 import signal, time
 import stickslip as ss
-import stickslip.run.run_loop as drive
+from stickslip.run import run_loop
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
 problem = ss.load_scenario("cycles-slab").problem
 ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """
@@ -159,7 +160,7 @@ def test_killed_or_interrupted_it_ends_with_the_same_rows(suffix: str, with_sign
     done = killed(LONG.format(suffix=suffix), tmp_path, "events.checkpoint.nc", signal.Signals[with_signal], times=3)
     assert done.returncode == (0 if with_signal == "SIGINT" else -signal.SIGKILL)
     checkpoint = tmp_path / "events.checkpoint.nc"
-    paused = module.Paused.read(checkpoint)
+    paused = PausedCatalogue.read(checkpoint)
     assert paused.stopped.status.name == ("interrupted" if with_signal == "SIGINT" else "under way")
     end = paused.stopped.history.duration * 1.2
     growing = paused.rows.growing
@@ -192,7 +193,7 @@ def test_solution_and_checkpoint_are_not_taken_for_each_other(tmp_path: Path) ->
     with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: not a solution .*stickslip\.resume\)"):
         ss.open_solution(tmp_path / "events.checkpoint.nc")
     with pytest.raises(ss.InputError, match=r"run\.nc: not a catalogue's checkpoint .*stickslip\.resume\)"):
-        module.Paused.read(tmp_path / "run.nc")
+        PausedCatalogue.read(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: a catalogue is resumed in its own file"):
         ss.resume(tmp_path / "events.checkpoint.nc", checkpoint=tmp_path / "other.nc")
 

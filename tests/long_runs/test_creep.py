@@ -18,12 +18,13 @@ from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
-from stickslip.run.monitor import Orders, as_solution
+from stickslip.run.monitor import run_to_end
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import taken_up
 from stickslip.run.run_loop import split_time
-from stickslip.run.session import RunInProgress
-from stickslip.run.simulate import go_on
+from stickslip.run.session import Session
+from stickslip.run.simulate import WholeHistory
 from stickslip.solution.window import Window
 from stickslip.trajectory.history import Epoch
 from stickslip.trajectory.status import UNDER_WAY
@@ -54,17 +55,18 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
     return found + ([] if one.creep_rtol == other.creep_rtol else ["creep_rtol"]) + differences_of_runs(one, other)
 
 
-def begun(name: str) -> tuple[RunInProgress, tuple[int, float]]:
+def begun(name: str) -> tuple[Session, tuple[int, float]]:
     problem, duration, rtol = RUNS[name]
-    return RunInProgress.begin(problem, 1e-10, rtol), split_time(duration, row_time(problem))
+    return Session.begin(problem, RunOptions(duration, creep_rtol=rtol)), split_time(duration, row_time(problem))
 
 
 def gone_on(path: Path, duration: float) -> ss.Solution:
     """As `resume`, which would also write the file again."""
-    return go_on(taken_up(ss.open_solution(path), path, duration), Orders(duration))
+    stopped = ss.open_solution(path)
+    return run_to_end(taken_up(stopped, path, RunOptions.to_continue(stopped, duration, None)), WholeHistory())
 
 
-def step(run: RunInProgress, last: tuple[int, float]) -> bool:
+def step(run: Session, last: tuple[int, float]) -> bool:
     """One step of the engine, or one leap; False at the end."""
     code = run.advance(last, 1)
     if code == Stop.FULL:
@@ -92,7 +94,7 @@ def test_stopped_around_leaps_and_taken_up(name: str, tmp_path: Path) -> None:
         run, last = begun(name)
         for _ in range(stop):
             step(run, last)
-        save_checkpoint(as_solution(run, Orders(duration), UNDER_WAY), path)
+        save_checkpoint(run.solution(UNDER_WAY), path)
         assert differences(gone_on(path, duration), whole) == [], f"after {stop} steps"
 
 
@@ -153,9 +155,9 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
 CREEPING = """
 import signal, time
 import stickslip as ss
-import stickslip.run.run_loop as drive
+from stickslip.run import run_loop
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
 problem = ss.load_scenario("fig5-slab-printed").problem
 ss.simulate(problem, 20 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """

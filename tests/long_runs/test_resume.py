@@ -18,10 +18,10 @@ from stickslip.engine.state.layout import State, Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
-from stickslip.run.monitor import Orders, as_solution
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.run_loop import split_time
-from stickslip.run.session import RunInProgress
+from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import UNDER_WAY
 from tests.long_runs.problems import RUNS, SLOW, differences
@@ -29,7 +29,7 @@ from tests.long_runs.problems import RUNS, SLOW, differences
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
     """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
-    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, row_time(problem))
     for steps in range(100_000):
         code = run.advance(last, 1)
         if code == Stop.FULL:
@@ -41,14 +41,14 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
 
 def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
     """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
-    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, row_time(problem))
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
         if run.advance(last, 1) == Stop.FULL:
             run.grow(10**6)
-    save_checkpoint(as_solution(run, Orders(duration), UNDER_WAY), path)
-    return run.stands()
+    save_checkpoint(run.solution(UNDER_WAY), path)
+    return run.snapshot()
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -68,7 +68,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     """At rest, in slip both explicit and implicit, on the way to a fold, within a piece, with crossings noted."""
     met = set()
     for problem, duration in RUNS.values():
-        run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+        run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, row_time(problem))
         for _ in range(3000):
             if run.advance(last, 1) not in (OUT_OF_BUDGET, Stop.FULL) or run.length > 400:
                 break
@@ -172,9 +172,9 @@ def test_bad_arguments(arguments: dict[str, float], message: str, tmp_path: Path
 LONG = """
 import signal, time
 import stickslip as ss
-import stickslip.run.run_loop as drive
+from stickslip.run import run_loop
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-drive.FIRST_BUDGET = drive.LARGEST_BUDGET = 200
+run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
 problem = ss.load_scenario("rate-and-state-block").problem
 ss.simulate(problem, 1e5 * ss.YEAR, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """

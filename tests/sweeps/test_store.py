@@ -17,7 +17,7 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.run.session import RunInProgress
+from stickslip.run.session import Session
 from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
@@ -107,14 +107,14 @@ def test_ctrl_c_without_a_store_keeps_what_is_there() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGINT")
 def test_ctrl_c_in_the_last_moment_of_a_run_ends_the_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
     """The run, which ends just then by itself, must not take it for its own."""
-    advance = RunInProgress.advance
+    advance = Session.advance
 
-    def interrupted(run: RunInProgress, last: tuple[int, float], budget: int) -> int:
+    def interrupted(run: Session, last: tuple[int, float], budget: int) -> int:
         code = advance(run, last, budget)
         os.kill(os.getpid(), signal.SIGINT)
         return code
 
-    monkeypatch.setattr(RunInProgress, "advance", interrupted)
+    monkeypatch.setattr(Session, "advance", interrupted)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     stopped = ss.sweep("fig6-slab", {"friction.alpha": [1.0, 2.0]}, quantities=["end_time", "heat"], chunk=1)
     assert signal.signal(signal.SIGINT, before) is signal.default_int_handler

@@ -14,8 +14,9 @@ import numpy as np
 from stickslip.batch.kernels import reduction as of
 from stickslip.engine.state.layout import Floats, Integers, Store
 from stickslip.engine_input.forcing import row_time
-from stickslip.run.run_loop import drive
-from stickslip.run.session import RunInProgress
+from stickslip.run.options import RunOptions
+from stickslip.run.run_loop import run_loop
+from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.status import INTERRUPTED
@@ -81,11 +82,11 @@ class Folding:
     counted: int = field(default=0)
     """Number of pieces whose shocks have been counted."""
 
-    def look(self, run: RunInProgress, *, now: bool) -> int | None:
+    def look(self, run: Session, *, now: bool) -> int | None:
         """End the run if the batch is to stop: see `run_loop.Watch`."""
         return INTERRUPTED if self.stop[0] != 0 else None
 
-    def make_room(self, run: RunInProgress) -> bool:
+    def make_room(self, run: Session) -> bool:
         """Reduce the events that are complete, and discard pieces whose waves have left the body: see `run_loop.Watch`.
 
         Returns False if the history cannot grow any more either.
@@ -112,13 +113,13 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
     """
     problem = scenario.problem
-    run = RunInProgress.begin(problem, scenario.rtol, scenario.creep_rtol, scenario.shortest_event)
+    run = Session.begin(problem, RunOptions.of(scenario))
     run.reserve(capacity)
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     out[:] = np.nan
     out[[of.EVENTS, of.PULSES, of.SHOCKS]] = 0.0
     watch = Folding(stream, Fold(out), stop)
-    code = drive(run, scenario.duration, watch)
+    code = run_loop(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
     watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
     of.fold_end(run.store, run.length, row_time(problem), scenario.duration, code, out)

@@ -120,38 +120,39 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
     from stickslip.io.netcdf import open_solution
+    from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
     from stickslip.scenarios.scenario import Scenario
 
-    check_same(request, open_solution(request.resume).problem)
+    stopped = open_solution(request.resume)
+    check_same(request, stopped.problem)
     with progress(request.resume.stem) as report:
-        out = request.resume if request.out is None else request.out
-        solution = resume_run(request.resume, request.duration, request.wanted_events, report, out, max_pieces=request.max_pieces)
+        others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
+        options = RunOptions.to_continue(stopped, request.duration, request.wanted_events, **others)
+        solution = resume_run(stopped, request.resume, options)
     return Scenario.of(solution, request.resume.stem), solution
 
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run and keep only slip events, from the start or from a checkpoint. Raises InputError."""
-    from stickslip.run.catalogue import Paused, begin, check_energies, leaps_with
-    from stickslip.run.monitor import Orders
-    from stickslip.run.session import RunInProgress
+    from stickslip.run.catalogue import catalogue_of, check_energies
+    from stickslip.run.options import RunOptions
+    from stickslip.run.resume import PausedCatalogue
     from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
         chosen = request.scenario()
-        assert request.catalog is not None
         check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
-            creep_rtol = leaps_with(request.energies, chosen.creep_rtol)
-            orders = Orders(chosen.duration, chosen.max_events, report, max_pieces=request.max_pieces)
-            run = RunInProgress.begin(chosen.problem, chosen.rtol, creep_rtol, chosen.shortest_event)
-            return chosen, begin(run, orders, request.catalog, energies=request.energies)
-    paused = Paused.read(request.resume)
+            options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
+            return chosen, catalogue_of(chosen.problem, options, request.catalog, energies=request.energies)
+    paused = PausedCatalogue.read(request.resume)
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:
-        found = paused.go_on(request.duration, request.wanted_events, report, max_pieces=request.max_pieces)
-    goal = paused.stopped.duration if request.duration is None else request.duration
-    return replace(Scenario.of(paused.stopped, request.resume.stem), duration=goal), found
+        others = {"progress": report, "max_pieces": request.max_pieces}
+        options = RunOptions.to_continue(paused.stopped, request.duration, request.wanted_events, **others)
+        found = paused.resume(options)
+    return replace(Scenario.of(paused.stopped, request.resume.stem), duration=options.duration), found
 
 
 def check_same(request: Request, problem: Problem) -> None:

@@ -21,7 +21,7 @@ from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter, parameter
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import Problem, check_problem
 
 Regime = Literal["regular", "irregular"]
 
@@ -155,6 +155,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     The search goes from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 if it is 0), as far as the problem
     accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
     """
+    check_problem("critical_value", problem)
     found = parameter(problem, name)
     if getattr(problem.body, "contact_mass", 0.0) > 0.0:
         raise InputError("critical value: the contact mass makes the slip rate a state, the motion is unique whatever the law")

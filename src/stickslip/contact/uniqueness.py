@@ -22,7 +22,7 @@ from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import parameter
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import Problem, check_problem
 
 
 @dataclass(frozen=True)
@@ -181,6 +181,7 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
     -----
     Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
     """
+    check_problem("uniqueness", problem)
     if not isinstance(problem.body, ElasticSlab):
         return Uniqueness("regular", problem.rule, _INERTIA.format(body="The block", rule=problem.rule))
     if problem.body.contact_mass > 0.0:

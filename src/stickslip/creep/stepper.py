@@ -21,7 +21,7 @@ from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
 
 if TYPE_CHECKING:
-    from stickslip.run.session import RunInProgress
+    from stickslip.run.session import Session
 
 SHORTEST_LEAP = 16
 """Fewest round trips of a leap that is worth its cost."""
@@ -81,7 +81,7 @@ class CreepLeaps:
         """Return True if the engine has paused for an attempt to leap."""
         return bool(count.ready == Incoming.NONE and count.source == 0 and count.pause_at <= count.row <= last_row)
 
-    def at_row_end(self, run: RunInProgress, last: tuple[int, float]) -> None:
+    def at_row_end(self, run: Session, last: tuple[int, float]) -> None:
         """Leap if there is creep, and set when to try again.
 
         The run, which lasts up to `last`, is at the end of a round trip; round trip `pause_at` comes next.
@@ -94,7 +94,7 @@ class CreepLeaps:
         plan = planner.plan()
         if planner.at_end and count.to_the_end == 0:
             run.cut_at_end()
-        before = run.stands()
+        before = run.snapshot()
         while plan is not None and plan.trips >= SHORTEST_LEAP:
             if self._leap(run, planner.averaged, plan, last):
                 count.pause_for = 1
@@ -110,7 +110,7 @@ class CreepLeaps:
     def _previous(self, count: Counts) -> slice:
         return slice(int(count.previous_from), int(count.previous_to))
 
-    def _creeps(self, run: RunInProgress) -> bool:
+    def _creeps(self, run: Session) -> bool:
         """Return True if the last round trip came just before this one and slipped slowly, in the direction of the driver only."""
         rows = self._previous(run.count)
         modes, rate = run.store.mode[rows], run.store.rate[rows]
@@ -122,19 +122,19 @@ class CreepLeaps:
             and not (modes == -self.direction).any()
         )
 
-    def _planner(self, run: RunInProgress, most: int) -> Planner:
+    def _planner(self, run: Session, most: int) -> Planner:
         """Return the planner of a leap of at most the given number of round trips from the coming one on."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
         return Planner(averaged, abs(float(run.state.slip_now)), self.tolerance, fastest, self._before(run), most)
 
-    def _before(self, run: RunInProgress) -> Floats:
+    def _before(self, run: Session) -> Floats:
         """Return the last round trip in the form that `AveragedCreep.swing` takes."""
         rows, store = self._previous(run.count), run.store
         slip = np.append(store.slip[rows], run.state.slip_now)
         return np.stack([store.theta_to[rows], self.direction * (slip[1:] - slip[0])])
 
-    def _averaged(self, run: RunInProgress) -> AveragedCreep:
+    def _averaged(self, run: Session) -> AveragedCreep:
         """Return the averaged creep from the coming round trip on."""
         rows, store = self._previous(run.count), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
@@ -146,7 +146,7 @@ class CreepLeaps:
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
-    def _leap(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
+    def _leap(self, run: Session, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.row), float(run.state.slip_now)
         self._write(run, averaged, plan)
@@ -160,7 +160,7 @@ class CreepLeaps:
         tolerance = max(self.tolerance * (abs(slip) + expected), plan.error)
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
-    def _write(self, run: RunInProgress, averaged: AveragedCreep, plan: Plan) -> None:
+    def _write(self, run: Session, averaged: AveragedCreep, plan: Plan) -> None:
         """Write the leap as pieces of the history, and set the engine to its end."""
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))
@@ -173,7 +173,7 @@ class CreepLeaps:
         count.previous_from, count.previous_to, count.row_from = landed_from, count.length, count.length
         count.row, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
 
-    def _move(self, run: RunInProgress, end: Piece, sign: float) -> None:
+    def _move(self, run: Session, end: Piece, sign: float) -> None:
         """Move the contact to the end of the last piece of a landing."""
         state, count, grown = run.state, run.count, end.slip + end.grown
         state.slip_now += self.direction * grown
@@ -182,7 +182,7 @@ class CreepLeaps:
         count.mode = self.direction if end.slips else 0
         count.source = count.moved = count.stuck_rows = count.edge = count.jump = count.cause = count.stalled = 0
 
-    def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
+    def _goes_on(self, run: Session, row: int, last: tuple[int, float]) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
         while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, Stop.FULL):
             if code == Stop.FULL:

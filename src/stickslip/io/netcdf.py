@@ -15,6 +15,7 @@ import stickslip
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Store
 from stickslip.foundation import netcdf_file
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.soundness import check_history, number
@@ -172,7 +173,7 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
     """
     dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
     try:
-        return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), Path(path))
+        return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), as_path("to_netcdf: path", path))
     except FullDiskError as error:
         error.solution = solution
         raise
@@ -282,8 +283,8 @@ def open_solution(path: str | Path) -> Solution:
         If the file is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if
         its selection rule is not registered.
     """
-    path = Path(path)
-    return to_solution(read(path), path)
+    file = as_path("open_solution: path", path)
+    return to_solution(read(file), file)
 
 
 def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:

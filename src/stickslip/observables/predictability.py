@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
@@ -101,6 +102,8 @@ def predictability(solution: Solution) -> Predictability:
     InputError
         For any other problem: there, slip, inertia or a state variable decide how a disturbance grows.
     """
+    if not isinstance(getattr(solution, "problem", None), Problem):
+        raise InputError(f"predictability: needs a Solution, got {shown(solution)}")
     problem, body, store = solution.problem, solution.problem.body, solution.history.store
     if not is_followed(problem):
         raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")

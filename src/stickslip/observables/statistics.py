@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_type
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -39,6 +41,7 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     """
     import pandas as pd
 
+    check_type("catalogue_statistics: table", table, pd.DataFrame, "a table of slip events, such as solution.events")
     finished = table[table.end.notna()]
     rows = {name: _describe((table if name == "recurrence" else finished)[name]) for name in QUANTITIES if name in table}
     frame = pd.DataFrame.from_dict(rows, orient="index", columns=list(_describe(table.slip[:0])))

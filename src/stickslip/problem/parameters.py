@@ -13,7 +13,7 @@ from typing import Any
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import Problem, check_problem
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,7 @@ def parameter(problem: Problem, name: str) -> Parameter:
     InputError
         If the name fits no number, or several.
     """
+    check_problem("parameter", problem)
     found = {one.name: one for one in parameters(problem)}
     if name in found:
         return found[name]
@@ -108,6 +109,7 @@ def parameters(problem: Problem) -> Iterator[Parameter]:
         The numbers of the friction law and its parts, then those of the body, then the initial slip. Those that are None are left
         out.
     """
+    check_problem("parameters", problem)
     yield from _of_law(problem.friction, "friction", lambda law: replace(problem, friction=law))
     for name, declared in quantities_of(type(problem.body)).items():
         value = getattr(problem.body, name)

@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import Body, ElasticSlab
+from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_quantities, quantities_of, quantity
 from stickslip.friction import FrictionLaw
@@ -82,10 +84,11 @@ class Problem:
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.body, Body):
-            raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
-        if not isinstance(self.friction, FrictionLaw):
-            raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
+        if isinstance(self.body, FrictionLaw) and isinstance(self.friction, Body):
+            names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
+            raise InputError(f"Problem: body comes first, then friction: got {names}")
+        check_type("Problem: body", self.body, Body, "an ElasticSlab or a SpringBlock")
+        check_type("Problem: friction", self.friction, FrictionLaw, "a friction law")
         self._check_varying()
         check_quantities(self, but=self._varying)
         if (self.initial_load is None) == (self.initial_excess is None):
@@ -229,3 +232,15 @@ class Problem:
     def load(self) -> float:
         """Return the shear load on the contact at t = 0 (Pa or N)."""
         return self.initial_load if self.initial_load is not None else self.strength + self.excess
+
+
+def check_problem(who: str, problem: Any) -> None:
+    """Raise InputError, beginning with `who`, if what should be a problem is none; hint at what was probably meant."""
+    if isinstance(problem, Problem):
+        return
+    hint = ""
+    if isinstance(problem, str):
+        hint = "; a scenario is read by load_scenario, and has a problem"
+    elif isinstance(getattr(problem, "problem", None), Problem):
+        hint = "; take its .problem"
+    raise InputError(f"{who}: problem must be a Problem, got {shown(problem)}{hint}")

@@ -83,7 +83,8 @@ class SelectionRule(Protocol):
     It must depend on nothing else, and must be hashable.
     """
 
-    def __call__(self, g: Resistance, stable: tuple[Branch, ...], /) -> SelectionTable: ...
+    def __call__(self, g: Resistance, stable: tuple[Branch, ...], /) -> SelectionTable:
+        """Return the table of the resistance and its stable branches."""
 
     def __hash__(self) -> int: ...
 

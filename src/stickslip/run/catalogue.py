@@ -5,31 +5,26 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.foundation.arguments import as_path, is_number, shown
 from stickslip.foundation.atomic_write import held
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution
-from stickslip.io.soundness import check_place
+from stickslip.io.netcdf import CATALOGUE, FORMAT, history_dataset, origin
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem.problem import Problem
-from stickslip.run.monitor import CHECKPOINT_EVERY, Keeper, Orders, as_solution
+from stickslip.run.monitor import run_to_end, stream_of
+from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
 from stickslip.run.progress import Progress
-from stickslip.run.resume import check_events, events_wanted, taken_up
-from stickslip.run.run_loop import drive
-from stickslip.run.session import RunInProgress
-from stickslip.run.simulate import check_run, check_started
-from stickslip.solution.solution import Solution
-from stickslip.trajectory.event_stream import EventStream, Look, Place
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, UNDER_WAY, Status
-from stickslip.trajectory.tables import creep_note, default_event_rate
+from stickslip.run.session import Session
+from stickslip.trajectory.event_stream import EventStream, Look
+from stickslip.trajectory.status import UNDER_WAY, Status
+from stickslip.trajectory.tables import creep_note
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +38,7 @@ def catalogue(
     duration: float,
     path: str | Path | None = None,
     *,
-    rtol: float = 1e-10,
+    rtol: float = RTOL,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
     max_events: int | None = None,
@@ -93,20 +88,39 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
-    check_run("catalogue", duration, rtol, max_events, checkpoint_every)
-    check_creep_rtol(problem, creep_rtol, "catalogue")
-    check_shortest_event(problem, shortest_event, "catalogue")
-    rate = default_event_rate(problem) if event_rate is None else event_rate
-    if not rate >= 0.0:
-        raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {event_rate!r}")
-    if path is not None:
-        check_catalogue(Path(path))
+    given = RunOptions(
+        duration,
+        rtol,
+        creep_rtol=creep_rtol,
+        shortest_event=shortest_event,
+        max_events=max_events,
+        progress=progress,
+        checkpoint_every=checkpoint_every,
+        max_pieces=max_pieces,
+    )
+    options = given.check("catalogue", problem)
+    if event_rate is not None and not (is_number(event_rate) and event_rate >= 0.0):
+        raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {shown(event_rate)}")
+    file = None if path is None else as_path("catalogue: path", path)
+    if file is not None:
+        check_catalogue(file)
     check_energies(creep_rtol, energies, "catalogue")
-    run = RunInProgress.begin(problem, rtol, leaps_with(energies, creep_rtol), shortest_event)
-    orders = Orders(duration, max_events, progress, None, checkpoint_every, max_pieces)
-    if path is not None:
-        return begin(run, orders, Path(path), rate, energies).read()
-    return follow(run, orders, stream_of(run, rate, energies), RowsInMemory()).read()
+    return catalogue_of(problem, options, file, event_rate, energies=energies).read()
+
+
+def catalogue_of(
+    problem: Problem, options: RunOptions, path: Path | None, event_rate: float | None = None, *, energies: bool = False
+) -> Catalogue:
+    """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first."""
+    run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energies, options.creep_rtol)))
+    stream = stream_of(run, event_rate, energies)
+    if path is None:
+        return follow(run, stream, RowsInMemory())
+    rows = Rows(path)
+    with alone_with(rows):
+        checkpoint_of(rows).unlink(missing_ok=True)
+        rows.clear()
+        return follow(run, stream, rows)
 
 
 def leaps_with(energies: bool, creep_rtol: float | None) -> float | None:
@@ -120,77 +134,9 @@ def check_energies(creep_rtol: float | None, energies: bool, where: str, options
         raise InputError(f"{where}: {options} exclude each other: what leaps over creep send into the slab is not known")
 
 
-def stream_of(run: RunInProgress, event_rate: float, energies: bool) -> EventStream:
-    """Return a stream of all events of a run, from its start."""
-    return EventStream(run.problem, event_rate, float(run.setup.par.ramp), energies=energies)
-
-
-def begin(run: RunInProgress, orders: Orders, path: Path, event_rate: float | None = None, energies: bool = False) -> Catalogue:
-    """Run from the start into a file. An earlier table and checkpoint of the same names are deleted first."""
-    rows = Rows(path)
-    rate = default_event_rate(run.problem) if event_rate is None else event_rate
-    with alone_with(rows):
-        checkpoint_of(rows).unlink(missing_ok=True)
-        rows.clear()
-        return follow(run, orders, stream_of(run, rate, energies), rows)
-
-
 def alone_with(rows: Rows) -> AbstractContextManager[None]:
     """Lock the files of a catalogue against other processes. Raises InputError if another run is writing to them."""
     return held(checkpoint_of(rows), f"{rows.path}: another run is writing its catalogue there: choose another name")
-
-
-@dataclass(frozen=True)
-class Paused:
-    """The state of a catalogue's run, as read from its checkpoint."""
-
-    path: Path
-    stopped: Solution
-    about: Mapping[str, Any]
-
-    @classmethod
-    def read(cls, path: Path) -> Self:
-        """Read a checkpoint. Raises InputError for a file that is not the checkpoint of a catalogue."""
-        dataset = read(path, CATALOGUE)
-        stopped = to_solution(dataset, path)
-        try:
-            return cls(path, stopped, check_place(dataset.attrs, path))
-        except (KeyError, TypeError) as error:
-            raise InputError(f"{path}: not a file that stickslip has written: {error} is missing or wrong") from None
-
-    @property
-    def rows(self) -> Rows:
-        """Return the rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
-        found = Rows(self.path.parent / self.about["catalogue"])
-        for path in {found.path, found.growing}:
-            if path.is_symlink():
-                raise InputError(f"{path}: is a link: a catalogue is resumed in the file itself")
-        return found
-
-    def go_on(
-        self,
-        duration: float | None = None,
-        max_events: int | None = None,
-        progress: Progress | None = None,
-        checkpoint_every: float = CHECKPOINT_EVERY,
-        max_pieces: int | None = None,
-    ) -> Catalogue:
-        """Continue the run to its end. Raises InputError as `stickslip.resume` does."""
-        stopped, about = self.stopped, self.about
-        wanted, rows = events_wanted(stopped, max_events), self.rows
-        run = taken_up(stopped, self.path, duration)
-        orders = Orders(stopped.duration if duration is None else duration, wanted, progress, None, checkpoint_every, max_pieces)
-        check_run("resume", orders.duration, stopped.rtol, wanted, checkpoint_every)
-        if wanted is not None:
-            check_events(self.path, wanted, int(about["told"]))
-        check_catalogue(rows.path)
-        start = Place(about["last_piece"], about["last_xi"])
-        run.forgotten = about["forgotten"]
-        fresh = stream_of(run, about["event_rate"], bool(about["energies"]))
-        stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
-        with alone_with(rows):
-            rows.take_up(about["told"], about["bytes"], about["digest"])
-            return follow(run, orders, stream, rows)
 
 
 @dataclass(frozen=True)
@@ -219,14 +165,10 @@ class Catalogue:
         return table
 
 
-def follow(run: RunInProgress, orders: Orders, stream: EventStream, rows: Rows | RowsInMemory) -> Catalogue:
+def follow(run: Session, stream: EventStream, rows: Rows | RowsInMemory) -> Catalogue:
     """Run to the end and write the table in its final format. Raises InputError if the run ends where it starts."""
     run.reserve(CAPACITY)
-    keeper = CatalogueKeeper.of(run, orders, stream)
-    keeper.rows = rows
-    code = drive(run, orders.duration, keeper)
-    check_started(run, code, "catalogue")
-    return Catalogue(rows, stream.told, STATUSES[code], keeper.finish(run, code))
+    return run_to_end(run, EventRows(rows), stream)
 
 
 @dataclass(frozen=True)
@@ -237,64 +179,55 @@ class Told:
     stream: EventStream
 
 
-@dataclass(kw_only=True)
-class CatalogueKeeper(Keeper):
-    """A monitor that writes rows as events become known, and discards the history that they no longer need.
+@dataclass
+class EventRows:
+    """The sink (`monitor.Sink`) that writes rows as events become known, and discards the history that they no longer need.
 
     `told` is the output at the point from which this run, or a longer one, would continue.
     """
 
-    rows: Rows | RowsInMemory = field(default_factory=lambda: RowsInMemory())
+    rows: Rows | RowsInMemory
     told: Told | None = None
+    who: str = "catalogue"
+    wants_events: bool = True
 
-    @property
-    def counts(self) -> bool:
-        """Return True, because a catalogue always counts its events."""
-        return True
-
-    def note(self, run: RunInProgress, look: Look) -> None:
-        """Write the rows of new events and count the events as reported."""
+    def record(self, run: Session, stream: EventStream, look: Look) -> None:
+        """Write the rows of new events and report the events."""
         if len(look.known_by):
             self.rows.append(look.table())
-        super().note(run, look)
-        self._remember(run)
+        look.tell()
+        self._remember(run, stream)
 
-    def make_room(self, run: RunInProgress) -> bool:
+    def make_room(self, run: Session, stream: EventStream) -> bool:
         """Discard history that neither events nor the engine need, and enlarge the store if at least half of it remains full.
 
         Returns False if the store may not grow. Nothing is discarded after the checkpoint for a longer run has been stored, which
         refers to pieces by their number.
         """
-        dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
+        dropped = run.forget_before(stream.needed(run.store)) if run.before_end is None else 0
         if dropped > 0:
-            self.stream.forget(dropped)
-            self._remember(run)
-            self.looked = self.stands(run)
-        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
+            stream.forget(dropped)
+            self._remember(run, stream)
+        return run.length < len(run.store.whole) // 2 or run.grow(run.options.most_pieces)
 
-    def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
+    def save(self, run: Session, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""
         if isinstance(self.rows, RowsInMemory) or self.told is None:
             return
         self.rows.sync()
-        solution = as_solution(run, self.orders, code)
+        solution = run.solution(code)
         about = self._about(run, self.told, self.rows)
         try:
             write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
         except FullDiskError as error:  # the previous checkpoint is still in the file
             warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
 
-    def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
-        """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format.
-
-        Returns the notes of a `Catalogue`.
-        """
-        if code != ENOUGH_EVENTS:
-            self.count(run)
-        self.rows.append(self.stream.look(run.store, run.length).table(unknown=True))
-        solution = as_solution(run, self.orders, code)
+    def finish(self, run: Session, stream: EventStream, code: int) -> Catalogue:
+        """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
+        self.rows.append(stream.look(run.store, run.length).table(unknown=True))
+        solution = run.solution(code)
         known = is_followed(run.problem)
-        prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.rtol) if known else None
+        prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
         self.rows.publish(origin(solution) | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()
@@ -305,13 +238,13 @@ class CatalogueKeeper(Keeper):
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,
         }
-        return {name: note for name, note in notes.items() if note}
+        return Catalogue(self.rows, stream.told, solution.status, {name: note for name, note in notes.items() if note})
 
-    def _remember(self, run: RunInProgress) -> None:
+    def _remember(self, run: Session, stream: EventStream) -> None:
         if run.before_end is None:
-            self.told = Told(self.rows.size, replace(self.stream))
+            self.told = Told(self.rows.size, replace(stream))
 
-    def _about(self, run: RunInProgress, told: Told, rows: Rows) -> dict[str, Any]:
+    def _about(self, run: Session, told: Told, rows: Rows) -> dict[str, Any]:
         """Return the attributes of the checkpoint."""
         stream = told.stream
         return {

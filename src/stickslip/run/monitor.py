@@ -1,94 +1,101 @@
-"""Monitor a run between two calls of the engine: count its events, report its progress, write checkpoints."""
+"""Monitor a run between two calls of the engine: count its events, report its progress, have it stored.
+
+`simulate` and `catalogue` run in the same way, `run_to_end`, and differ in the sink that takes the result: `WholeHistory`
+(`run/simulate.py`) keeps everything, `EventRows` (`run/catalogue.py`) keeps one row for each slip event.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Self
+from typing import Protocol, Self, TypeVar
 
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.forcing import row_time
-from stickslip.run.progress import Progress, Reporter
-from stickslip.run.run_loop import NowAndThen, repeat
-from stickslip.run.session import RunInProgress
-from stickslip.solution.solution import Solution
+from stickslip.foundation.errors import InputError
+from stickslip.run.progress import Reporter
+from stickslip.run.run_loop import NowAndThen, repeat, run_loop
+from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.event_stream import EventStream, Look
-from stickslip.trajectory.history import History
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, UNDER_WAY
+from stickslip.trajectory.status import ENOUGH_EVENTS, INTERRUPTED, STATUSES
 from stickslip.trajectory.tables import default_event_rate
 
-MAX_PIECES = 1_000_000
-"""Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
-PIECE_SIZE = 8 * (6 + 8 + 2 * at.TERMS)
-"""Bytes of a piece, in memory and in a file, without the polynomial of a law's state."""
-CHECKPOINT_EVERY = 30.0
-"""Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
+Result_co = TypeVar("Result_co", covariant=True)
 
 
-@dataclass(frozen=True)
-class Orders:
-    """The options of a run: when it ends, and what to report and store on the way (see `simulate`)."""
+class Sink(Protocol[Result_co]):
+    """What takes the results of a run."""
 
-    duration: float
-    max_events: int | None = None
-    progress: Progress | None = None
-    checkpoint: Path | None = None
-    checkpoint_every: float = CHECKPOINT_EVERY
-    max_pieces: int | None = None
-    """None stands for MAX_PIECES; a history that reaches this limit is then not written to the file."""
+    who: str
+    """Name of the public function, for messages."""
+    wants_events: bool
+    """True if `record` must be called for each event also when nothing else counts them."""
 
-    @property
-    def most_pieces(self) -> int:
-        """Return the largest number of pieces that the history may have."""
-        return MAX_PIECES if self.max_pieces is None else self.max_pieces
+    def record(self, run: Session, stream: EventStream, look: Look) -> None:
+        """Take new events, before they count as reported, and report them."""
 
-    def keeps(self, code: int) -> bool:
-        """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
-        return code != FULL_HISTORY or self.max_pieces is not None
+    def make_room(self, run: Session, stream: EventStream) -> bool:
+        """Make room in a full history. Returns False if that is not allowed."""
+
+    def save(self, run: Session) -> None:
+        """Write a checkpoint."""
+
+    def finish(self, run: Session, stream: EventStream, code: int) -> Result_co:
+        """Store the end of a run that ended with this code, and return the result."""
 
 
-def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
-    """Return the solution computed so far, with the status that belongs to this code."""
-    kept = at.trimmed(run.store, run.length)
-    whole = code in (Stop.FINISHED, Stop.LOCKED)
-    reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
-    history = History(kept, run.problem, row_time(run.problem), float(run.setup.par.ramp), reached, creep=run.creep)
-    found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.max_events)
-    found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
-    return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)
+def run_to_end(run: Session, sink: Sink[Result_co], stream: EventStream | None = None) -> Result_co:
+    """Run to the end and return the result of the sink; a stream that is given has already reported the earlier events.
+
+    Raises InputError if the run ends where it starts, and KeyboardInterrupt if Ctrl-C stopped it there.
+    """
+    monitor = Monitor.of(run, sink, stream)
+    code = run_loop(run, run.options.duration, monitor)
+    if run.length == 0:
+        if code == INTERRUPTED:
+            raise KeyboardInterrupt
+        raise InputError(f"{sink.who}: the run ends where it starts: {STATUSES[code].message}")
+    if sink.wants_events and code != ENOUGH_EVENTS:
+        monitor.count(run)
+    return sink.finish(run, monitor.stream, code)
 
 
 @dataclass(kw_only=True)
-class Keeper:
-    """A monitor that keeps the whole history.
+class Monitor:
+    """The watch (`run_loop.Watch`) of a run whose results go to a sink.
 
     `looked` is a checkpoint of the moment when events were last counted; it is None if the run never has to return there.
     """
 
-    orders: Orders
+    sink: Sink[object]
     stream: EventStream
     reporter: Reporter | None
     saving: NowAndThen
+    max_events: int | None
+    duration: float
     counting: NowAndThen = field(default_factory=lambda: NowAndThen(0.0))
     looked: Checkpoint | None = None
 
     @classmethod
-    def of(cls, run: RunInProgress, orders: Orders, stream: EventStream | None = None) -> Self:
-        """Return a monitor for a run with these options. A stream that is given has already reported the earlier events."""
-        stream = stream or EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
-        reporter = Reporter.of(orders.progress, orders.duration, orders.max_events, stream.threshold)
-        keeper = cls(orders=orders, stream=stream, reporter=reporter, saving=NowAndThen.from_now(orders.checkpoint_every))
-        keeper.looked = keeper.stands(run)
-        return keeper
+    def of(cls, run: Session, sink: Sink[object], stream: EventStream | None = None) -> Self:
+        """Return the monitor of a run."""
+        options = run.options
+        stream = stream or stream_of(run)
+        monitor = cls(
+            sink=sink,
+            stream=stream,
+            reporter=Reporter.of(options, stream.threshold),
+            saving=NowAndThen.from_now(options.checkpoint_every),
+            max_events=options.max_events,
+            duration=options.duration,
+        )
+        monitor.remember(run)
+        return monitor
 
     @property
     def counts(self) -> bool:
         """Return True if events must be counted."""
-        return self.reporter is not None or self.orders.max_events is not None
+        return self.reporter is not None or self.max_events is not None or self.sink.wants_events
 
-    def look(self, run: RunInProgress, *, now: bool) -> int | None:
+    def look(self, run: Session, *, now: bool) -> int | None:
         """Count events, report progress and write a checkpoint where each is due: see `run_loop.Watch`."""
         enough = False
         if self.counts and run.length > 0 and (now or self.counting.is_due):
@@ -98,37 +105,38 @@ class Keeper:
             self.reporter.report(run, self.stream.told)
         if run.length > 0 and not enough and self.saving.is_due:
             with self.saving.done():
-                self.save(run)
+                self.sink.save(run)
         return ENOUGH_EVENTS if enough else None
 
-    def count(self, run: RunInProgress) -> bool:
+    def count(self, run: Session) -> bool:
         """Count new events. Returns True if they are enough; the run then goes back to the piece by which the last one is known."""
-        look, wanted = self.stream.look(run.store, run.length), self.orders.max_events
-        missing = None if wanted is None else wanted - self.stream.told
+        look = self.stream.look(run.store, run.length)
+        missing = None if self.max_events is None else self.max_events - self.stream.told
         if missing is None or len(look.known_by) < missing:
-            self.note(run, look)
+            self.record(run, look)
             return False
         assert self.looked is not None
-        repeat(run, self.looked, self.orders.duration, look.known_by[missing - 1] + 1)
-        self.note(run, replace(look, known_by=look.known_by[:missing]))
+        repeat(run, self.looked, self.duration, look.known_by[missing - 1] + 1)
+        self.record(run, replace(look, known_by=look.known_by[:missing]))
         return True
 
-    def note(self, run: RunInProgress, look: Look) -> None:
-        """Count these events as reported, and remember the present state of the run."""
-        look.tell()
-        self.looked = self.stands(run)
+    def record(self, run: Session, look: Look) -> None:
+        """Hand these events to the sink, and remember the present state of the run."""
+        self.sink.record(run, self.stream, look)
+        self.remember(run)
 
-    def stands(self, run: RunInProgress) -> Checkpoint | None:
-        """Return a checkpoint if the run may have to return here, which is so only if it stops after a number of events."""
-        return None if self.orders.max_events is None else run.stands()
+    def remember(self, run: Session) -> None:
+        """Keep a checkpoint if the run may have to return here, which is so only if it stops after a number of events."""
+        self.looked = None if self.max_events is None else run.snapshot()
 
-    def save(self, run: RunInProgress) -> None:
-        """Renew the checkpoint if a file for it was given."""
-        if self.orders.checkpoint is not None:
-            from stickslip.io.netcdf import save_checkpoint
+    def make_room(self, run: Session) -> bool:
+        """Have the sink make room in the full history: see `run_loop.Watch`."""
+        room = self.sink.make_room(run, self.stream)
+        self.remember(run)  # the sink may have discarded history, and a checkpoint refers to pieces by their number
+        return room
 
-            save_checkpoint(as_solution(run, self.orders, UNDER_WAY), self.orders.checkpoint)
 
-    def make_room(self, run: RunInProgress) -> bool:
-        """Enlarge the store of the history, up to the largest number of pieces allowed: see `run_loop.Watch`."""
-        return run.grow(self.orders.most_pieces)
+def stream_of(run: Session, event_rate: float | None = None, energies: bool = False) -> EventStream:
+    """Return a stream of all events of a run, from its start."""
+    rate = default_event_rate(run.problem) if event_rate is None else event_rate
+    return EventStream(run.problem, rate, float(run.setup.par.ramp), energies=energies)

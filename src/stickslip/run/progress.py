@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Literal, NamedTuple, Self
 
-from stickslip.run.session import RunInProgress
+if TYPE_CHECKING:
+    from stickslip.run.options import RunOptions
+    from stickslip.run.session import Session
 
 Doing = Literal["stuck", "creeping", "slipping"]
 
@@ -64,11 +66,12 @@ class Reporter:
     from_time: float = 0.0
 
     @classmethod
-    def of(cls, tell: Progress | None, duration: float, max_events: int | None, event_rate: float) -> Self | None:
+    def of(cls, options: RunOptions, event_rate: float) -> Self | None:
         """Return a reporter, or None if there is no callback."""
-        return None if tell is None else cls(tell, duration, max_events, event_rate)
+        tell = options.progress
+        return None if tell is None else cls(tell, options.duration, options.max_events, event_rate)
 
-    def report(self, run: RunInProgress, events: int) -> None:
+    def report(self, run: Session, events: int) -> None:
         """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
         share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
@@ -80,7 +83,7 @@ class Reporter:
         doing = self._doing(run)
         self.tell(Report(now, self.duration, events, self.max_events, run.forgotten + run.length, doing, pace, left))
 
-    def _doing(self, run: RunInProgress) -> Doing:
+    def _doing(self, run: Session) -> Doing:
         if run.count.mode == 0:
             return "stuck"
         return "slipping" if abs(run.state.rate_now) > self.event_rate else "creeping"

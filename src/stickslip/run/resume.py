@@ -1,22 +1,26 @@
-"""Resume a run where it stopped: the result is the same, bit for bit, as without the stop."""
+"""Continue a run or a catalogue where it stopped: the result is the same, bit for bit, as without the stop."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import is_catalogue, open_solution
-from stickslip.io.soundness import check_checkpoint
-from stickslip.run.monitor import CHECKPOINT_EVERY, Orders
+from stickslip.io.catalogue_rows import Rows, check_catalogue
+from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
+from stickslip.io.soundness import check_checkpoint, check_place
+from stickslip.run.catalogue import Catalogue, alone_with, follow
+from stickslip.run.monitor import run_to_end, stream_of
+from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import Progress
-from stickslip.run.session import RunInProgress
-from stickslip.run.simulate import check_run, go_on
+from stickslip.run.session import Session
+from stickslip.run.simulate import WholeHistory
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import engine
-from stickslip.trajectory.event_stream import EventStream
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.event_stream import Place
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,46 +71,71 @@ def resume(
     -----
     Rows of a catalogue that were written after its checkpoint are cut off and computed again.
     """
-    path = Path(path)
-    if not is_catalogue(path):
-        kept = path if checkpoint is None else Path(checkpoint)
-        return resume_run(path, duration, max_events, progress, kept, checkpoint_every, max_pieces)
-    from stickslip.run.catalogue import Paused
-
-    if checkpoint is not None:
-        raise InputError(f"resume: {path}: a catalogue is resumed in its own file: leave checkpoint away")
-    return Paused.read(path).go_on(duration, max_events, progress, checkpoint_every, max_pieces).read()
-
-
-def resume_run(
-    path: Path,
-    duration: float | None,
-    max_events: int | None,
-    progress: Progress | None,
-    checkpoint: Path,
-    checkpoint_every: float = CHECKPOINT_EVERY,
-    max_pieces: int | None = None,
-) -> Solution:
-    """Continue the run in a file: see `resume`."""
-    stopped = open_solution(path)
-    wanted = events_wanted(stopped, max_events)
-    run = taken_up(stopped, path, duration)
-    orders = Orders(
-        stopped.duration if duration is None else duration,
-        wanted,
-        progress,
-        checkpoint,
-        checkpoint_every,
-        max_pieces,
-    )
-    check_run("resume", orders.duration, stopped.rtol, wanted, checkpoint_every)
-    if wanted is not None:
-        check_events(path, wanted, events_in(run))
-    return go_on(run, orders)
+    file = as_path("resume: path", path)
+    paused = PausedCatalogue.read(file) if is_catalogue(file) else None
+    if paused is not None and checkpoint is not None:
+        raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave checkpoint away")
+    stopped = open_solution(file) if paused is None else paused.stopped
+    others = {"progress": progress, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
+    kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
+    options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
+    return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
 
 
-def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProgress:
-    """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit up to `duration` (s)."""
+def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:
+    """Continue a run that was read from a file. Raises InputError as `resume` does."""
+    run = taken_up(stopped, path, options)
+    if run.options.max_events is not None:
+        check_events(path, run.options.max_events, events_in(run))
+    return run_to_end(run, WholeHistory())
+
+
+@dataclass(frozen=True)
+class PausedCatalogue:
+    """The state of a catalogue's run, as read from its checkpoint."""
+
+    path: Path
+    stopped: Solution
+    about: Mapping[str, Any]
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Read a checkpoint. Raises InputError for a file that is not the checkpoint of a catalogue."""
+        dataset = read(path, CATALOGUE)
+        stopped = to_solution(dataset, path)
+        try:
+            return cls(path, stopped, check_place(dataset.attrs, path))
+        except (KeyError, TypeError) as error:
+            raise InputError(f"{path}: not a file that stickslip has written: {error} is missing or wrong") from None
+
+    @property
+    def rows(self) -> Rows:
+        """Return the rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
+        found = Rows(self.path.parent / self.about["catalogue"])
+        for path in {found.path, found.growing}:
+            if path.is_symlink():
+                raise InputError(f"{path}: is a link: a catalogue is resumed in the file itself")
+        return found
+
+    def resume(self, options: RunOptions) -> Catalogue:
+        """Continue the run to its end. Raises InputError as `stickslip.resume` does."""
+        about, rows = self.about, self.rows
+        run = taken_up(self.stopped, self.path, options)
+        if run.options.max_events is not None:
+            check_events(self.path, run.options.max_events, int(about["told"]))
+        check_catalogue(rows.path)
+        run.forgotten = about["forgotten"]
+        fresh = stream_of(run, about["event_rate"], bool(about["energies"]))
+        start = Place(about["last_piece"], about["last_xi"])
+        stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
+        with alone_with(rows):
+            rows.take_up(about["told"], about["bytes"], about["digest"])
+            return follow(run, stream, rows)
+
+
+def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
+    """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit with these options."""
+    options = options.check("resume", stopped.problem)
     checkpoint = stopped.checkpoint
     if checkpoint is None:
         raise InputError(f"{path}: cannot be resumed: it does not hold where the engine stood; run it again from the start")
@@ -116,23 +145,17 @@ def taken_up(stopped: Solution, path: Path, duration: float | None) -> RunInProg
             " which would go on in other digits; run it again from the start"
         )
     check_checkpoint(stopped, path)
-    run = RunInProgress.at_checkpoint(stopped.history, checkpoint, stopped.rtol, stopped.creep_rtol, stopped.shortest_event)
+    run = Session.at_checkpoint(stopped.history, checkpoint, options)
     reached = float(stopped.history.end[run.length - 1])
-    if duration is not None and duration < reached:
-        raise InputError(f"{path}: the run has already reached {reached:.9g} s: a duration of {duration:.9g} s lies before that")
+    if options.duration != stopped.duration and options.duration < reached:
+        wanted = f"a duration of {options.duration:.9g} s lies before that"
+        raise InputError(f"{path}: the run has already reached {reached:.9g} s: {wanted}")
     return run
 
 
-def events_wanted(stopped: Solution, max_events: int | None) -> int | None:
-    """Return the number of events after which to stop: if none is given, the previous one, unless the run has reached it."""
-    had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
-    return max_events if max_events is not None or had_them else stopped.max_events
-
-
-def events_in(run: RunInProgress) -> int:
+def events_in(run: Session) -> int:
     """Return the number of events that are over in the history of a run."""
-    stream = EventStream(run.problem, default_event_rate(run.problem), float(run.setup.par.ramp))
-    return len(stream.look(run.store, run.length).known_by)
+    return len(stream_of(run).look(run.store, run.length).known_by)
 
 
 def check_events(path: Path, wanted: int, had: int) -> None:

@@ -1,4 +1,4 @@
-"""Drive a run: call the engine for a fraction of a second at a time, and do everything else between these calls."""
+"""Run a session: call the engine for a fraction of a second at a time, and do everything else between these calls."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stickslip.engine.state.layout import Stop
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.forcing import row_time
 from stickslip.foundation.errors import InputError
-from stickslip.run.session import RunInProgress
+from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED
 
@@ -59,17 +59,17 @@ class NowAndThen:
 class Watch(Protocol):
     """The interface of a monitor, which is called between two calls of the engine, when the state of the run is consistent."""
 
-    def look(self, run: RunInProgress, *, now: bool) -> int | None:
+    def look(self, run: Session, *, now: bool) -> int | None:
         """Monitor the run after a call of the engine. Returns a code to end the run, or None to continue.
 
         `now` is True if the call did more than use up its steps (an end, a full history): counting events must not wait then.
         """
 
-    def make_room(self, run: RunInProgress) -> bool:
+    def make_room(self, run: Session) -> bool:
         """Make room in a full history. Returns False if that is not allowed."""
 
 
-def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
+def run_loop(run: Session, duration: float, watch: Watch) -> int:
     """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
     last, budget = split_time(duration, row_time(run.problem)), FIRST_BUDGET
     with interrupts() as is_interrupted:
@@ -79,16 +79,9 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
                 code = run.advance(last, budget)
                 if code == OUT_OF_BUDGET:
                     budget = next_budget(budget, time.perf_counter() - start)
-                stop = watch.look(run, now=code != OUT_OF_BUDGET)
-                if stop is not None:
-                    return stop
-                if code == Stop.END_AHEAD:
-                    run.cut_at_end()
-                elif code == Stop.FULL:
-                    if not watch.make_room(run):
-                        return FULL_HISTORY
-                elif code != OUT_OF_BUDGET:
-                    return code
+                end = after_call(run, code, watch)
+                if end is not None:
+                    return end
                 if is_interrupted():
                     return INTERRUPTED
         except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
@@ -97,7 +90,20 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
             return INTERRUPTED
 
 
-def repeat(run: RunInProgress, since: Checkpoint, duration: float, length: int) -> None:
+def after_call(run: Session, code: int, watch: Watch) -> int | None:
+    """Do what is due after a call of the engine that returned `code`. Returns a code to end the run, or None to continue."""
+    stop = watch.look(run, now=code != OUT_OF_BUDGET)
+    if stop is not None:
+        return stop
+    if code == Stop.END_AHEAD:
+        run.cut_at_end()
+        return None
+    if code == Stop.FULL:
+        return None if watch.make_room(run) else FULL_HISTORY
+    return None if code == OUT_OF_BUDGET else code
+
+
+def repeat(run: Session, since: Checkpoint, duration: float, length: int) -> None:
     """Go back to an earlier state of a run up to `duration` (s), and step from there until the history has `length` pieces."""
     last = split_time(duration, row_time(run.problem))
     run.restore(since)

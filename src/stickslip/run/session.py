@@ -1,4 +1,4 @@
-"""A run in progress: the arrays on which the compiled engine works, and the operations on them between its calls.
+"""A run in progress, called a session: the arrays on which the compiled engine works, and what is done with them between its calls.
 
 A piece of history is an interval on which load and slip rate are polynomials. A row is a round trip of a slab or a period of a
 block.
@@ -6,7 +6,7 @@ block.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -24,10 +24,12 @@ from stickslip.engine_input.creep_limits import creep_tolerance
 from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.problem.problem import Problem
+from stickslip.run.options import RunOptions
+from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint, engine
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.status import rounding_note
+from stickslip.trajectory.status import STATUSES, rounding_note
 
 FIRST_CAPACITY = 512
 """Pieces of history for which a run has room at first, 0.2 MB; the room grows fourfold when it is full."""
@@ -36,11 +38,11 @@ SPARE = 16
 
 
 @dataclass(eq=False)
-class RunInProgress:
-    """The setup, the state and the history of a run between two calls of the engine."""
+class Session:
+    """The options, the setup, the state and the history of a run between two calls of the engine."""
 
     problem: Problem
-    rtol: float
+    options: RunOptions
     setup: Setup
     memory: Integers
     """State, scratch space and addresses of the tables, in one array: see `workspace.Run`."""
@@ -48,10 +50,6 @@ class RunInProgress:
     echoes: Echoes
     follower: RuleFollower
     leaps: CreepLeaps | None = None
-    creep_rtol: float | None = None
-    """Tolerance of leaps over creep as the user gave it; None stands for automatic."""
-    shortest_event: float | None = None
-    """Duration (s) below which events are lumped, as the user gave it; None stands for automatic."""
     before_end: Checkpoint | None = None
     """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
     forgotten: int = 0
@@ -63,31 +61,23 @@ class RunInProgress:
         self._lend()
 
     @classmethod
-    def begin(cls, problem: Problem, rtol: float, creep_rtol: float | None = None, shortest_event: float | None = None) -> Self:
+    def begin(cls, problem: Problem, options: RunOptions) -> Self:
         """Return a run at t = 0."""
-        setup, state, count = prepare(problem, rtol, shortest_event)
+        setup, state, count = prepare(problem, options.rtol, options.shortest_event)
         memory = memory_of(setup.par, state, count)
         state, count = state_in(memory), counts_in(memory)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, row_time(problem), state, count)
-        tolerance = creep_tolerance(problem, creep_rtol, rtol)
-        leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
+        tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
+        leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
             leaps.begin(count)
-        echoes = new_echoes(FIRST_CAPACITY)
-        return cls(problem, rtol, setup, memory, store, echoes, follower, leaps, creep_rtol, shortest_event)
+        return cls(problem, options, setup, memory, store, new_echoes(FIRST_CAPACITY), follower, leaps)
 
     @classmethod
-    def at_checkpoint(
-        cls,
-        history: History,
-        checkpoint: Checkpoint,
-        rtol: float,
-        creep_rtol: float | None = None,
-        shortest_event: float | None = None,
-    ) -> Self:
+    def at_checkpoint(cls, history: History, checkpoint: Checkpoint, options: RunOptions) -> Self:
         """Return a run that continues from a checkpoint, on a copy of the history."""
-        run = cls.begin(history.problem, rtol, creep_rtol, shortest_event)
+        run = cls.begin(history.problem, options)
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
@@ -112,7 +102,7 @@ class RunInProgress:
     @property
     def lumping_note(self) -> str:
         """Return one line on automatic lumping, or an empty string if it has not begun."""
-        return lumping_note(self.count, self.par, self.shortest_event)
+        return lumping_note(self.count, self.par, self.options.shortest_event)
 
     @property
     def rounding_note(self) -> str:
@@ -123,6 +113,16 @@ class RunInProgress:
     def creep(self) -> Floats:
         """Return the leaps over creep so far, as in `History.creep`."""
         return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
+
+    def solution(self, code: int) -> Solution:
+        """Return the solution computed so far, with the status that belongs to this code."""
+        kept, row, options = at.trimmed(self.store, self.length), row_time(self.problem), self.options
+        whole = code in (Stop.FINISHED, Stop.LOCKED)
+        reached = options.duration if whole else float(kept.row[-1] * row + kept.theta_to[-1])
+        history = History(kept, self.problem, row, float(self.setup.par.ramp), reached, creep=self.creep)
+        found = Solution(self.problem, options.duration, options.rtol, STATUSES[code], history, self.checkpoint())
+        given = {name: getattr(options, name) for name in ("max_events", "creep_rtol", "shortest_event")}
+        return replace(found, lumping_note=self.lumping_note, rounding_note=self.rounding_note, **given)
 
     def advance(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
@@ -192,10 +192,10 @@ class RunInProgress:
 
     def cut_at_end(self) -> None:
         """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
-        self.before_end = self.stands()
+        self.before_end = self.snapshot()
         self.count.to_the_end = 1
 
-    def stands(self) -> Checkpoint:
+    def snapshot(self) -> Checkpoint:
         """Return a checkpoint of the present state."""
         stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
@@ -203,7 +203,7 @@ class RunInProgress:
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint from which this run, or a longer one, would continue."""
-        return self.before_end or self.stands()
+        return self.before_end or self.snapshot()
 
     def restore(self, checkpoint: Checkpoint) -> None:
         """Go back to a checkpoint, on the same history or a copy of it."""

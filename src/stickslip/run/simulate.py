@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import LARGEST, as_float
+from stickslip.foundation.arguments import as_path
 from stickslip.problem.problem import Problem
-from stickslip.run.monitor import CHECKPOINT_EVERY, Keeper, Orders, as_solution
+from stickslip.run.monitor import run_to_end
+from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
 from stickslip.run.progress import Progress
-from stickslip.run.run_loop import drive
-from stickslip.run.session import RunInProgress
+from stickslip.run.session import Session
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.status import INTERRUPTED, STATUSES
+from stickslip.trajectory.event_stream import EventStream, Look
+from stickslip.trajectory.status import UNDER_WAY
 
 
 def simulate(
     problem: Problem,
     duration: float,
-    rtol: float = 1e-10,
+    rtol: float = RTOL,
     *,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
@@ -85,40 +84,46 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    check_run("simulate", duration, rtol, max_events, checkpoint_every)
-    check_creep_rtol(problem, creep_rtol, "simulate")
-    check_shortest_event(problem, shortest_event, "simulate")
-    run = RunInProgress.begin(problem, rtol, creep_rtol, shortest_event)
-    kept = None if checkpoint is None else Path(checkpoint)
-    return go_on(run, Orders(duration, max_events, progress, kept, checkpoint_every, max_pieces))
+    given = RunOptions(
+        duration,
+        rtol,
+        creep_rtol=creep_rtol,
+        shortest_event=shortest_event,
+        max_events=max_events,
+        progress=progress,
+        checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
+        checkpoint_every=checkpoint_every,
+        max_pieces=max_pieces,
+    )
+    options = given.check("simulate", problem)
+    return run_to_end(Session.begin(problem, options), WholeHistory())
 
 
-def check_run(who: str, duration: float, rtol: float, max_events: int | None, checkpoint_every: float) -> None:
-    """Refuse options with which nothing can be run. Raises InputError."""
-    if not 0 < as_float(duration) <= LARGEST:
-        raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {as_float(duration)!r}")
-    if not 1e-15 <= rtol <= 1e-2:
-        raise InputError(f"{who}: rtol must lie between 1e-15 and 1e-2, got {rtol!r}")
-    if max_events is not None and not (isinstance(max_events, int) and max_events > 0):
-        raise InputError(f"{who}: max_events must be a whole number above 0, got {max_events!r}")
-    if not checkpoint_every >= 0:
-        raise InputError(f"{who}: checkpoint_every must be a time in s, got {checkpoint_every!r}")
+@dataclass
+class WholeHistory:
+    """The sink (`monitor.Sink`) of a run that keeps its whole history and becomes a solution."""
 
+    who: str = "simulate"
+    wants_events: bool = False
 
-def check_started(run: RunInProgress, code: int, who: str) -> None:
-    """Refuse a run without a single piece. Raises KeyboardInterrupt if Ctrl-C stopped it, and InputError otherwise."""
-    if run.length > 0:
-        return
-    if code == INTERRUPTED:
-        raise KeyboardInterrupt
-    raise InputError(f"{who}: the run ends where it starts: {STATUSES[code].message}")
+    def record(self, run: Session, stream: EventStream, look: Look) -> None:
+        """Report the events: the history holds them."""
+        look.tell()
 
+    def make_room(self, run: Session, stream: EventStream) -> bool:
+        """Enlarge the store of the history, up to the largest number of pieces allowed."""
+        return run.grow(run.options.most_pieces)
 
-def go_on(run: RunInProgress, orders: Orders) -> Solution:
-    """Run to the end, and write the solution if a file for it was given. Raises InputError if the run ends where it starts."""
-    code = drive(run, orders.duration, Keeper.of(run, orders))
-    check_started(run, code, "simulate")
-    solution = as_solution(run, orders, code)
-    if orders.checkpoint is not None and orders.keeps(code):
-        solution.to_netcdf(orders.checkpoint)
-    return solution
+    def save(self, run: Session) -> None:
+        """Renew the checkpoint if a file for it was given."""
+        if run.options.checkpoint is not None:
+            from stickslip.io.netcdf import save_checkpoint  # imports xarray, which takes a while
+
+            save_checkpoint(run.solution(UNDER_WAY), run.options.checkpoint)
+
+    def finish(self, run: Session, stream: EventStream, code: int) -> Solution:
+        """Return the solution, and write it if a file for it was given."""
+        solution = run.solution(code)
+        if run.options.checkpoint is not None and run.options.keeps(code):
+            solution.to_netcdf(run.options.checkpoint)
+        return solution

@@ -13,6 +13,7 @@ import tomli_w
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.loading import LoadingHistory
@@ -145,7 +146,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
     """
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
-    path = Path(path_or_name)
+    path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
     file = _shown(path)
     return read_scenario(_read_file(path, file), file, name=path.stem, folder=path.parent)
 

@@ -28,8 +28,24 @@ CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 class Readings:
     """Values of a run at given times.
 
-    Times are in s since `history.epoch`. Methods take scalars or arrays and return arrays of the same shape. `side` ("left" or
-    "right") picks the limit at a shock. Times outside the run raise InputError.
+    Slip, slip rate, traction, load and state are methods of the same form.
+
+    Parameters
+    ----------
+    t : array_like
+        Times (s) since `history.epoch`, a scalar or an array of any shape.
+    side : {"right", "left"}
+        Limit to take at a shock.
+
+    Returns
+    -------
+    ndarray
+        Values of the shape of `t`.
+
+    Raises
+    ------
+    InputError
+        For times outside the run.
     """
 
     problem: Problem
@@ -48,92 +64,29 @@ class Readings:
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
 
     def slip(self, t: ArrayLike) -> Floats:
-        """Return the slip u.
-
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-
-        Returns
-        -------
-        ndarray
-            Slip (m), of the shape of `t`. It is absolute: it starts at the initial slip.
-        """
+        """Return the slip u (m) at times t. It is absolute: it starts at the initial slip."""
         at, shape = self._at(t, "right")
         return (self.problem.initial_slip + self.history.slipped(at)).reshape(shape)
 
     def slip_rate(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Return the slip rate v.
-
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-        side : {"right", "left"}
-            Limit to take at a shock.
-
-        Returns
-        -------
-        ndarray
-            Slip rate (m/s), of the shape of `t`.
-        """
+        """Return the slip rate v (m/s) at times t."""
         at, shape = self._at(t, side)
         return self.history.rate(at).reshape(shape)
 
     def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Return the friction traction tau on the contact.
-
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-        side : {"right", "left"}
-            Limit to take at a shock.
-
-        Returns
-        -------
-        ndarray
-            Traction (slab: Pa, block: N), of the shape of `t`; positive if it opposes forward slip.
-        """
+        """Return the friction traction tau on the contact (slab: Pa, block: N) at times t; positive if it opposes forward slip."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.friction(at)).reshape(shape)
 
     def load(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Return the load on the contact.
-
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-        side : {"right", "left"}
-            Limit to take at a shock.
-
-        Returns
-        -------
-        ndarray
-            Load, of the shape of `t`: beta of eqs (12)-(13) for the slab (Pa), the spring's force for the block (N).
-        """
+        """Return the load on the contact at times t: beta of eqs (12)-(13) of a slab (Pa), the spring's force of a block (N)."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.excess(at)).reshape(shape)
 
     def state(self, t: ArrayLike) -> Floats:
-        """Return the state variable of the friction law.
+        """Return the state variable of the friction law, in the law's own unit (`FrictionLaw.state`), at times t.
 
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-
-        Returns
-        -------
-        ndarray
-            State in the law's own unit (`FrictionLaw.state`), of the shape of `t`.
-
-        Raises
-        ------
-        InputError
-            If the law has no state variable.
+        Raises InputError if the law has no state variable.
         """
         if self.problem.friction.state is None:
             raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")

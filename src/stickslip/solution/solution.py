@@ -73,8 +73,11 @@ class Solution(Exports):
             Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`, in
             `stickslip.trajectory.tables`.
         """
-        rate = default_event_rate(self.problem) if event_rate is None else event_rate
-        return events_table(self.history, rate, energies)
+        return events_table(self.history, self._rate(event_rate), energies)
+
+    def _rate(self, event_rate: float | None) -> float:
+        """Return the slip rate (m/s) that defines an event: the given one, or the default of the problem."""
+        return default_event_rate(self.problem) if event_rate is None else event_rate
 
     def energetics(self, event_rate: float | None = None) -> pd.DataFrame:
         """Return the energy budget of the slip events as seismologists define it, one row per event.
@@ -94,7 +97,7 @@ class Solution(Exports):
         """
         from stickslip.observables.energy.energetics import energetics_table
 
-        return energetics_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+        return energetics_table(self.history, self._rate(event_rate))
 
     def pulses(self, event_rate: float | None = None) -> pd.DataFrame:
         """Return the pulses of the slip events, one row each.
@@ -113,7 +116,7 @@ class Solution(Exports):
         """
         from stickslip.observables.energy.pulses import pulses_table
 
-        return pulses_table(self.history, default_event_rate(self.problem) if event_rate is None else event_rate)
+        return pulses_table(self.history, self._rate(event_rate))
 
     @cached_property
     def creep(self) -> pd.DataFrame:

@@ -68,35 +68,13 @@ class Window(Exports):
         return shocks_table(self.history, *self.shown)
 
     def event_slip(self, t: ArrayLike) -> Floats:
-        """Return the slip since the event began.
-
-        Parameters
-        ----------
-        t : array_like
-            Local times, s.
-
-        Returns
-        -------
-        ndarray
-            Slip (m), of the shape of `t`. It has full precision however large the slip before the event is.
-        """
+        """Return the slip since the event began (m) at local times t, with full precision however large the slip before it is."""
         origin, _ = self._at(0.0, "right")
         at, shape = self._at(t, "right")
         return self.history.slipped_since(origin, at).reshape(shape)
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
-        """Return the energies as differences from the start of the event.
-
-        Parameters
-        ----------
-        t : array_like
-            Local times, s.
-
-        Returns
-        -------
-        xarray.Dataset
-            See `stickslip.observables.energy.balance.energy`.
-        """
+        """Return the energies at local times t (s), as differences from the start of the event: see `Solution.energy`."""
         from stickslip.observables.energy.balance import energy
 
         return energy(self, t, origin=0.0)

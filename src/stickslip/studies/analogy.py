@@ -24,7 +24,7 @@ from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.friction.slopes import slopes
 from stickslip.problem.parameters import Parameter, parameter
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import Problem, check_problem
 from stickslip.run.simulate import simulate
 from stickslip.trajectory.history import Floats
 
@@ -173,6 +173,7 @@ def analogy(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
+    check_problem("analogy", problem)
     names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
     if names[0].name == names[1].name:
         raise InputError(f"analogy: needs two different parameters, got {names[0].name} twice")

@@ -16,7 +16,8 @@ from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
-from stickslip.run.simulate import check_run, simulate
+from stickslip.run.options import RunOptions
+from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
@@ -325,7 +326,7 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    check_run("ensemble", duration, rtol, max_events, 0.0)
+    RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
     pushes = drawn(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")

@@ -15,7 +15,7 @@ from stickslip.bodies import ElasticSlab
 from stickslip.contact.equation import resistance
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction import LaggedFriction
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import Problem, check_problem
 
 FADES = 1e-6
 """Slip rate below which the direct effect fades, as a share of the smallest characteristic slip rate of the contact."""
@@ -83,6 +83,7 @@ def kind_of(by: str) -> Kind:
 
 def check_massless(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem. Raises InputError if inertia or a state of the law already makes the slip rate unique."""
+    check_problem("regularise", problem)
     if not isinstance(problem.body, ElasticSlab):
         raise InputError("regularise: a block has inertia, which makes its slip rate unique: there is nothing to regularise")
     if problem.body.contact_mass > 0.0:

@@ -1,0 +1,55 @@
+"""Check the arguments of public functions, and describe in a message what was given instead."""
+
+from __future__ import annotations
+
+import os
+from numbers import Integral, Real
+from pathlib import Path
+from typing import Any
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import as_float
+
+LONGEST = 60
+"""Largest number of characters of a value that a message repeats."""
+EXACT = 10**15
+"""Whole numbers below this are shown with all digits."""
+
+
+def is_number(value: Any) -> bool:
+    """Return True for a real number; True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def shown(value: Any) -> str:
+    """Return what was given, for a message: a number or a text itself, of anything else the name of its type."""
+    if isinstance(value, type):
+        return f"the class {value.__name__}, not an instance of it: call it"
+    if value is None or isinstance(value, bool):
+        return str(value)
+    if isinstance(value, Integral) and abs(int(value)) < EXACT:
+        return str(int(value))
+    if isinstance(value, Real):
+        return repr(as_float(value))
+    if isinstance(value, str | bytes | os.PathLike | list | tuple):
+        return ascii(value)[:LONGEST]
+    return type(value).__name__
+
+
+def check_type(where: str, value: Any, kind: Any, wanted: str) -> None:
+    """Raise InputError, beginning with `where`, unless a value is an instance of `kind`; `wanted` describes that."""
+    if not isinstance(value, kind):
+        raise InputError(f"{where} must be {wanted}, got {shown(value)}")
+
+
+def check_whole(where: str, value: Any) -> int:
+    """Return a whole number above 0. Raises InputError, beginning with `where`, for anything else."""
+    if isinstance(value, bool) or not (isinstance(value, Integral) and value > 0):
+        raise InputError(f"{where} must be a whole number above 0, got {shown(value)}")
+    return int(value)
+
+
+def as_path(where: str, value: Any, wanted: str = "the name of a file") -> Path:
+    """Return the path of a file. Raises InputError, beginning with `where`, if the value is neither a text nor a path."""
+    check_type(where, value, str | os.PathLike, wanted)
+    return Path(value)

@@ -1,0 +1,100 @@
+"""The options of a run, and the one place where they are checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from stickslip.engine_input.creep_limits import check_creep_rtol
+from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.foundation.arguments import check_whole, is_number, shown
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import LARGEST, as_float
+from stickslip.problem.problem import Problem, check_problem
+from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES
+
+if TYPE_CHECKING:
+    from stickslip.run.progress import Progress
+    from stickslip.scenarios import Scenario
+    from stickslip.solution.solution import Solution
+
+RTOL = 1e-10
+"""Default relative tolerance."""
+SMALLEST_RTOL, LARGEST_RTOL = 1e-15, 1e-2
+"""Bounds of the relative tolerance."""
+CHECKPOINT_EVERY = 30.0
+"""Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
+MAX_PIECES = 1_000_000
+"""Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """How long and how accurately to run a problem, and what to report and store on the way.
+
+    The fields are the arguments of `stickslip.simulate`, where they are described. In a catalogue `checkpoint` is not used. A
+    history of MAX_PIECES pieces is written to the file only if `max_pieces` was given.
+    """
+
+    duration: float
+    rtol: float = RTOL
+    creep_rtol: float | None = None
+    shortest_event: float | None = None
+    max_events: int | None = None
+    progress: Progress | None = None
+    checkpoint: Path | None = None
+    checkpoint_every: float = CHECKPOINT_EVERY
+    max_pieces: int | None = None
+
+    @classmethod
+    def of(cls, scenario: Scenario, **others: Any) -> Self:
+        """Return the options of a scenario, and `others` beside them."""
+        names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
+        return cls(**{name: getattr(scenario, name) for name in names}, **others)
+
+    @classmethod
+    def to_continue(cls, stopped: Solution, duration: float | None, max_events: int | None, **others: Any) -> Self:
+        """Return the options to continue a stopped run: its own where none are given, and `others` beside them.
+
+        A run that has already had its number of events continues without one.
+        """
+        had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
+        return cls(
+            stopped.duration if duration is None else duration,
+            stopped.rtol,
+            stopped.creep_rtol,
+            stopped.shortest_event,
+            max_events if max_events is not None or had_them else stopped.max_events,
+            **others,
+        )
+
+    def check(self, who: str, problem: Problem) -> Self:
+        """Return the options if this problem can be run with them. Raises InputError, which begins with `who`, otherwise."""
+        check_problem(who, problem)
+        if not (is_number(self.duration) and 0 < as_float(self.duration) <= LARGEST):
+            raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {shown(self.duration)}")
+        if not (is_number(self.rtol) and SMALLEST_RTOL <= self.rtol <= LARGEST_RTOL):
+            raise InputError(f"{who}: rtol must lie between {SMALLEST_RTOL:g} and {LARGEST_RTOL:g}, got {shown(self.rtol)}")
+        for name in ("creep_rtol", "shortest_event"):
+            value = getattr(self, name)
+            if value is not None and not is_number(value):
+                raise InputError(f"{who}: {name} must be a number, or None for automatic, got {shown(value)}")
+        check_creep_rtol(problem, self.creep_rtol, who)
+        check_shortest_event(problem, self.shortest_event, who)
+        if self.progress is not None and not callable(self.progress):
+            raise InputError(f"{who}: progress must be a function, got {shown(self.progress)}")
+        if not (is_number(self.checkpoint_every) and self.checkpoint_every >= 0):
+            raise InputError(f"{who}: checkpoint_every must be a time in s, got {shown(self.checkpoint_every)}")
+        limits = {name: getattr(self, name) for name in ("max_events", "max_pieces")}
+        whole = {name: None if value is None else check_whole(f"{who}: {name}", value) for name, value in limits.items()}
+        return replace(self, **whole)
+
+    @property
+    def most_pieces(self) -> int:
+        """Return the largest number of pieces that the history may have."""
+        return MAX_PIECES if self.max_pieces is None else self.max_pieces
+
+    def keeps(self, code: int) -> bool:
+        """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
+        return code != FULL_HISTORY or self.max_pieces is not None

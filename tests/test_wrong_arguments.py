@@ -1,0 +1,152 @@
+"""What is not of the right type is refused in one line that says where, what was given, and what is allowed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+PROBLEM = ss.Problem(SLAB, LAW, pull_rate=1.0, initial_excess=0.0)
+
+
+def refused(call: Callable[[], Any], message: str) -> None:
+    """Check that a call is refused with a message of one line that begins like this."""
+    with pytest.raises(ss.InputError) as caught:
+        call()
+    text = str(caught.value)
+    assert text.startswith(message), text
+    assert "\n" not in text
+    assert len(text) < 250
+
+
+NO_PROBLEM = [
+    ("x", "got 'x'; a scenario is read by load_scenario, and has a problem"),
+    (SLAB, "got ElasticSlab"),
+    (None, "got None"),
+    (ss.Problem, "got the class Problem, not an instance of it: call it"),
+    (ss.load_scenario("cycles-block"), "got Scenario; take its .problem"),
+]
+TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
+    "simulate": lambda problem: ss.simulate(problem, 1.0),
+    "catalogue": lambda problem: ss.catalogue(problem, 1.0),
+    "uniqueness": lambda problem: ss.uniqueness(problem),
+    "critical_value": lambda problem: ss.studies.critical_value(problem, "alpha"),
+    "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
+    "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
+    "analogy": lambda problem: ss.studies.analogy(problem, 1.0, None, None),  # type: ignore[arg-type] # refused before
+    "parameter": lambda problem: ss.parameters.parameter(problem, "alpha"),
+    "parameters": lambda problem: list(ss.parameters.parameters(problem)),
+}
+
+
+@pytest.mark.parametrize("name", TAKE_A_PROBLEM)
+@pytest.mark.parametrize(("given", "shown"), NO_PROBLEM, ids=lambda one: getattr(one, "__name__", None))
+def test_what_is_no_problem_is_refused(name: str, given: Any, shown: str) -> None:
+    refused(lambda: TAKE_A_PROBLEM[name](given), f"{name}: problem must be a Problem, {shown}")
+
+
+def test_a_duration_is_needed() -> None:
+    for run in (ss.simulate, ss.catalogue):
+        with pytest.raises(TypeError, match="missing 1 required positional argument: 'duration'"):
+            run(PROBLEM)  # type: ignore[call-arg]
+
+
+NOT_POSITIVE = [
+    ("10", "'10'"),
+    (None, "None"),
+    (math.nan, "nan"),
+    (True, "True"),
+    (float, "the class float"),
+    (0, "0"),
+    ([1.0], "[1.0]"),
+]
+"""What is no positive number, and how messages show it."""
+NO_NUMBER = [("0", "'0'"), (True, "True")]
+OR_AUTOMATIC = "must be a number, or None for automatic, got "
+OPTIONS: list[tuple[str, Any, str]] = [
+    *(("duration", given, f"must be a positive time in s up to 1e+50, got {shown}") for given, shown in NOT_POSITIVE),
+    *(("rtol", given, f"must lie between 1e-15 and 0.01, got {shown}") for given, shown in NOT_POSITIVE),
+    *(("creep_rtol", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
+    ("creep_rtol", math.nan, "must be 0 (no leaps over creep, every round trip is run) or at most 0.01, got nan"),
+    *(("shortest_event", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
+    ("shortest_event", math.nan, "must be 0 or at most 0.0571429 s (1 % of the two-way travel time), got nan s"),
+    *(("max_events", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, -1, 2.0, math.nan)),
+    *(("max_pieces", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, 1e6)),
+    *(("checkpoint_every", given, f"must be a time in s, got {given!r}") for given in ("3", True, None, -1, math.nan)),
+    ("progress", "loud", "must be a function, got 'loud'"),
+]
+
+
+@pytest.mark.parametrize("run", [ss.simulate, ss.catalogue])
+@pytest.mark.parametrize(("name", "given", "message"), OPTIONS)
+def test_options_of_a_run_are_checked(run: Callable[..., Any], name: str, given: Any, message: str) -> None:
+    options = {"duration": 1.0} | {name: given}
+    refused(lambda: run(PROBLEM, **options), f"{run.__name__}: {name} {message}")
+
+
+def test_whole_numbers_of_numpy_are_whole_numbers() -> None:
+    run = ss.simulate(PROBLEM, 1e3, max_events=np.int64(1))
+    assert run.status.name == "enough events"
+    assert type(run.max_events) is int
+
+
+def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
+    run = ss.simulate(PROBLEM, 1.0)
+    refused(lambda: ss.load_scenario(3), "load_scenario: path_or_name must be the name of a file or of a bundled scenario, got 3")  # type: ignore[arg-type]
+    refused(lambda: ss.load_scenario(PROBLEM), "load_scenario: path_or_name must be")  # type: ignore[arg-type]
+    refused(lambda: ss.open_solution(3), "open_solution: path must be the name of a file, got 3")  # type: ignore[arg-type]
+    refused(lambda: ss.resume(None), "resume: path must be the name of a file, got None")  # type: ignore[arg-type]
+    refused(lambda: run.to_netcdf(3), "to_netcdf: path must be the name of a file, got 3")  # type: ignore[arg-type]
+    refused(lambda: ss.simulate(PROBLEM, 1.0, checkpoint=3), "simulate: checkpoint must be the name of a file, got 3")  # type: ignore[arg-type]
+    refused(lambda: ss.catalogue(PROBLEM, 1.0, 3), "catalogue: path must be the name of a file, got 3")  # type: ignore[arg-type]
+    run.to_netcdf(tmp_path / "run.nc")
+    refused(lambda: ss.resume(tmp_path / "run.nc", "10"), "resume: duration must be a positive time in s up to 1e+50, got '10'")  # type: ignore[arg-type]
+    refused(lambda: ss.resume(tmp_path / "run.nc", checkpoint=3), "resume: checkpoint must be the name of a file, got 3")  # type: ignore[arg-type]
+
+
+NO_BODY = "Problem: body must be an ElasticSlab or a SpringBlock, got "
+NO_LAW = "Problem: friction must be a friction law, got "
+EXCESS = "Problem: initial_excess must be "
+PULL = "Problem: pull_rate must be a number in m/s or one of stickslip.loading"
+PROBLEMS: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
+    ((LAW, SLAB), {}, "Problem: body comes first, then friction: got HyperbolicRate as body and ElasticSlab as friction"),
+    ((ss.ElasticSlab, LAW), {}, NO_BODY + "the class ElasticSlab, not an instance of it: call it"),
+    ((None, LAW), {}, NO_BODY + "None"),
+    ((SLAB, ss.friction.Coulomb), {}, NO_LAW + "the class Coulomb, not an instance of it: call it"),
+    ((SLAB, "coulomb"), {}, NO_LAW + "'coulomb'"),
+    ((SLAB, LAW), {"initial_excess": "0"}, EXCESS + "a number in Pa or N, got '0'"),
+    ((SLAB, LAW), {"initial_excess": True}, EXCESS + "a number in Pa or N, got True"),
+    ((SLAB, LAW), {"initial_excess": math.nan}, EXCESS + "finite, got nan"),
+    ((SLAB, LAW), {"initial_excess": None}, "Problem: needs either initial_load or initial_excess"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": "fast"}, PULL),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": None}, PULL),
+    ((SLAB, LAW), {"initial_excess": 0.0, "initial_slip": None}, "Problem: initial_slip must be a number in m, got None"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "selection": 3}, "Problem: selection must be a name or a function (g, stable), got int"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "named", "message"), PROBLEMS)
+def test_problems_are_checked(arguments: tuple[Any, ...], named: dict[str, Any], message: str) -> None:
+    refused(lambda: ss.Problem(*arguments, **named), message)
+
+
+@pytest.mark.parametrize(("given", "shown"), [("1", "'1'"), (None, "None"), (True, "True"), (float, "<class 'float'>")])
+def test_numbers_of_bodies_and_laws_are_checked(given: Any, shown: str) -> None:
+    where = "Coulomb: static must be a number in (a pure number), got"
+    refused(lambda: ss.friction.Coulomb(static=given, dynamic=0.3), f"{where} {shown}")
+    where = "ElasticSlab: density must be a number in kg/m^3, got"
+    refused(lambda: ss.ElasticSlab(given, wave_speed=3500, thickness=1e4, normal_stress=1e8), f"{where} {shown}")
+
+
+def test_studies_of_one_run_are_checked() -> None:
+    refused(lambda: ss.studies.predictability("run.nc"), "predictability: needs a Solution, got 'run.nc'")  # type: ignore[arg-type]
+    refused(lambda: ss.studies.catalogue_statistics(PROBLEM), "catalogue_statistics: table must be a table of slip events")  # type: ignore[arg-type]
+    refused(lambda: ss.studies.compare("fig6-slab", 3), "load_scenario: path_or_name must be the name of a file or of a bundled")  # type: ignore[arg-type]
