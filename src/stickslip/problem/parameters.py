@@ -37,7 +37,7 @@ class Parameter:
 
     @property
     def unit(self) -> str:
-        """Return the SI unit of the value, "1" for a pure number."""
+        """The SI unit of the value, "1" for a pure number."""
         return self.declared.unit
 
     def put(self, value: float) -> Problem:

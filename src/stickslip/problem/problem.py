@@ -136,17 +136,17 @@ class Problem:
 
     @property
     def varies(self) -> bool:
-        """Return True if the pull rate or the far stress is a loading history; a constant far_stress_rate does not count."""
+        """True if the pull rate or the far stress is a loading history; a constant far_stress_rate does not count."""
         return len(self._varying) > 0
 
     @property
     def first_pull_rate(self) -> float:
-        """Return the pull rate V (m/s) at and before the start, which determines the initial velocity in a slab."""
+        """The pull rate V (m/s) at and before the start, which determines the initial velocity in a slab."""
         return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
 
     @property
     def loading_texts(self) -> dict[str, str]:
-        """Return short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
+        """Short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
         return {
             name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
             for name, value, unit in (
@@ -175,22 +175,22 @@ class Problem:
 
     @property
     def rule(self) -> str:
-        """Return the name of the selection rule."""
+        """The name of the selection rule."""
         return name_of(self.selection)
 
     @property
     def normal(self) -> float:
-        """Return S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
+        """S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
         return normal_load(self.body)
 
     @property
     def load_unit(self) -> str:
-        """Return the unit of loads and tractions: Pa for the slab, N for the block."""
+        """The unit of loads and tractions: Pa for the slab, N for the block."""
         return "Pa" if isinstance(self.body, ElasticSlab) else "N"
 
     @property
     def law_slip(self) -> float:
-        """Return the slip (m) that the friction law sees at the start.
+        """The slip (m) that the friction law sees at the start.
 
         It is the initial slip u0, or its magnitude if the law counts the path. It is 0 for a law that remembers slip only since
         the last arrest, because the start counts as an arrest.
@@ -201,12 +201,12 @@ class Problem:
 
     @property
     def state(self) -> float:
-        """Return the initial state in the form that the formulas use (`FrictionLaw.inner_state`); 0 for a law without one."""
+        """The initial state in the form that the formulas use (`FrictionLaw.inner_state`); 0 for a law without one."""
         return 0.0 if self.initial_state is None else self.friction.inner_state(self.initial_state)
 
     @cached_property
     def strength(self) -> float:
-        """Return the static strength S mu_static(u0) at the start (Pa or N).
+        """The static strength S mu_static(u0) at the start (Pa or N).
 
         It is the reference from which loads are stored as differences. For a law that sticks and has a state it is the strength
         in the healed state 0. For a law that never sticks it is 0.
@@ -215,7 +215,7 @@ class Problem:
 
     @cached_property
     def excess(self) -> float:
-        """Return the initial load minus the static strength (Pa or N), without rounding if it was given as `initial_excess`.
+        """The initial load minus the static strength (Pa or N), without rounding if it was given as `initial_excess`.
 
         An initial load within 4 ulp of the strength, forward or backward, counts as equal to it.
         """
@@ -230,7 +230,7 @@ class Problem:
 
     @property
     def load(self) -> float:
-        """Return the shear load on the contact at t = 0 (Pa or N)."""
+        """The shear load on the contact at t = 0 (Pa or N)."""
         return self.initial_load if self.initial_load is not None else self.strength + self.excess
 
 

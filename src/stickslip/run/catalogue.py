@@ -154,7 +154,7 @@ class Catalogue:
 
     @property
     def files(self) -> list[Path]:
-        """Return the paths of the table and the checkpoint, or an empty list if the rows are in memory."""
+        """The paths of the table and the checkpoint, or an empty list if the rows are in memory."""
         return [self.rows.path, checkpoint_of(self.rows)] if isinstance(self.rows, Rows) else []
 
     def read(self) -> pd.DataFrame:

@@ -92,7 +92,7 @@ class Monitor:
 
     @property
     def counts(self) -> bool:
-        """Return True if events must be counted."""
+        """True if events must be counted."""
         return self.reporter is not None or self.max_events is not None or self.sink.wants_events
 
     def look(self, run: Session, *, now: bool) -> int | None:

@@ -92,7 +92,7 @@ class RunOptions:
 
     @property
     def most_pieces(self) -> int:
-        """Return the largest number of pieces that the history may have."""
+        """The largest number of pieces that the history may have."""
         return MAX_PIECES if self.max_pieces is None else self.max_pieces
 
     def keeps(self, code: int) -> bool:

@@ -110,7 +110,7 @@ class PausedCatalogue:
 
     @property
     def rows(self) -> Rows:
-        """Return the rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
+        """The rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
         found = Rows(self.path.parent / self.about["catalogue"])
         for path in {found.path, found.growing}:
             if path.is_symlink():

@@ -44,7 +44,7 @@ class NowAndThen:
 
     @property
     def is_due(self) -> bool:
-        """Return True if the task is due."""
+        """True if the task is due."""
         return time.monotonic() >= self.due_at
 
     @contextmanager

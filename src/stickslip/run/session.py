@@ -90,28 +90,28 @@ class Session:
 
     @property
     def length(self) -> int:
-        """Return the number of pieces that the history has."""
+        """The number of pieces that the history has."""
         return int(self.count.length)
 
     @property
     def time(self) -> float:
-        """Return the simulated time, s."""
+        """The simulated time, s."""
         xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
         return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
-        """Return one line on automatic lumping, or an empty string if it has not begun."""
+        """One line on automatic lumping, or an empty string if it has not begun."""
         return lumping_note(self.count, self.par, self.options.shortest_event)
 
     @property
     def rounding_note(self) -> str:
-        """Return one line on steps in which rounding hides the law, or an empty string if there are none."""
+        """One line on steps in which rounding hides the law, or an empty string if there are none."""
         return rounding_note(int(self.count.rough), float(self.state.roughest))
 
     @property
     def creep(self) -> Floats:
-        """Return the leaps over creep so far, as in `History.creep`."""
+        """The leaps over creep so far, as in `History.creep`."""
         return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
 
     def solution(self, code: int) -> Solution:

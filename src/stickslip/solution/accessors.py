@@ -186,7 +186,7 @@ class Exports(Readings):
 
     @property
     def plot(self) -> Plots[Any]:
-        """Return the figures: `plot()` draws the default one, `plot.energy()`, `plot.field()` ... draw others."""
+        """The figures: `plot()` draws the default one, `plot.energy()`, `plot.field()` ... draw others."""
         return Plots(self)
 
     def to_dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:

@@ -53,7 +53,7 @@ class Readings:
 
     @property
     def shown(self) -> tuple[float, float]:
-        """Return the first and the last time (s) that figures show by default."""
+        """The first and the last time (s) that figures show by default."""
         return self.history.span
 
     def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
@@ -125,7 +125,7 @@ class Readings:
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Return the jumps of the slip rate as a table.
+        """The jumps of the slip rate as a table.
 
         Columns: time (s); cause (start, fold, echo, loading, healing); rate_before and rate_after (m/s); traction_before and
         traction_after (Pa); rule (the selection rule; empty if the slip rate is unique without one).
@@ -134,13 +134,13 @@ class Readings:
 
     @cached_property
     def breaks(self) -> Floats:
-        """Return the times (s) at which recorded pieces begin or end, including 0 and the end of the run."""
+        """The times (s) at which recorded pieces begin or end, including 0 and the end of the run."""
         history = self.history
         return np.append(np.union1d(history.start, history.end[history.rests]), history.span[1])
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """Return the names of the quantities to draw: slip, slip rate, traction, load, and the state of a law that has one."""
+        """The names of the quantities to draw: slip, slip rate, traction, load, and the state of a law that has one."""
         return CURVES if self.problem.friction.state is None else (*CURVES, "state")
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:

@@ -53,7 +53,7 @@ class Solution(Exports):
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """Return the slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
+        """The slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
         return self.catalogue()
 
     def catalogue(self, event_rate: float | None = None, *, energies: bool = False) -> pd.DataFrame:
@@ -120,7 +120,7 @@ class Solution(Exports):
 
     @cached_property
     def creep(self) -> pd.DataFrame:
-        """Return the leaps over creep (`simulate(..., creep_rtol=...)`), one row each.
+        """The leaps over creep (`simulate(..., creep_rtol=...)`), one row each.
 
         Columns: start and end (s); start_row (whole round trips before the leap, without rounding); round_trips in it; error
         (bound of the error of slip at the landing, m); time_error (s: that error divided by the slip rate there, which is how
@@ -135,7 +135,7 @@ class Solution(Exports):
 
     @property
     def creep_note(self) -> str:
-        """Return one line on the leaps over creep; empty if there are none."""
+        """One line on the leaps over creep; empty if there are none."""
         return creep_note(self.history.creep)
 
     def window(self, event: int | pd.Series = 0, before: float | None = None, after: float | None = None) -> Window:
@@ -204,7 +204,7 @@ class Solution(Exports):
 
     @property
     def plot(self) -> SolutionPlots:
-        """Return the figures: `plot()` draws the default one, `plot.energy()`, `plot.catalogue()` ... draw others."""
+        """The figures: `plot()` draws the default one, `plot.energy()`, `plot.catalogue()` ... draw others."""
         return SolutionPlots(self)
 
     def _lines(self) -> list[tuple[str, str]]:
@@ -229,14 +229,14 @@ class Solution(Exports):
 
     @cached_property
     def trapped_note(self) -> str:
-        """Return one line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
+        """One line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
         from stickslip.observables.energy.balance import trapped_note
 
         return trapped_note(self)
 
     @cached_property
     def horizon_note(self) -> str:
-        """Return one line on how long single events are predictable.
+        """One line on how long single events are predictable.
 
         It is empty if the growth of an error is not known for the problem (see `predictability`).
         """
@@ -246,7 +246,7 @@ class Solution(Exports):
 
     @cached_property
     def selection_note(self) -> str:
-        """Return one line that says whether the result depends on the selection rule."""
+        """One line that says whether the result depends on the selection rule."""
         from stickslip.observables.rule_influence import selection_note
 
         return selection_note(self)

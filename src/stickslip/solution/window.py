@@ -43,28 +43,28 @@ class Window(Exports):
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # read only
-        """Return the problem that was run."""
+        """The problem that was run."""
         return self.solution.problem
 
     @property
     def epoch(self) -> Epoch:
-        """Return the start of the event: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
+        """The start of the event: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
         return self.history.epoch
 
     @property
     def shown(self) -> tuple[float, float]:
-        """Return the first and the last local time (s) that figures show."""
+        """The first and the last local time (s) that figures show."""
         first, last = self.history.span
         return max(-self.before, first), min(self.after, last)
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """Return the names of the quantities to draw: those of a run, but with the slip since the event began."""
+        """The names of the quantities to draw: those of a run, but with the slip since the event began."""
         return ("event_slip", *super().curves[1:])
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Return the shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
+        """The shocks within the time that is shown: the table of `Solution.shocks`, in local time."""
         return shocks_table(self.history, *self.shown)
 
     def event_slip(self, t: ArrayLike) -> Floats:
