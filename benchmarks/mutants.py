@@ -58,7 +58,7 @@ NAMED = (
         "- 2.0 * run.par.impedance * rate[k]",
         "- run.par.impedance * rate[k]",
     ),
-    Named("a-row-too-early", "engine/loop.py", "run.whole[WHOLE * n + at.S_ROW] - 1", "run.whole[WHOLE * n + at.S_ROW]"),
+    Named("a-row-too-early", "engine/loop.py", "run.history[n].row - 1", "run.history[n].row"),
     Named(
         "wrong-side-of-a-fold",
         "engine/contact_step/fold.py",

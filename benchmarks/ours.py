@@ -12,7 +12,6 @@ from stickslip.engine.loop import advance
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of
-from stickslip.engine.waves.echo_queue import new_echoes
 from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.run.run_loop import split_time
@@ -28,7 +27,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
     count.to_the_end = 1  # nothing goes on behind it
-    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), new_echoes(CAPACITY)
+    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
     memory = memory_of(setup.par, state, count)
     lend(memory, setup, store, echoes)
     lend_implicit_steps(memory)

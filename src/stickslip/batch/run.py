@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
-from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
+from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
 from stickslip.batch.kernels.runs import AT_END, FREE, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
@@ -184,7 +184,8 @@ class _Batch:
             else:
                 n, work.stage[lane] = work.member[lane], FREE
                 codes[n] = run_alone(self.member(places[n]), LARGEST_CAPACITY, self.stop, out[n])
-        out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
+        reduced = Reduced.of(out)
+        reduced.irregular, reduced.branches = setups.irregular, setups.branches
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes
         for name, column in self.results.items():

@@ -186,5 +186,5 @@ class CreepLeaps:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
         while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, Stop.FULL):
             if code == Stop.FULL:
-                run.reserve(2 * len(run.store.whole))
+                run.reserve(2 * len(run.store.pieces))
         return code == Stop.PAUSED and run.count.row == row

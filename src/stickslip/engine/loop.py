@@ -40,7 +40,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_step, kernel
+from stickslip.engine.codegen.compiler import call_step, kernel
 from stickslip.engine.contact_step.append_segment import note_degree, xi_at
 from stickslip.engine.contact_step.contact_equation import needs_branches, rest_limit
 from stickslip.engine.contact_step.fold import leave_fold_piece, leave_moving_branch
@@ -48,9 +48,8 @@ from stickslip.engine.contact_step.radau_step import is_implicit
 from stickslip.engine.contact_step.stick import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.series.polynomial import fill, maximum, mean_of, total
-from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Integers, Stop
-from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import FOREVER, NOTHING, end_trip, next_echo, pays, plant
 from stickslip.engine.waves.varying_forcing import has_faded, rows_withstood, take_part
 
@@ -65,7 +64,7 @@ LARGEST_STORM = 10_000
 @kernel
 def rows_leaped(run: Run, n: int) -> int:
     """Return the number of round trips that were leaped over between that of piece n of the history and the present one."""
-    return run.counts.row - run.whole[WHOLE * n + at.S_ROW] - 1
+    return run.counts.row - run.history[n].row - 1
 
 
 @kernel
@@ -74,11 +73,12 @@ def first_piece(run: Run) -> bool:
     source = run.counts.source
     if source >= run.loads - 1:
         return False
-    run.state.theta_from, run.state.theta_to = run.first_theta[source], run.first_theta[source + 1]
+    first = run.first_load[source]
+    run.state.theta_from, run.state.theta_to = first.theta, run.first_load[source + 1].theta
     run.state.speed, run.state.bend = run.state.theta_to - run.state.theta_from, 0.0
     fill(run.load, 0.0)
-    run.load[0] = run.first_load[source]
-    run.load[1] = run.first_slope[source] * run.state.speed
+    run.load[0] = first.load
+    run.load[1] = first.slope * run.state.speed
     if run.counts.is_block == 1 and run.counts.row > 0:
         run.load[0] = run.state.load_now + rows_leaped(run, run.counts.length - 1) * run.par.ramp
     run.counts.echo_of = -1
@@ -89,7 +89,7 @@ def first_piece(run: Run) -> bool:
     run.counts.arriving = Cause.NO_CAUSE
     if run.counts.row == 0 and source == 0:
         run.counts.arriving = Cause.START
-    elif run.counts.row == 0 and run.first_jump[source] == 1.0:
+    elif run.counts.row == 0 and first.jump == 1.0:
         run.counts.arriving = Cause.LOADING
     return True
 
@@ -106,15 +106,11 @@ def echo_piece(run: Run) -> bool:
         if source >= run.counts.previous_to:
             return False
     run.counts.echo_of = source
-    par = run.par
-    real, rate, load = (
-        ahead(run.real, REAL * source),
-        ahead(run.stored_rate, TERMS * source),
-        ahead(run.stored_load, TERMS * source),
-    )
-    run.state.theta_from, run.state.theta_to = real[at.S_THETA_FROM], real[at.S_THETA_TO]
-    run.state.speed, run.state.bend = real[at.S_SPEED], real[at.S_BEND]
-    run.state.amplified = real[at.S_AMPLIFIED] * real[at.S_GAIN]
+    par, left = run.par, run.history[source]
+    rate, load = left.rate, left.load
+    run.state.theta_from, run.state.theta_to = left.theta_from, left.theta_to
+    run.state.speed, run.state.bend = left.speed, left.bend
+    run.state.amplified = left.amplified * left.gain
     for k in range(TERMS):
         run.load[k] = par.reflection * (2.0 * par.impedance * rate[k] - load[k])
     time = run.counts.row * par.row_time + run.state.theta_from
@@ -122,7 +118,7 @@ def echo_piece(run: Run) -> bool:
     run.load[1] += par.inflow_rate * run.state.speed
     run.load[2] += par.inflow_rate * run.state.bend
     # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
-    jumps = run.whole[WHOLE * source + at.S_JUMP] == 1 or run.counts.lumped == 1
+    jumps = left.jump == 1 or run.counts.lumped == 1
     run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
     if run.counts.lumped == 1:
         lump(run)
@@ -175,7 +171,7 @@ def rows_at_rest(run: Run, limit: float) -> int:
         return 0
     top, bottom = -math.inf, -math.inf
     for n in range(run.counts.row_from, run.counts.length):
-        load = ahead(run.stored_load, TERMS * n)
+        load = run.history[n].load
         top = max(top, maximum(load))
         bottom = max(bottom, maximum(load, -1.0))
     if ramp == 0.0:
@@ -230,7 +226,7 @@ def end_row(run: Run, limit: float, last_row: int) -> bool:
         run.counts.stuck_rows = 0
     run.counts.is_locked = 1 if locked else 0
     if run.counts.is_block == 1:
-        run.state.load_now = total(ahead(run.stored_load, TERMS * (run.counts.length - 1)))
+        run.state.load_now = total(run.history[run.counts.length - 1].load)
     run.counts.row += 1 + leap
     if run.counts.moved == 1:
         run.counts.creep_in -= 1
@@ -262,8 +258,7 @@ def take_back(run: Run, length: int, xi: float) -> None:
     Slip and law slip become those at its start. The run ends there.
     """
     if run.counts.length > length:
-        real = ahead(run.real, REAL * length)
-        run.state.slip_now, run.state.law_slip = real[at.S_SLIP], real[at.S_LAW_SLIP]
+        run.state.slip_now, run.state.law_slip = run.history[length].slip, run.history[length].law_slip
         run.counts.length = length
     run.state.xi = xi
 

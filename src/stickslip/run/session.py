@@ -14,10 +14,9 @@ import numpy as np
 from stickslip.creep.stepper import CreepLeaps
 from stickslip.engine.contact_step.on_demand import lend_implicit_steps
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Integers, Setup, Stop, Store
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
-from stickslip.engine.waves.echo_queue import Echoes, new_echoes, replant
-from stickslip.engine.waves.echo_queue import resized as with_room
+from stickslip.engine.waves.echo_queue import replant
 from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET, RuleFollower, renewed
 from stickslip.engine_input.creep_limits import creep_tolerance
@@ -45,7 +44,8 @@ class RunInProgress:
     memory: Integers
     """State, scratch space and addresses of the tables, in one array: see `workspace.Run`."""
     store: Store
-    echoes: Echoes
+    echoes: Integers
+    """Table of `EchoNode`, with a row for each piece of history."""
     follower: RuleFollower
     leaps: CreepLeaps | None = None
     creep_rtol: float | None = None
@@ -74,7 +74,7 @@ class RunInProgress:
         leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
             leaps.begin(count)
-        echoes = new_echoes(FIRST_CAPACITY)
+        echoes = EchoNode.table(FIRST_CAPACITY)
         return cls(problem, rtol, setup, memory, store, echoes, follower, leaps, creep_rtol, shortest_event)
 
     @classmethod
@@ -91,7 +91,7 @@ class RunInProgress:
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        run.store, run.echoes = at.resized(history.store, checkpoint.length, capacity), new_echoes(capacity)
+        run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run
 
@@ -152,13 +152,14 @@ class RunInProgress:
         """Make room for more pieces. Returns False if the history already has `max_pieces` of them."""
         if self.length >= max_pieces:
             return False
-        self.reserve(min(4 * len(self.store.whole), max_pieces + SPARE))
+        self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
         return True
 
     def reserve(self, pieces: int) -> None:
         """Make sure that there is room for at least the given number of pieces."""
-        if pieces > len(self.store.whole):
-            self.store, self.echoes = at.resized(self.store, self.length, pieces), with_room(self.echoes, self.length, pieces)
+        if pieces > len(self.store.pieces):
+            self.store = at.resized_store(self.store, self.length, pieces)
+            self.echoes = at.resized(self.echoes, self.length, pieces)
             self._lend()
 
     def forget_before(self, piece: int) -> int:
@@ -199,7 +200,7 @@ class RunInProgress:
         """Return a checkpoint of the present state."""
         stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
-        return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
+        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, crossings, engine())
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint from which this run, or a longer one, would continue."""
@@ -209,7 +210,7 @@ class RunInProgress:
         """Go back to a checkpoint, on the same history or a copy of it."""
         self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
         self.scratch[:] = checkpoint.scratch
-        self.setup = self.setup._replace(branch=checkpoint.branch.copy())
+        self.setup = self.setup._replace(branches=checkpoint.branch.copy())
         self.par.stick_to = checkpoint.stick_to[0]
         self.follower.times.clear()
         self.follower.times.extend(checkpoint.crossings.tolist())

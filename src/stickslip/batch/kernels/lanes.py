@@ -109,7 +109,7 @@ def take_length(run: Run, own: Floats) -> None:
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
         usable = usable_length(run.jet, run.par.tolerance)
-    if run.guard_count[run.counts.piece] > 0:
+    if run.law[run.counts.piece].guard_count > 0:
         for k in range(TERMS):
             run.reach[k] = own[WIDTH * (REACH + k)]
     own[WIDTH * LAST_STEP] = run.state.last_step
@@ -141,8 +141,7 @@ def take_out(run: Run, own: Floats) -> int:
     and ALONE is returned.
     """
     length, target = own[WIDTH * LENGTH], run.state.target
-    rate = ahead(run.stored_rate, TERMS * run.counts.length)
-    load = ahead(run.stored_load, TERMS * run.counts.length)
+    rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
     for k in range(TERMS):
         rate[k] = own[WIDTH * (RATE + k)]
     if run.counts.degree == 1:

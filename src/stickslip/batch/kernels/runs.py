@@ -14,13 +14,12 @@ from numba import carray
 
 from stickslip.batch.kernels.engine import advance_at
 from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
-from stickslip.batch.kernels.pieces import Pieces
 from stickslip.batch.kernels.points import find_events
-from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, fold_whole
+from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reduced_at
 from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.state.layout import Floats, Integers, Stop, Store
+from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
 from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.trajectory.slip_events import NOT_YET
@@ -109,9 +108,6 @@ def point_at(lane: Lane, setups: Setups, n: int) -> None:
         lane.table[k] = lane.base[k] + n * lane.stride[k]
     run = borrow(lane.table)
     run.branches = setups.branches[n]
-    run.rate_to, run.keep_from = ahead(run.rate_from, run.branches), ahead(run.rate_from, 2 * run.branches)
-    run.keep_to, run.excess_from = ahead(run.rate_from, 3 * run.branches), ahead(run.rate_from, 4 * run.branches)
-    run.excess_to = ahead(run.rate_from, 5 * run.branches)
 
 
 @kernel
@@ -169,7 +165,7 @@ def bring_on(
         if lane.stage[0] == AT_END:
             run = borrow(lane.table)
             codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
-            member = ahead(numbers, n * len(COLUMNS))
+            member = reduced_at(ahead(numbers, n * len(COLUMNS)))
             if run.counts.length > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
                 return False
             lane.stage[0] = FREE
@@ -188,11 +184,11 @@ def bring_on(
 
 
 @kernel
-def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Floats) -> bool:
+def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Reduced) -> bool:
     """Reduce the run of member n, which has ended with a code, to the numbers in `out`; return False if points lack room."""
-    pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts.length
+    pieces, length = run.history, run.counts.length
     if wants_events:
-        events = find_events(store_of(work, lane), length, setups.threshold[n], work.points)
+        events = find_events(work.store.pieces[lane], length, setups.threshold[n], work.points)
         if events == NOT_YET:
             return False
         fold_events(run, pieces, work.points, events, out)
@@ -200,10 +196,3 @@ def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wa
             fold_first(run, pieces, length, work.points, setups.excess[n], setups.stiffness[n], out)
     fold_whole(pieces, length, run.par.row_time, setups.duration[n], code, out)
     return True
-
-
-@kernel
-def store_of(work: Workspace, lane: int) -> Store:
-    """Return the tables of the history in a lane."""
-    store = work.store
-    return Store(store.whole[lane], store.real[lane], store.load[lane], store.rate[lane], store.state[lane])

@@ -58,6 +58,10 @@ class Pointer:
         """Return the pointer to the number n places after this one."""
         return type(self)(self.memory, self.first + int(n))
 
+    def as_floats(self) -> Self:
+        """Return the pointer to the same place, whose 64 bits are read and written as a float."""
+        return type(self)(self.memory.view(np.float64), self.first)
+
 
 _lent: list[weakref.ref[Array]] = []
 """Weak references to the arrays whose addresses have been handed to the engine."""

@@ -11,11 +11,6 @@ from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact_step.append_segment import record
 from stickslip.engine.contact_step.contact_equation import TIE, load_ahead, onset_of_slip
 from stickslip.engine.contact_step.radau_stages import (
-    BY_RATE,
-    BY_STATE,
-    CHANGE_BY_RATE,
-    CHANGE_BY_STATE,
-    MU,
     contact_at,
     defects,
     larger,
@@ -70,7 +65,7 @@ def is_implicit(run: Run) -> bool:
 def settling_rate(run: Run) -> float:
     """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    return (run.par.impedance + run.par.normal * run.value[1]) / run.par.inertia
+    return (run.par.impedance + run.par.normal * run.value.by_rate) / run.par.inertia
 
 
 @kernel
@@ -90,12 +85,12 @@ def growth_rate(run: Run) -> float:
     """
     par, value = run.par, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
-    resistance = par.impedance + par.normal * value[BY_RATE]
+    resistance = par.impedance + par.normal * value.by_rate
     if run.counts.has_inertia == 0:
-        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par.normal * value[BY_STATE] / resistance, 0.0)
+        return max(value.change_by_state - value.change_by_rate * par.normal * value.by_state / resistance, 0.0)
     mass = par.inertia
-    trace = value[CHANGE_BY_STATE] - resistance / mass
-    product = (par.normal * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
+    trace = value.change_by_state - resistance / mass
+    product = (par.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
@@ -116,7 +111,7 @@ def start_of_step(run: Run) -> float:
         run.stage_rate[0] = 0.0
     elif run.counts.edge != 0:
         contact_at(run, state.law_slip, 0.0, state.state_now)
-        force = run.seen[0] - run.par.normal * run.value[MU]
+        force = run.seen[0] - run.par.normal * run.value.mu
         if run.counts.has_inertia == 0:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
@@ -134,12 +129,12 @@ def strength_ahead(run: Run) -> float:
     largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
     for i in range(POINTS):
         contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
-        run.stage_rate[i] = par.normal * run.value[MU]
+        run.stage_rate[i] = par.normal * run.value.mu
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
         contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
-        missed = larger(missed, abs(par.normal * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+        missed = larger(missed, abs(par.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
     return max(missed, last_terms(run.jet)) / (par.tolerance * largest)
 
@@ -157,9 +152,9 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
-    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h
+    resistance = par.impedance + par.normal * value.by_rate + par.inertia / h
     noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
-    state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
+    state_noise = noise * abs(value.change_by_rate / value.change_by_state) if value.change_by_state != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
     error = max(last_terms(run.jet), missed) / (par.tolerance * fastest + noise + lost)
@@ -312,7 +307,7 @@ def keep_state(run: Run, length: float) -> None:
     """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
     if run.counts.has_state == 0:
         return
-    kept = ahead(run.stored_state, at.TERMS * run.counts.length)
+    kept = ahead(run.history_state, at.TERMS * run.counts.length)
     for k in range(at.TERMS):
         kept[k] = run.state_jet[k]
     if length != 1.0:
@@ -327,7 +322,7 @@ def note_negative_friction(run: Run) -> None:
     if not math.isfinite(rate):
         rate, state = run.stage_rate[0], run.stage_state[0]
     contact_at(run, run.state.law_slip, abs(rate), state)
-    if run.par.reference + run.par.normal * run.value[MU] < -NEGLIGIBLE * run.par.normal:
+    if run.par.reference + run.par.normal * run.value.mu < -NEGLIGIBLE * run.par.normal:
         run.counts.breach = Stop.NEGATIVE_FRICTION
 
 
@@ -335,7 +330,7 @@ def note_negative_friction(run: Run) -> None:
 def forgotten(run: Run) -> bool:
     """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    if abs(run.value[BY_STATE] * run.state.state_now) > FORGOTTEN:
+    if abs(run.value.by_state * run.state.state_now) > FORGOTTEN:
         return False
     run.state.state_now = 0.0
     return True
@@ -353,8 +348,8 @@ def stick_with_state(run: Run, xi_to: float) -> None:
         note_negative_friction(run)
         return
     reached = width >= xi_to - run.state.xi
-    load = ahead(run.stored_load, at.TERMS * run.counts.length)
-    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
+    load = run.history[run.counts.length].load
+    fill(run.history[run.counts.length].rate, 0.0)
     copy(run.local, load, at.TERMS)
     onset, direction = onset_of_slip(run, load, run.jet)
     end = min(onset, 1.0)

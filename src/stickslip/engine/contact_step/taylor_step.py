@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_jet, kernel
+from stickslip.engine.codegen.compiler import call_jet, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact_step.append_segment import note_jump, record
 from stickslip.engine.contact_step.contact_equation import (
@@ -94,7 +94,7 @@ def series(run: Run, guess: float) -> None:
     """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `guess` (in xi)."""
     prepare_series(run, guess)
     piece = run.counts.piece
-    call_jet(run.jet_at[piece], constants_of(run, piece), numbers_of(run.k), run.seen, run.jet)
+    call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.seen, run.jet)
 
 
 @kernel
@@ -115,7 +115,7 @@ def prepare_series(run: Run, guess: float) -> None:
     k.chi = direction if par.counts_net == 1.0 else 1.0
     k.speed = (run.state.speed + 2.0 * run.state.bend * run.state.xi) * guess
     k.bend = 2.0 * run.state.bend * guess * guess
-    k.slip, k.offset = run.state.law_slip + run.slip_shift[piece], run.offset[piece]
+    k.slip, k.offset = run.state.law_slip + run.law[piece].slip_shift, run.law[piece].offset
     k.free = 0.0 if edge else 1.0
     k.force = par.normal * par.static_excess if edge else 0.0
 
@@ -149,7 +149,7 @@ def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
     next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
     if next_knot < 0 or next_knot >= run.pieces - 1:
         return NONE
-    distance = abs(run.knot[next_knot] - run.state.law_slip)
+    distance = abs(run.law[next_knot].knot - run.state.law_slip)
     if distance >= abs(grown):
         return NONE
     low, high = 0.0, end
@@ -275,7 +275,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
         settle_piece(run, abs(run.state.rate_now))
     guess = collocate(run, xi_to - run.state.xi)
     note_shock(run)
-    rate = ahead(run.stored_rate, at.TERMS * run.counts.length)
+    rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
     reached = guess >= xi_to - run.state.xi
     if run.counts.has_state == 0 and run.k.speed * settling_rate(run) < NOT_STIFF:
@@ -294,7 +294,7 @@ def take_step(run: Run, target: float, guess: float, leaves: bool) -> None:
     `target` and `guess` are in xi; `leaves` says that the branch ends at the target.
     """
     length, reached = choose_length(run, target, guess, usable_length(run.jet, run.par.tolerance))
-    rate, load = ahead(run.stored_rate, at.TERMS * run.counts.length), ahead(run.stored_load, at.TERMS * run.counts.length)
+    rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
     begin_verification(run)
     stretch(run, length, rate)
     event, turn, end = first_event(run, rate, length)
@@ -330,7 +330,7 @@ def is_straight(run: Run) -> bool:
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Return the length (in guesses) of an explicit step that may be `length` guesses long, and whether it reaches the target."""
     limit = (target - run.state.xi) / guess
-    if run.guard_count[run.counts.piece] > 0 and not is_straight(run):
+    if run.law[run.counts.piece].guard_count > 0 and not is_straight(run):
         seen = within_guards(run, min(length, limit))
         length = seen if seen < min(length, limit) else length
     # Store the error-controlled length: truncation at an event must not shrink the next guess.
@@ -382,7 +382,7 @@ def end_step(run: Run, target: float, event: int, turn: int, leaves: bool, reach
 @kernel
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
-    multiply(run.local, run.powers, ahead(run.stored_load, at.TERMS * run.counts.length))
+    multiply(run.local, run.powers, run.history[run.counts.length].load)
     move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
@@ -394,7 +394,7 @@ def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, t
     `rate_end` the rate at its end (m/s), both unsigned.
     """
     direction = run.counts.mode
-    load = ahead(run.stored_load, at.TERMS * run.counts.length)
+    load = run.history[run.counts.length].load
     speed, bend = run.k.speed * length, run.k.bend * length * length
     if run.counts.is_block == 1:
         unload_spring(direction * run.par.stiffness * speed, direction * run.par.stiffness * bend, rate, load)
@@ -418,8 +418,8 @@ def note_gain(run: Run, rate: Floats) -> None:
     inertia or a state decide too, because the fate of an error is then not a matter of its phase alone.
     """
     if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
-        friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)), run.value)
-        run.state.gain = abs(2.0 * run.par.impedance / (run.par.impedance + run.value[1]) - 1.0)
+        friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
+        run.state.gain = abs(2.0 * run.par.impedance / (run.par.impedance + run.friction.by_rate) - 1.0)
     else:
         run.state.gain = math.nan
 
