@@ -61,13 +61,13 @@ NAMED = (
     Named("a-row-too-early", "engine/loop.py", "run.history[n].row - 1", "run.history[n].row"),
     Named(
         "wrong-side-of-a-fold",
-        "engine/contact_step/fold.py",
+        "engine/folds/fold.py",
         "if abs(level - run.keep_to[branch]) < abs(",
         "if abs(level - run.keep_to[branch]) > abs(",
     ),
     Named(
         "fold-outrun-backwards",
-        "engine/contact_step/fold.py",
+        "engine/folds/fold.py",
         "return direction * run.part[1] > run.value[2]",
         "return direction * run.part[1] < run.value[2]",
     ),

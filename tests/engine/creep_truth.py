@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.engine.loop import advance
+from stickslip.engine.loop import run_until
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, state_in
@@ -44,7 +44,7 @@ def by_engine(problem: ss.Problem) -> float:
     lend(memory, setup, store, trees)
     count.pause_at = 1
     while True:
-        code = advance(memory, 10**9, 1.0, 10**9)
+        code = run_until(memory, 10**9, 1.0, 10**9)
         if code == Stop.FULL:
             store = at.resized_store(store, int(count.length), 2 * len(store.pieces))
             trees = at.EchoNode.table(len(store.pieces))

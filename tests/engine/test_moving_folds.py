@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import stickslip as ss
 from stickslip.contact.branches import search_grid
 from stickslip.contact.equation import resistance as contact_resistance
-from stickslip.engine.moving_folds.branch_scan import branches_at, new_scan
+from stickslip.engine.folds.branch_scan import branches_at, new_scan
 from stickslip.engine.state.layout import Branch
 from stickslip.engine_input import branch_table
 from stickslip.run.session import RunInProgress

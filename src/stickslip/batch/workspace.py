@@ -12,10 +12,10 @@ from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import FREE
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.contact_step.on_demand import lend_implicit_steps
+from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
-from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, Params, Setup, Store
+from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, counts_in, lend, params_in
 from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
@@ -118,8 +118,8 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
-        if Counts(setups.counts).has_inertia == 1:
-            lend_implicit_steps(work.table[n])
+        params_in(work.table[n]).numbers[:], counts_in(work.table[n]).numbers[:] = setups.par[0], setups.counts
+        lend_parts_of_batch(work.table[n])
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
     for name in ("law", "constants", "branch_table", "first_load"):

@@ -20,28 +20,25 @@ from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import scan_rates
 from stickslip.contact.equation import resistance
 from stickslip.contact.rules.selection import selection_table
-from stickslip.engine.loop import advance
-from stickslip.engine.moving_folds.branch_scan import Scan, new_scan
-from stickslip.engine.moving_folds.moving_levels import (
+from stickslip.engine.folds.branch_scan import Scan, new_scan
+from stickslip.engine.folds.moving_levels import (
     COMPILED_RULES,
     EXACT,
     FIRST_PLACE,
     LAST_PLACE,
-    MAXWELL,
     NEXT,
     ROUNDING,
     SHORTEST,
     crossing_in,
     set_maxwell_levels,
 )
+from stickslip.engine.loop import run_until
 from stickslip.engine.series.polynomial import RECIPROCAL
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, Params, Setup, State, Stop, Store
+from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, Params, Rule, Setup, State, Stop, Store
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 
-OUT_OF_BUDGET = -1
-"""Code that `advance` returns when it has made the number of steps that it was asked for."""
 AT_A_TIME = 100
 """Number of steps that are checked before the caller gets a chance to report progress."""
 STORM_OF, STORM_IN = 30, 1e-6
@@ -105,7 +102,7 @@ def branch_of(branches: Branch, rate: float) -> int:
 
 def has_levels_to_set(problem: Problem) -> bool:
     """Return True if compiled code sets the levels of the rule: those of Maxwell's rule take tenths of a second in Python."""
-    return COMPILED_RULES.get(problem.rule) == MAXWELL
+    return COMPILED_RULES.get(problem.rule) == Rule.MAXWELL
 
 
 def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
@@ -197,24 +194,24 @@ class RuleFollower:
     times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
 
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
-        """Advance the run as `loop.advance` does, under the selection rule.
+        """Advance the run as `loop.run_until` does, under the selection rule.
 
         Returns Stop.STORM if the contact goes to and fro across a level that slip moves against the load.
         """
         if not folds_move(self.problem) or self.problem.rule == "perfect-delay":
-            return advance(table, *last, budget)
+            return run_until(table, *last, budget)
         for _ in range(min(budget, AT_A_TIME)):
             state, count = self.state.copy(), self.count.copy()
-            code = advance(table, *last, 1)
+            code = run_until(table, *last, 1)
             place = self._crossing(table, store, int(count.length))
             if place is not None:
                 state.exit = state.xi + place * (self.state.xi - state.xi)
                 self.state.numbers[:], self.count.numbers[:] = state.numbers, count.numbers
                 if self._storms():
                     return Stop.STORM
-            elif code != OUT_OF_BUDGET:
+            elif code != Stop.NONE:
                 return code
-        return OUT_OF_BUDGET
+        return Stop.NONE
 
     def set_levels(self, table: Integers) -> None:
         """Set the levels that `renewed` has left out, in the setup that the engine uses."""

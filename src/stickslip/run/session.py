@@ -12,13 +12,13 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine.contact_step.on_demand import lend_implicit_steps
+from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
-from stickslip.engine.waves.echo_queue import replant
+from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.automatic import lumping_note
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET, RuleFollower, renewed
+from stickslip.engine_input.branch_table import RuleFollower, renewed
 from stickslip.engine_input.creep_limits import creep_tolerance
 from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
@@ -127,26 +127,26 @@ class RunInProgress:
     def advance(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
 
-        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as OUT_OF_BUDGET.
+        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as Stop.NONE.
         """
         if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
             self.leaps.at_row_end(self, last)
-            return OUT_OF_BUDGET
+            return Stop.NONE
         code = self.step(last, budget)
-        return OUT_OF_BUDGET if code == Stop.PAUSED else code
+        return Stop.NONE if code == Stop.PAUSED else code
 
     def step(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
         code = self.follower.advance(self.memory, self.store, last, budget)
-        if code == Stop.NEED_IMPLICIT_STEPS:
-            lend_implicit_steps(self.memory)
-            return OUT_OF_BUDGET
+        if code == Stop.NEED_PART:
+            lend_part(self.memory)
+            return Stop.NONE
         if code != Stop.NEED_BRANCHES:
             return code
         self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
         self._lend()
         self.follower.set_levels(self.memory)
-        return OUT_OF_BUDGET
+        return Stop.NONE
 
     def grow(self, max_pieces: int) -> bool:
         """Make room for more pieces. Returns False if the history already has `max_pieces` of them."""
@@ -177,11 +177,11 @@ class RunInProgress:
         self.count.echo_of = place[self.count.echo_of]
         for name in ("length", "row_from", "previous_from", "previous_to", "new_from"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
-        self._replant()
+        self._rebuild_queue()
         self.forgotten += dropped
         return dropped
 
-    def _replant(self) -> None:
+    def _rebuild_queue(self) -> None:
         """Build the trees of echoes again from the history."""
         self._lend()
         if self.count.sparse == 0:
@@ -189,7 +189,7 @@ class RunInProgress:
         first = int(self.count.new_from)
         pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
         past, ahead = low < self.state.new_since, low >= self.state.taken_to
-        replant(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
+        rebuild_queue(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
         """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
@@ -216,4 +216,4 @@ class RunInProgress:
         self.follower.times.extend(checkpoint.crossings.tolist())
         if self.count.to_the_end == 0:
             self.before_end = None
-        self._replant()
+        self._rebuild_queue()

@@ -14,15 +14,13 @@ from typing import Any
 import numpy as np
 
 from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_of, floats, kernel
-from stickslip.engine.state.layout import Branch, Floats, Integers
+from stickslip.engine.state.layout import Branch, Floats, Integers, Rule
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
 """Largest number of branches for which tables have room."""
 RULES = ("perfect-delay", "minimal", "maximal")
-"""Selection rules that a batch supports."""
-PERFECT_DELAY, MINIMAL, MAXIMAL = range(3)
-"""Numbers of these rules in compiled code."""
+"""Selection rules that a batch supports, in the order of the codes of `Rule`."""
 
 POINTS_PER_DECADE = 64
 """Density of the geometric part of the search grid, as in `contact.branches`."""
@@ -178,11 +176,11 @@ def keep_levels(rule: int, count: int, branches: Branch) -> float:
     stick_to = 0.0
     for n in range(count):
         low, high = branches[n].excess_from, branches[n].excess_to
-        if rule == MINIMAL:
+        if rule == Rule.MINIMAL:
             low = max(low, 0.0)
             for other in range(n):
                 low = max(low, branches[other].excess_to)
-        elif rule == MAXIMAL:
+        elif rule == Rule.MAXIMAL:
             stick_to = min(stick_to, low)
             for other in range(n + 1, count):
                 high = min(high, branches[other].excess_from)

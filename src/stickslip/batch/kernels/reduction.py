@@ -13,7 +13,7 @@ from typing import Any
 from stickslip.batch.kernels.points import Points
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import Record, numbers_of, record_at
-from stickslip.engine.contact_step.contact_equation import friction_of
+from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in

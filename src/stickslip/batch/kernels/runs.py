@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from numba import carray
 
-from stickslip.batch.kernels.engine import advance_at
+from stickslip.batch.kernels.engine import run_until_at
 from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reduced_at
@@ -21,7 +21,6 @@ from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.trajectory.slip_events import NOT_YET
 from stickslip.trajectory.status import BAD_PARAMETERS
 
@@ -129,17 +128,17 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 @kernel
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
-    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
+    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
     if lane.waits[0] == ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
+        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
         counts.waits = 1
-    while code == OUT_OF_BUDGET and stop[0] == 0:
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
+    while code == Stop.NONE and stop[0] == 0:
+        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
     lane.waits[0] = FRESH if code == Stop.SLIPS else AWAY
-    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != OUT_OF_BUDGET:
+    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
         lane.stage[0] = AT_END
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import call_value, inlined, kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import moment, multiply, powers_of, total
 from stickslip.engine.state.layout import TERMS, Floats, Stop
 from stickslip.engine.state.workspace import Run

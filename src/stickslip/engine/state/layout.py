@@ -107,7 +107,7 @@ class Counts(Record):
     echo_of: int  # piece of the history whose echo the present piece of load is; -1 if it is none
     stuck_rows: int  # number of round trips at rest that were closed since the last slip; -1 after a break of the loading
     stalled: int  # number of steps in a row that took no time, with changes of branch
-    at_fold: int  # APPROACHING, DEPARTING or PASSING on a side piece next to a fold (`contact_step.fold`), else 0
+    at_fold: int  # kind of side piece next to a fold, as a code of `NearFold`
     is_block: int  # 1 for a block, 0 for a slab
     has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
     is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
@@ -192,9 +192,73 @@ class Cause(IntEnum):
     """Rest gives the contact its initial strength back."""
 
 
+class NearFold(IntEnum):
+    """Say on what kind of side piece next to a fold the contact slips (`folds.fold`)."""
+
+    NONE = 0
+    APPROACHING = 1
+    """The side piece ends at the fold."""
+    DEPARTING = 2
+    """It starts at the fold."""
+    PASSING = 3
+    """The branch has ended before the side piece did; its rest is walked like any other piece."""
+
+
+class StepEvent(IntEnum):
+    """Say what ends a step of slip early. Of two events at one place the lower one counts."""
+
+    NONE = 0
+    ARREST = 1
+    """The slip rate reaches zero."""
+    KNOT = 2
+    """Slip, or the slip rate, reaches a knot of the law."""
+
+
+class Rule(IntEnum):
+    """Name the selection rules whose levels are calculated in compiled code."""
+
+    PERFECT_DELAY = 0
+    MINIMAL = 1
+    MAXIMAL = 2
+    MAXWELL = 3
+
+
+class Part(IntEnum):
+    """Name the parts of the engine that are compiled apart (`on_demand`)."""
+
+    NONE = 0
+    IMPLICIT_STEPS = 1
+    LOADING_HISTORY = 2
+    ECHO_QUEUE = 3
+    MOVING_FOLDS = 4
+
+
+class Task(IntEnum):
+    """Name what a part of the engine that is compiled apart (`on_demand`) is asked to do."""
+
+    SLIP = 0
+    """Take an implicit step of slip."""
+    STICK = 1
+    """Take a step at rest in which the state of the law evolves."""
+    TAKE_LOADING = 2
+    """Cut the piece of load where the loading breaks, and add the loading to it."""
+    COUNT_ROWS_AT_REST = 3
+    """Find for how many rows a contact at rest withstands the loading."""
+    NEXT_ECHO = 4
+    """Find the next echo that must be met."""
+    END_TRIP = 5
+    """Close a round trip in which only such echoes are met."""
+    BUILD_QUEUE = 6
+    """Build the queue of echoes."""
+    LOOK_FOR_FOLD = 7
+    """Find the way to the moving fold into which the series runs."""
+
+
 class Stop(IntEnum):
     """Say why the engine returned."""
 
+    NONE = -1
+    """Nothing: it has made as many passes of the loop as it was asked for."""
     FULL = 0
     """The history has no room for another step."""
     FINISHED = 1
@@ -214,8 +278,8 @@ class Stop(IntEnum):
     """An explicit step of slip is left to the caller, who takes it beside those of other runs."""
     OFF_THE_LAW = 9
     """No step from here obeys the contact equation."""
-    NEED_IMPLICIT_STEPS = 11
-    """The caller must lend the implicit steps, which are compiled when they are first needed."""
+    NEED_PART = 11
+    """The caller must lend the part of the engine that `Run.missing` names (`on_demand.lend_part`)."""
     NEGATIVE_FRICTION = 10
     """Friction is below zero from here on."""
 

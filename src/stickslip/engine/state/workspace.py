@@ -54,8 +54,11 @@ class Run(Record):
     loads: int  # number of pieces of the first load, plus 1
     segments: int  # number of segments of the loading
     capacity: int  # number of pieces for which the history has room
-    implicit_step: int  # addresses of the steps that are compiled apart (see `on_demand`), 0 until the run needs them
-    implicit_rest: int
+    implicit_steps: int  # addresses of the parts that are compiled apart (see `on_demand`), 0 until the run needs them
+    loading_history: int
+    echo_queue: int
+    moving_folds: int
+    missing: int  # the part for which the engine has asked, as a code of `Part`
 
     par: Params = inside(Params)
     state: State = inside(State)

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import bits_of, kernel
-from stickslip.engine.contact_step.contact_equation import rest_limit
+from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, EchoNode, HistoryPiece, Integers
@@ -261,7 +261,7 @@ def end_trip(run: Run) -> None:
 
 
 @kernel
-def pays(run: Run) -> bool:
+def worth_building(run: Run) -> bool:
     """Return True if only echoes that break should be met from here on.
 
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
@@ -278,7 +278,7 @@ def pays(run: Run) -> bool:
 
 
 @kernel
-def plant(run: Run) -> None:
+def build_queue(run: Run) -> None:
     """Meet only echoes that break from here on, and build the tree from the pieces of the round trip just past."""
     run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
     run.counts.behind = run.counts.ahead = NOTHING
@@ -286,7 +286,7 @@ def plant(run: Run) -> None:
 
 
 @kernel
-def replant(table: Integers, pieces: Integers, past: int) -> None:
+def rebuild_queue(table: Integers, pieces: Integers, past: int) -> None:
     """Build the trees of a resumed run from the given pieces, which are in order of phase.
 
     The first `past` of them are those that the present round trip has passed. `table` comes from `workspace.lend`.

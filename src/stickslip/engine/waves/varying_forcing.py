@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact_step.append_segment import xi_at
+from stickslip.engine.contact.append_segment import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause
@@ -22,8 +22,8 @@ TIE = 1e-13
 
 
 @kernel
-def take_part(run: Run) -> None:
-    """Take the part up to the next break of the loading from the present source of load, and add the loading to it."""
+def take_loading(run: Run) -> None:
+    """Cut the piece of load at the next break of the loading, and add the loading to it."""
     begin = run.state.taken
     if begin > 0.0:
         run.counts.arriving = Cause.NO_CAUSE

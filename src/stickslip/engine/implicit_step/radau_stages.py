@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import ahead, call_guards, call_state_value, call_value, floats_in, kernel
-from stickslip.engine.codegen.records import numbers_of, record_at
-from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.codegen.compiler import ahead, call_guards, floats_in, kernel
+from stickslip.engine.codegen.records import record_at
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.series.polynomial import evaluate
 from stickslip.engine.series.radau_nodes import (
     DERIVATIVE,
@@ -45,25 +46,6 @@ NEWTON_ROUNDING = 1e-15
 """Rounding of the load (1), relative to its terms, as Newton's method meets it."""
 between_at: Any = record_at(Between)
 """Function for compiled code that returns the `Between` at a pointer."""
-
-
-@kernel
-def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
-    """Write friction and the change of the state, with their derivatives, into run.value.
-
-    `mu` is then the difference from the static friction coefficient at the start of the run.
-    """
-    piece = run.counts.piece
-    constants, slip = constants_of(run, piece), law_slip + run.law[piece].slip_shift
-    if run.counts.has_state == 1:
-        call_state_value(run.law[piece].state_at, constants, slip, rate, state, numbers_of(run.value))
-    else:
-        below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
-        call_value(run.law[piece].value_at, constants, slip, rate - below, numbers_of(run.value))
-        run.value.mu += run.value.by_rate * below
-        run.value.by_state = run.value.change = 0.0
-        run.value.change_by_rate = run.value.change_by_slip = run.value.change_by_state = 0.0
-    run.value.mu += run.law[piece].offset
 
 
 @kernel

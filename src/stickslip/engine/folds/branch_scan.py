@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact_step.contact_equation import friction_of, piece_at
+from stickslip.engine.contact.contact_equation import friction_of, piece_at
 from stickslip.engine.state.layout import Branch, Floats, Integers
 from stickslip.engine.state.workspace import Run, borrow, branches_in
 

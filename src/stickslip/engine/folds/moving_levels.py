@@ -11,8 +11,8 @@ import math
 from typing import NamedTuple
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact_step.contact_equation import towards
-from stickslip.engine.moving_folds.branch_scan import (
+from stickslip.engine.contact.contact_equation import towards
+from stickslip.engine.folds.branch_scan import (
     Contact,
     Scan,
     area,
@@ -23,11 +23,10 @@ from stickslip.engine.moving_folds.branch_scan import (
     strength_at,
 )
 from stickslip.engine.series.polynomial import NONE, evaluate, integral
-from stickslip.engine.state.layout import Integers
+from stickslip.engine.state.layout import Integers, Rule
 from stickslip.engine.state.workspace import Run, borrow
 
-MINIMAL, MAXIMAL, MAXWELL = range(3)
-COMPILED_RULES = {"minimal": MINIMAL, "maximal": MAXIMAL, "maxwell": MAXWELL}
+COMPILED_RULES = {"minimal": Rule.MINIMAL, "maximal": Rule.MAXIMAL, "maxwell": Rule.MAXWELL}
 """Rules whose levels are calculated here. Perfect delay needs none; others are followed by their tables (`branch_table.Step`)."""
 
 ROUNDING = 1e-11
@@ -46,7 +45,7 @@ class View(NamedTuple):
 
     run: Run
     step: int  # its piece of the history
-    rule: int  # MINIMAL, MAXIMAL or MAXWELL
+    rule: int  # a code of `Rule`, not PERFECT_DELAY
     scan: Scan
 
 
@@ -107,15 +106,15 @@ def room_in(view: View, xi: float) -> float:
         return math.inf  # the branch is narrower than the spacing of the scan
     own = branch_near(contact, rate, branches)
     low, high = contact.found[own].excess_from, contact.found[own].excess_to
-    if view.rule == MINIMAL:
+    if view.rule == Rule.MINIMAL:
         low = max(low, strength_at(contact))
         for k in range(own):
             low = max(low, contact.found[k].excess_to)
-    elif view.rule == MAXIMAL:
+    elif view.rule == Rule.MAXIMAL:
         for k in range(own + 1, branches):
             high = min(high, contact.found[k].excess_from)
     room = min(load - low, high - load)
-    return min(room, maxwell_room(contact, rate, load, branches)) if view.rule == MAXWELL else room
+    return min(room, maxwell_room(contact, rate, load, branches)) if view.rule == Rule.MAXWELL else room
 
 
 @kernel

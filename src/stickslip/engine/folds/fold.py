@@ -6,18 +6,15 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact_step.append_segment import note_degree, theta_at
-from stickslip.engine.contact_step.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
+from stickslip.engine.contact.append_segment import note_degree, theta_at
+from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats
+from stickslip.engine.state.layout import Cause, Floats, NearFold
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference, so that no side piece is made."""
-APPROACHING, DEPARTING, PASSING = 1, 2, 3
-"""Codes of `counts.at_fold`: on a side piece that ends at a fold, on one that starts at a fold, and on the rest of one whose
-branch has ended before."""
 AT_THE_FOLD = 1e-14
 """Share of the reference strength (1) within which the load counts as being at the fold: the rounding of a load."""
 ROUNDING = 1e-14
@@ -101,7 +98,7 @@ def approach_fold(run: Run, width: float) -> float:
     run.state.speed, run.state.bend, run.state.xi = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
     run.state.exit = math.nan
     note_degree(run)
-    run.counts.at_fold = APPROACHING
+    run.counts.at_fold = NearFold.APPROACHING
     return 0.0
 
 
@@ -110,7 +107,7 @@ def starts_at_fold(run: Run) -> bool:
     """Return True if slip has just begun on a branch exactly at its fold, as it does by the maximal rule under a smooth load."""
     branch = run.counts.branch
     fold = run.branch_table[branch].rate_from
-    if run.counts.edge == 0 or run.counts.at_fold != 0 or fold == 0.0 or is_knot(run, fold):
+    if run.counts.edge == 0 or run.counts.at_fold != NearFold.NONE or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state.xi), run.counts.mode)
     return level - run.branch_table[branch].excess_from <= AT_THE_FOLD * run.par.reference
@@ -145,7 +142,7 @@ def depart_from_fold(run: Run, left: float) -> None:
     run.state.theta_from, run.state.theta_to = theta_from, theta_to
     run.state.speed, run.state.bend, run.state.xi = 0.0, theta_to - theta_from, 0.0
     note_degree(run)
-    run.counts.at_fold = DEPARTING
+    run.counts.at_fold = NearFold.DEPARTING
 
 
 @kernel
@@ -192,7 +189,7 @@ def leave_fold_piece(run: Run) -> None:
     """Take up the piece of load again after the side piece next to a fold, and end the branch if the fold is reached."""
     state = run.state
     way = theta_at(run, 1.0) - theta_at(run, 0.0)
-    if run.counts.at_fold == DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
+    if run.counts.at_fold == NearFold.DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
         state.last_step = way
     rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
     last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # The side piece was too short to take time.
@@ -200,8 +197,8 @@ def leave_fold_piece(run: Run) -> None:
     state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
     note_degree(run)
-    reached = run.counts.at_fold == APPROACHING
-    run.counts.at_fold = 0
+    reached = run.counts.at_fold == NearFold.APPROACHING
+    run.counts.at_fold = NearFold.NONE
     if reached:
         reach_end(run)
 
@@ -225,5 +222,5 @@ def leave_moving_branch(run: Run) -> None:
     run.counts.leaving = 0
     run.counts.stalled += 1
     end_branch(run)
-    if run.counts.at_fold != 0:
-        run.counts.at_fold = PASSING
+    if run.counts.at_fold != NearFold.NONE:
+        run.counts.at_fold = NearFold.PASSING

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.contact_step.append_segment import record
-from stickslip.engine.contact_step.contact_equation import TIE, load_ahead, onset_of_slip
-from stickslip.engine.contact_step.radau_stages import (
-    contact_at,
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.contact_equation import TIE, load_ahead
+from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.implicit_step.radau_stages import (
     defects,
     larger,
     rate_at_load,
@@ -20,20 +19,14 @@ from stickslip.engine.contact_step.radau_stages import (
     solve_stages,
     stays_in_sight,
 )
-from stickslip.engine.contact_step.verify import NEGLIGIBLE
-from stickslip.engine.series.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
+from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Stop
+from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
 """Largest number of attempts at an implicit step (1), each shorter, before it fails."""
-STIFF, NOT_STIFF = 4.0, 1.5
-"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
-step so short; and in an implicit step, below which the contact is no longer stiff."""
-CHECKED = 16
-"""Number of explicit steps (1) between two checks of the stiffness."""
 LONGEST_GROWTH = 4.0
 """Largest growth (as an exponent, 1) of a disturbance over a step."""
 ROUNDING = 1e-15
@@ -51,29 +44,6 @@ LAW_ROUNDING = 5.0
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
 """Error, in units of the tolerance (1), above which a step is never kept; and number of attempts in a row, each shorter, whose
 error has not halved, after which the error is taken to be rounding."""
-FORGOTTEN = 1e-18
-"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
-
-
-@kernel
-def is_implicit(run: Run) -> bool:
-    """Return True if the next step must be implicit."""
-    return run.counts.has_state == 1 or run.counts.stiff == 1
-
-
-@kernel
-def settling_rate(run: Run) -> float:
-    """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
-    contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    return (run.par.impedance + run.par.normal * run.value.by_rate) / run.par.inertia
-
-
-@kernel
-def judge_stiffness(run: Run) -> None:
-    """Check now and then, after an explicit step of a contact with mass, whether the contact has become stiff."""
-    run.counts.steps += 1
-    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
-        run.counts.stiff = 1
 
 
 @kernel
@@ -300,64 +270,3 @@ def begin_step(run: Run, guess: float) -> float:
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
     run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
     return start_of_step(run)
-
-
-@kernel
-def keep_state(run: Run, length: float) -> None:
-    """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
-    if run.counts.has_state == 0:
-        return
-    kept = ahead(run.history_state, at.TERMS * run.counts.length)
-    for k in range(at.TERMS):
-        kept[k] = run.state_jet[k]
-    if length != 1.0:
-        scale(kept, length)
-    run.state.state_now = total(kept)
-
-
-@kernel
-def note_negative_friction(run: Run) -> None:
-    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
-    rate, state = run.state.rate_now, run.state.state_now
-    if not math.isfinite(rate):
-        rate, state = run.stage_rate[0], run.stage_state[0]
-    contact_at(run, run.state.law_slip, abs(rate), state)
-    if run.par.reference + run.par.normal * run.value.mu < -NEGLIGIBLE * run.par.normal:
-        run.counts.breach = Stop.NEGATIVE_FRICTION
-
-
-@kernel
-def forgotten(run: Run) -> bool:
-    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
-    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    if abs(run.value.by_state * run.state.state_now) > FORGOTTEN:
-        return False
-    run.state.state_now = 0.0
-    return True
-
-
-@kernel
-def stick_with_state(run: Run, xi_to: float) -> None:
-    """Take one step at rest in which the state, and with it the strength, changes.
-
-    The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
-    """
-    width = collocate(run, xi_to - run.state.xi)
-    if not math.isfinite(run.jet[0]):
-        run.state.rate_now = math.nan
-        note_negative_friction(run)
-        return
-    reached = width >= xi_to - run.state.xi
-    load = run.history[run.counts.length].load
-    fill(run.history[run.counts.length].rate, 0.0)
-    copy(run.local, load, at.TERMS)
-    onset, direction = onset_of_slip(run, load, run.jet)
-    end = min(onset, 1.0)
-    if end < 1.0:
-        scale(load, end)
-    keep_state(run, end)
-    record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
-    note_negative_friction(run)
-    run.counts.edge, run.counts.moved = 0, 1
-    if onset < NONE:
-        run.counts.mode, run.counts.edge = direction, direction

@@ -6,7 +6,7 @@ import math
 
 from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact_step.append_segment import note_jump
+from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming
