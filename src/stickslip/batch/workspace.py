@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lanes import AWAY, CONSTANTS
+from stickslip.batch.kernels.lanes import CONSTANTS, Waits
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
-from stickslip.batch.kernels.runs import FREE
+from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
@@ -32,7 +32,7 @@ class Workspace(NamedTuple):
     points: Points
     numbers: Floats  # room for the block of `kernels.lanes`
     block: Integers  # the address of this block
-    stage: Integers  # (WIDTH,): FREE, UNDER_WAY or AT_END, see `kernels.runs`
+    stage: Integers  # (WIDTH,): codes of `kernels.runs.Stage`
     waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
     member: Integers  # (WIDTH,): index of the member in the lane
     code: Integers  # (WIDTH,): what the engine returned last for this member
@@ -46,7 +46,7 @@ class Workspace(NamedTuple):
 
     def ready_for(self, constants: int) -> Workspace:
         """Free all lanes and begin with the first member of a group, whose law has the given number of constants."""
-        self.stage[:], self.waits[:], self.upcoming[:] = FREE, AWAY, 0
+        self.stage[:], self.waits[:], self.upcoming[:] = Stage.FREE, Waits.NONE, 0
         numbers, block = new_block(constants)
         return self._replace(numbers=numbers, block=block)
 

@@ -8,12 +8,13 @@ arrays are counted only when a run has ended.
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from numba import carray
 
 from stickslip.batch.kernels.engine import run_until_at
-from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
+from stickslip.batch.kernels.lanes import Waits, step_side_by_side
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reduced_at
 from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
@@ -30,8 +31,17 @@ if TYPE_CHECKING:
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
-FREE, UNDER_WAY, AT_END = range(3)
-"""State of a lane: it has no member; its member is running; the run of its member has ended and is not reduced yet."""
+
+
+class Stage(IntEnum):
+    """Say what a lane is doing."""
+
+    FREE = 0
+    """It has no member."""
+    UNDER_WAY = 1
+    """Its member is running."""
+    AT_END = 2
+    """The run of its member has ended and is not reduced yet."""
 
 
 class Lane(NamedTuple):
@@ -40,7 +50,7 @@ class Lane(NamedTuple):
     table: Integers  # memory of the run in the lane, see `engine.state.workspace.Run`
     base: Integers  # addresses of the tables that the first member uses in this lane
     stride: Integers  # bytes from a member's tables to those of the next; 0 for a table that all share
-    stage: Integers  # FREE, UNDER_WAY or AT_END
+    stage: Integers  # Stage.FREE, Stage.UNDER_WAY or Stage.AT_END
     waits: Integers  # what the lane waits for, see `kernels.lanes`
     member: Integers  # index of the member in the lane
     code: Integers  # what the engine returned last
@@ -67,17 +77,19 @@ def run_group(
     first = first_lane(work, base, stride)
     jets, block = integers(setups.jets.ctypes.data), work.block[0]
     for n in range(WIDTH):
-        if nth(first, n).stage[0] != FREE:
+        if nth(first, n).stage[0] != Stage.FREE:
             point_at(nth(first, n), setups, first.member[n])
     while True:
         waiting = 0
         for n in range(WIDTH):
-            if first.waits[n] == AWAY or first.waits[n] == ALONE:
-                if first.stage[n] == UNDER_WAY:
+            if first.waits[n] == Waits.NONE or first.waits[n] == Waits.ALONE:
+                if first.stage[n] == Stage.UNDER_WAY:
                     advance_member(engine, nth(first, n), setups, stop)
-                if first.waits[n] == AWAY and not bring_on(engine, nth(first, n), setups, work, n, wants_events, stop, codes, out):
+                if first.waits[n] == Waits.NONE and not bring_on(
+                    engine, nth(first, n), setups, work, n, wants_events, stop, codes, out
+                ):
                     return n
-            waiting += first.waits[n] != AWAY
+            waiting += first.waits[n] != Waits.NONE
         if waiting == 0 or stop[0] != 0:
             return WIDTH
         step_side_by_side(first.table, first.waits, jets, block)
@@ -129,7 +141,7 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
-    if lane.waits[0] == ALONE:
+    if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
         code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
@@ -137,9 +149,9 @@ def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> N
     while code == Stop.NONE and stop[0] == 0:
         code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
-    lane.waits[0] = FRESH if code == Stop.SLIPS else AWAY
+    lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
-        lane.stage[0] = AT_END
+        lane.stage[0] = Stage.AT_END
 
 
 @kernel
@@ -159,15 +171,15 @@ def bring_on(
     place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
     """
     numbers = floats(out.ctypes.data)
-    while lane.stage[0] != UNDER_WAY:
+    while lane.stage[0] != Stage.UNDER_WAY:
         n = lane.member[0]
-        if lane.stage[0] == AT_END:
+        if lane.stage[0] == Stage.AT_END:
             run = borrow(lane.table)
             codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
             member = reduced_at(ahead(numbers, n * len(COLUMNS)))
             if run.counts.length > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
                 return False
-            lane.stage[0] = FREE
+            lane.stage[0] = Stage.FREE
         n = work.upcoming[0]
         if n == len(codes):
             return True
@@ -177,7 +189,7 @@ def bring_on(
             continue
         point_at(lane, setups, n)
         start_member(borrow(lane.table), setups, n)
-        lane.stage[0], lane.member[0] = UNDER_WAY, n
+        lane.stage[0], lane.member[0] = Stage.UNDER_WAY, n
         advance_member(engine, lane, setups, stop)
     return lane.code[0] == Stop.SLIPS
 
