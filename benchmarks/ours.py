@@ -30,7 +30,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
     store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
     memory = memory_of(setup.par, state, count)
     lend(memory, setup, store, echoes)
-    lend_parts_of_batch(memory)
+    lend_parts_of_batch(memory, setup.par, count)
     first, count = memory.copy(), counts_in(memory)
     last_row, last_theta = split_time(case.duration, row_time(case.problem))
 

@@ -14,8 +14,8 @@ from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import EchoNode, Floats, Integers, Params, Setup, Store
-from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, counts_in, lend, params_in
+from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
+from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
 from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
@@ -112,14 +112,12 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
 
     The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
     """
-    own = Setup(
-        Params(setups.par[0]), setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING
-    )
+    par = Params(setups.par[0])
+    own = Setup(par, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
-        params_in(work.table[n]).numbers[:], counts_in(work.table[n]).numbers[:] = setups.par[0], setups.counts
-        lend_parts_of_batch(work.table[n])
+        lend_parts_of_batch(work.table[n], par, Counts(setups.counts))
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
     for name in ("law", "constants", "branch_table", "first_load"):

@@ -12,7 +12,7 @@ from stickslip.engine.codegen.compiler import PART, address_of, kernel
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.folds.fold_ahead import way_to_fold
 from stickslip.engine.implicit_step.implicit_step import slip_implicitly, stick_with_state
-from stickslip.engine.state.layout import Integers, Part, Task
+from stickslip.engine.state.layout import Counts, Integers, Params, Part, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
 from stickslip.engine.waves.varying_forcing import rows_withstood, take_loading
@@ -80,10 +80,9 @@ def lend_part(memory: Integers, part: Part | None = None) -> None:
     setattr(run, part.name.lower(), part_at(PARTS[part]))
 
 
-def lend_parts_of_batch(memory: Integers) -> None:
-    """Write the addresses of those parts that a member of a batch may ever need; batches have no loading histories."""
-    run = Run(memory)
-    if run.counts.has_inertia == 1:
+def lend_parts_of_batch(memory: Integers, par: Params, counts: Counts) -> None:
+    """Write the addresses of those parts that members with such numbers may ever need; batches have no loading histories."""
+    if counts.has_inertia == 1:
         lend_part(memory, Part.IMPLICIT_STEPS)
-    if run.par.reflection == -1.0:
+    if par.reflection == -1.0 and counts.is_block == 0:
         lend_part(memory, Part.ECHO_QUEUE)
