@@ -65,7 +65,7 @@ def test_what_a_workspace_held_before_does_not_matter(name: str, monkeypatch: py
     def soiled() -> Workspace:
         work = new_workspace()
         for table in (work.table, work.store.pieces, work.echoes):
-            table[:] = math.nan
+            table.view(np.float64)[:] = math.nan
         return work
 
     monkeypatch.setattr(run, "new_workspace", soiled)
