@@ -13,7 +13,6 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of
 from stickslip.engine.waves.echo_queue import new_echoes
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.run.run_loop import split_time
 from stickslip.solution.solution import Solution
@@ -33,7 +32,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
     lend(memory, setup, store, echoes)
     lend_implicit_steps(memory)
     first, count = memory.copy(), counts_in(memory)
-    last_row, last_theta = split_time(case.duration, row_time(case.problem))
+    last_row, last_theta = split_time(case.duration, case.problem.round_trip_time)
 
     lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner
 
@@ -47,7 +46,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
         history = History(
             at.trimmed(store, int(count.length)),
             case.problem,
-            row_time(case.problem),
+            case.problem.round_trip_time,
             float(setup.par.ramp),
             case.duration,
         )
