@@ -12,7 +12,6 @@ from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.run.run_loop import split_time
 from stickslip.solution.solution import Solution
@@ -32,7 +31,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
     lend(memory, setup, store, echoes)
     lend_parts_of_batch(memory, setup.par, count)
     first, count = memory.copy(), counts_in(memory)
-    last_row, last_theta = split_time(case.duration, row_time(case.problem))
+    last_row, last_theta = split_time(case.duration, case.problem.round_trip_time)
 
     lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner
 
@@ -46,7 +45,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
         history = History(
             at.trimmed(store, int(count.length)),
             case.problem,
-            row_time(case.problem),
+            case.problem.round_trip_time,
             float(setup.par.ramp),
             case.duration,
         )

@@ -15,7 +15,7 @@ from stickslip.batch.vectorised_problem import groups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine_input.automatic import wait_for_creep
-from stickslip.engine_input.prepare import prepare, row_time
+from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
 from stickslip.run.run_loop import split_time
 from stickslip.scenarios.scenario import Scenario
@@ -59,7 +59,7 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
             assert np.array_equal(setups.counts, count.numbers)
             assert setups.threshold[n] == default_event_rate(problem)
             assert setups.excess[n] == problem.excess
-            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, row_time(problem))
+            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, problem.round_trip_time)
             found = branch_of(setups, n)
             assert found[:2] == pytest.approx(setup.branches.T[:2], rel=1e-14, abs=0)
             assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)

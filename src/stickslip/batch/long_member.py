@@ -13,7 +13,6 @@ import numpy as np
 
 from stickslip.batch.kernels.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Store
-from stickslip.engine_input.forcing import row_time
 from stickslip.run.run_loop import drive
 from stickslip.run.session import RunInProgress
 from stickslip.scenarios.scenario import Scenario
@@ -123,5 +122,5 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
     watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
-    fold_end(run.store.pieces, run.length, row_time(problem), scenario.duration, code, out)
+    fold_end(run.store.pieces, run.length, problem.round_trip_time, scenario.duration, code, out)
     return code

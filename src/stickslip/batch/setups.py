@@ -10,11 +10,10 @@ import numpy as np
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.kernels.constants import fill_constants
 from stickslip.batch.vectorised_problem import Values, many, member, shared
-from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
-from stickslip.engine_input.branch_table import has_inertia, is_algebraic, table_of_branches
+from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
 from stickslip.engine_input.prepare import first_load, functions_of, parameters_of, set_tolerance, start_of, together
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
@@ -174,7 +173,7 @@ def steps_alone(problem: Problem) -> bool:
 
 def jets_of(formula: CompiledFormula, problem: Problem) -> int:
     """Return the address of the compiled series of a formula for lanes."""
-    return formula.address("motion_jets" if has_inertia(problem) else "rate_jets")
+    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
@@ -190,10 +189,9 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     if group.counts.is_algebraic == 0:
         return table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
-    assert isinstance(body, ElasticSlab)
-    own = problem.normal * law.variation / body.impedance
+    own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
-    impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
+    impedance, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
     kind = one.friction.bends_one_way, RULES.index(one.rule)
     table, irregular, stick_to = Branch.table(count, 1 if kind[0] else MOST_BRANCHES), np.empty(count), np.empty(count)
     with np.errstate(divide="ignore", invalid="ignore"):

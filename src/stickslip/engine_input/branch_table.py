@@ -16,7 +16,6 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import scan_rates
 from stickslip.contact.equation import resistance
 from stickslip.contact.rules.selection import selection_table
@@ -45,17 +44,12 @@ STORM_OF, STORM_IN = 30, 1e-6
 """An event storm: this many crossings within this share of a round trip."""
 
 
-def has_inertia(problem: Problem) -> bool:
-    """Return True if the contact itself has mass, so that its slip rate cannot jump."""
-    return not isinstance(problem.body, ElasticSlab) or problem.body.contact_mass > 0.0
-
-
 def is_algebraic(problem: Problem) -> bool:
     """Return True if the slip rate is a root of the contact equation, on one of its branches.
 
     This holds for a massless contact under a law of slip rate without a state variable.
     """
-    return not has_inertia(problem) and problem.friction.depends_on_rate and problem.friction.state is None
+    return not problem.body.has_inertia and problem.friction.depends_on_rate and problem.friction.state is None
 
 
 def folds_move(problem: Problem) -> bool:

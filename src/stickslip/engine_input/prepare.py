@@ -10,14 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.rules.selection import rule_of
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine_input.automatic import set_length, set_lumping
-from stickslip.engine_input.branch_table import folds_move, has_inertia, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import inflow_of, row_time, steady_inflow
+from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
+from stickslip.engine_input.forcing import inflow_of, steady_inflow
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
@@ -60,7 +59,7 @@ def parameters_of(problem: Problem) -> Params:
     """
     body, law = problem.body, problem.friction
     par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
-    par.row_time = row_time(problem)
+    par.row_time = problem.round_trip_time
     par.normal = problem.normal
     par.reference = problem.strength
     par.counts_net = 1.0 if law.counts == "net" else 0.0
@@ -70,18 +69,18 @@ def parameters_of(problem: Problem) -> Params:
     par.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
     par.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    if isinstance(body, ElasticSlab):
-        par.impedance, par.inertia, par.reflection = body.impedance, body.contact_mass, body.reflection
+    par.impedance, par.inertia, par.reflection = body.damping, body.inertia, body.reflection
+    if body.has_waves:
         par.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
-        par.impedance, par.inertia, par.stiffness = body.damping, body.mass, body.stiffness
+        par.stiffness = body.stiffness
     if problem.varies:
         par.tone, par.tone_frequency, par.tone_phase = inflow_of(problem).tone
-    elif not isinstance(body, ElasticSlab):
-        par.ramp = body.stiffness * problem.first_pull_rate * row_time(problem)
+    elif not body.has_waves:
+        par.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
         par.inflow, par.inflow_rate = steady_inflow(problem)
-        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
+        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
     return Params(together([getattr(par, name) for name in Params.places]))
 
 
@@ -103,12 +102,12 @@ SAFETY = 0.1
 def first_load(problem: Problem) -> at.Floats:
     """Return the load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
-    if not isinstance(body, ElasticSlab):
-        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
-    slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
+    if not body.has_waves:
+        return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * pull])
+    slope = body.impedance * pull / (0.5 * body.round_trip_time)  # G V / h
     if body.is_driven_rigidly:
-        return _pieces([0.0, body.two_way_time], [excess], [slope])
-    r, half = body.reflection, 0.5 * body.two_way_time
+        return _pieces([0.0, body.round_trip_time], [excess], [slope])
+    r, half = body.reflection, 0.5 * body.round_trip_time
     steady, rate = steady_inflow(problem)
     # for h/c <= t < R the waves of the initial state come back: w(t - R) = G V (R - t) / h - tau0
     reflected = steady + rate * half + r * (slope * half - excess)
@@ -123,9 +122,9 @@ def first_load_varying(problem: Problem) -> at.Floats:
     Its parts are so short that a tone in them is a polynomial to rounding.
     """
     body, excess = problem.body, problem.excess
-    if not isinstance(body, ElasticSlab):
-        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [0.0]))
-    r, half = body.reflection, 0.5 * body.two_way_time
+    if not body.has_waves:
+        return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
+    r, half = body.reflection, 0.5 * body.round_trip_time
     slope = body.impedance * problem.first_pull_rate / half
     before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
@@ -209,13 +208,13 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
     for place, formula in zip(table, formulas, strict=True):
         piece = LawPiece(place)
         piece.guard_count = formula.guard_count
-        if formula.guard_count and (has_state or has_inertia(problem)):
+        if formula.guard_count and (has_state or problem.body.has_inertia):
             piece.guards_at = formula.address("guards")
         if has_state:
             piece.state_at = formula.address("state_value")
         else:
             piece.value_at = formula.address("value")
-            piece.jet_at = formula.address("motion_jet" if has_inertia(problem) else "rate_jet")
+            piece.jet_at = formula.address("motion_jet" if problem.body.has_inertia else "rate_jet")
     return table
 
 
@@ -228,8 +227,8 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     state.last_step = math.inf
     count.piece = int(problem.friction.piece_at(problem.law_slip))
     count.varies = problem.varies
-    count.is_block = not isinstance(problem.body, ElasticSlab)
-    count.has_inertia = has_inertia(problem)
+    count.is_block = not problem.body.has_waves
+    count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)
     count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
     state.state_now = problem.state

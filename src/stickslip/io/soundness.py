@@ -19,7 +19,6 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import WORK_ROWS
 from stickslip.engine_input.branch_table import STORM_OF, folds_move, has_levels_to_set, table_of_branches
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.solution.solution import Solution
@@ -116,7 +115,7 @@ def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:
 
 
 def _faults_of_history(history: History) -> Iterator[Fault]:
-    store, pieces, row = history.store, len(history), row_time(history.problem)
+    store, pieces, row = history.store, len(history), history.problem.round_trip_time
     yield "row_time", not math.isclose(history.row_time, row, rel_tol=1e-9)
     yield "ramp or reached", not (math.isfinite(history.ramp) and math.isfinite(history.duration) and history.duration >= 0.0)
     yield "row of a piece", (store.row < 0).any() or (np.diff(store.row) < 0).any() or store.row[-1] >= at.NEVER

@@ -20,7 +20,6 @@ from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import RuleFollower, renewed
 from stickslip.engine_input.creep_limits import creep_tolerance
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.checkpoint import Checkpoint, engine
@@ -69,7 +68,7 @@ class RunInProgress:
         memory = memory_of(setup.par, state, count)
         state, count = state_in(memory), counts_in(memory)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
-        follower = RuleFollower(problem, row_time(problem), state, count)
+        follower = RuleFollower(problem, problem.round_trip_time, state, count)
         tolerance = creep_tolerance(problem, creep_rtol, rtol)
         leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
@@ -107,7 +106,7 @@ class RunInProgress:
     def time(self) -> float:
         """Return the simulated time, s."""
         xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
-        return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
+        return float(self.count.row * self.problem.round_trip_time + self.state.theta_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
@@ -170,7 +169,7 @@ class RunInProgress:
         piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
         if piece == 0:
             return 0
-        standing, _, _ = standing_behind(at.trimmed(self.store, piece), row_time(self.problem))
+        standing, _, _ = standing_behind(at.trimmed(self.store, piece), self.problem.round_trip_time)
         kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
@@ -187,7 +186,7 @@ class RunInProgress:
         if self.count.sparse == 0:
             return
         first = int(self.count.new_from)
-        pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
+        pieces, low, _ = standing_behind(at.trimmed(self.store, first), self.problem.round_trip_time)
         past, ahead = low < self.state.new_since, low >= self.state.taken_to
         rebuild_queue(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
