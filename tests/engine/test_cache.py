@@ -160,4 +160,4 @@ def test_somebody_who_waits_for_the_compiler_is_told_so(monkeypatch: pytest.Monk
     cache.announce_by(said.append)
     for kernel in (run_until, total):
         assert kernel.entry._cache.load_overload(None, None) is None  # type: ignore[attr-defined]
-    assert said == ["compiling the engine for this machine: about 15 s, once"]
+    assert said == ["compiling the engine for this machine: about 10 s, once"]
