@@ -115,11 +115,11 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     monkeypatch.setattr(EventRows, "record", lambda self, run, stream, look: (look.tell(), self._remember(run, stream)))
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     monitor = Monitor.of(run, EventRows(RowsInMemory()), stream)
-    capacities = {len(run.store.whole)}
+    capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):
         run_loop(run, share * duration, monitor)
         run.count.to_the_end, run.before_end = 0, None
-        capacities.add(len(run.store.whole))
+        capacities.add(len(run.store.pieces))
     assert stream.told > 9_000
     assert run.forgotten > 150_000
     assert capacities == {512}

@@ -157,7 +157,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     """
     check_problem("critical_value", problem)
     found = parameter(problem, name)
-    if getattr(problem.body, "contact_mass", 0.0) > 0.0:
+    if problem.body.has_waves and problem.body.has_inertia:
         raise InputError("critical value: the contact mass makes the slip rate a state, the motion is unique whatever the law")
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")

@@ -44,7 +44,7 @@ def check_type(where: str, value: Any, kind: Any, wanted: str) -> None:
 
 def check_whole(where: str, value: Any) -> int:
     """Return a whole number above 0. Raises InputError, beginning with `where`, for anything else."""
-    if isinstance(value, bool) or not (isinstance(value, Integral) and value > 0):
+    if isinstance(value, bool) or not (isinstance(value, Integral) and int(value) > 0):
         raise InputError(f"{where} must be a whole number above 0, got {shown(value)}")
     return int(value)
 

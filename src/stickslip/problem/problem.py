@@ -11,21 +11,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import Body, ElasticSlab
+from stickslip.bodies import BODIES, Body
 from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_quantities, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
+from stickslip.loading.contract import SILENT
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
-
-
-def normal_load(body: Body) -> float:
-    """Return S: the normal stress (Pa) of a slab, or the normal force (N) of a block."""
-    return body.normal_stress if isinstance(body, ElasticSlab) else body.normal_force
+DAY = 86_400.0
+"""A day, s: the length of a row of the history of a block that never sticks."""
+LONGEST_ROW = 1e6
+"""Largest number of periods of a block in one row of its history (1)."""
 
 
 @dataclass(frozen=True)
@@ -84,10 +84,11 @@ class Problem:
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
-        if isinstance(self.body, FrictionLaw) and isinstance(self.friction, Body):
+        bodies = tuple(BODIES.values())
+        if isinstance(self.body, FrictionLaw) and isinstance(self.friction, bodies):
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
-        check_type("Problem: body", self.body, Body, "an ElasticSlab or a SpringBlock")
+        check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
         check_type("Problem: friction", self.friction, FrictionLaw, "a friction law")
         self._check_varying()
         check_quantities(self, but=self._varying)
@@ -126,8 +127,7 @@ class Problem:
         object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
 
     def _check_far_side(self) -> None:
-        free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
-        if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
+        if math.isinf(self.body.driver_impedance) and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
 
     @property
@@ -174,6 +174,21 @@ class Problem:
         return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 
     @property
+    def round_trip_time(self) -> float:
+        """Return the length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
+
+        A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
+        period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve
+        them; but it never is shorter than one period of the block.
+        """
+        period = self.body.round_trip_time
+        if self.body.has_waves or self.friction.sticks:
+            return period
+        tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
+        swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
+        return max(period, min(DAY, LONGEST_ROW * period, swing))
+
+    @property
     def rule(self) -> str:
         """The name of the selection rule."""
         return name_of(self.selection)
@@ -181,12 +196,12 @@ class Problem:
     @property
     def normal(self) -> float:
         """S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
-        return normal_load(self.body)
+        return self.body.normal_load
 
     @property
     def load_unit(self) -> str:
         """The unit of loads and tractions: Pa for the slab, N for the block."""
-        return "Pa" if isinstance(self.body, ElasticSlab) else "N"
+        return self.body.load_unit
 
     @property
     def law_slip(self) -> float:

@@ -208,7 +208,7 @@ class EventRows:
         if dropped > 0:
             stream.forget(dropped)
             self._remember(run, stream)
-        return run.length < len(run.store.whole) // 2 or run.grow(run.options.most_pieces)
+        return run.length < len(run.store.pieces) // 2 or run.grow(run.options.most_pieces)
 
     def save(self, run: Session, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""

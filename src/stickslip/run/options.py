@@ -86,9 +86,11 @@ class RunOptions:
             raise InputError(f"{who}: progress must be a function, got {shown(self.progress)}")
         if not (is_number(self.checkpoint_every) and self.checkpoint_every >= 0):
             raise InputError(f"{who}: checkpoint_every must be a time in s, got {shown(self.checkpoint_every)}")
-        limits = {name: getattr(self, name) for name in ("max_events", "max_pieces")}
-        whole = {name: None if value is None else check_whole(f"{who}: {name}", value) for name, value in limits.items()}
-        return replace(self, **whole)
+        return replace(
+            self,
+            max_events=None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
+            max_pieces=None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces),
+        )
 
     @property
     def most_pieces(self) -> int:

@@ -13,8 +13,6 @@ from types import FrameType
 from typing import Protocol, Self
 
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
-from stickslip.engine_input.forcing import row_time
 from stickslip.foundation.errors import InputError
 from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -71,13 +69,13 @@ class Watch(Protocol):
 
 def run_loop(run: Session, duration: float, watch: Watch) -> int:
     """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
-    last, budget = split_time(duration, row_time(run.problem)), FIRST_BUDGET
+    last, budget = split_time(duration, run.problem.round_trip_time), FIRST_BUDGET
     with interrupts() as is_interrupted:
         try:
             while True:
                 start = time.perf_counter()
                 code = run.advance(last, budget)
-                if code == OUT_OF_BUDGET:
+                if code == Stop.NONE:
                     budget = next_budget(budget, time.perf_counter() - start)
                 end = after_call(run, code, watch)
                 if end is not None:
@@ -92,7 +90,7 @@ def run_loop(run: Session, duration: float, watch: Watch) -> int:
 
 def after_call(run: Session, code: int, watch: Watch) -> int | None:
     """Do what is due after a call of the engine that returned `code`. Returns a code to end the run, or None to continue."""
-    stop = watch.look(run, now=code != OUT_OF_BUDGET)
+    stop = watch.look(run, now=code != Stop.NONE)
     if stop is not None:
         return stop
     if code == Stop.END_AHEAD:
@@ -100,12 +98,12 @@ def after_call(run: Session, code: int, watch: Watch) -> int | None:
         return None
     if code == Stop.FULL:
         return None if watch.make_room(run) else FULL_HISTORY
-    return None if code == OUT_OF_BUDGET else code
+    return None if code == Stop.NONE else code
 
 
 def repeat(run: Session, since: Checkpoint, duration: float, length: int) -> None:
     """Go back to an earlier state of a run up to `duration` (s), and step from there until the history has `length` pieces."""
-    last = split_time(duration, row_time(run.problem))
+    last = split_time(duration, run.problem.round_trip_time)
     run.restore(since)
     while run.length < length:
         if run.advance(last, 1) == Stop.END_AHEAD:
