@@ -175,7 +175,7 @@ class Problem:
 
     @property
     def round_trip_time(self) -> float:
-        """Return the length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
+        """The length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
 
         A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
         period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve

@@ -188,8 +188,8 @@ class EventRows:
 
     rows: Rows | RowsInMemory
     told: Told | None = None
-    who: str = "catalogue"
-    wants_events: bool = True
+    who = "catalogue"
+    wants_events = True
 
     def record(self, run: Session, stream: EventStream, look: Look) -> None:
         """Write the rows of new events and report the events."""

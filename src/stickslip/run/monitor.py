@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol, Self, TypeVar
 
 from stickslip.foundation.errors import InputError
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Reporter
 from stickslip.run.run_loop import NowAndThen, repeat, run_loop
 from stickslip.run.session import Session
@@ -69,8 +70,7 @@ class Monitor:
     stream: EventStream
     reporter: Reporter | None
     saving: NowAndThen
-    max_events: int | None
-    duration: float
+    options: RunOptions
     counting: NowAndThen = field(default_factory=lambda: NowAndThen(0.0))
     looked: Checkpoint | None = None
 
@@ -84,8 +84,7 @@ class Monitor:
             stream=stream,
             reporter=Reporter.of(options, stream.threshold),
             saving=NowAndThen.from_now(options.checkpoint_every),
-            max_events=options.max_events,
-            duration=options.duration,
+            options=options,
         )
         monitor.remember(run)
         return monitor
@@ -93,7 +92,7 @@ class Monitor:
     @property
     def counts(self) -> bool:
         """True if events must be counted."""
-        return self.reporter is not None or self.max_events is not None or self.sink.wants_events
+        return self.reporter is not None or self.options.max_events is not None or self.sink.wants_events
 
     def look(self, run: Session, *, now: bool) -> int | None:
         """Count events, report progress and write a checkpoint where each is due: see `run_loop.Watch`."""
@@ -111,12 +110,12 @@ class Monitor:
     def count(self, run: Session) -> bool:
         """Count new events. Returns True if they are enough; the run then goes back to the piece by which the last one is known."""
         look = self.stream.look(run.store, run.length)
-        missing = None if self.max_events is None else self.max_events - self.stream.told
+        missing = None if self.options.max_events is None else self.options.max_events - self.stream.told
         if missing is None or len(look.known_by) < missing:
             self.record(run, look)
             return False
         assert self.looked is not None
-        repeat(run, self.looked, self.duration, look.known_by[missing - 1] + 1)
+        repeat(run, self.looked, self.options.duration, look.known_by[missing - 1] + 1)
         self.record(run, replace(look, known_by=look.known_by[:missing]))
         return True
 
@@ -127,7 +126,7 @@ class Monitor:
 
     def remember(self, run: Session) -> None:
         """Keep a checkpoint if the run may have to return here, which is so only if it stops after a number of events."""
-        self.looked = None if self.max_events is None else run.snapshot()
+        self.looked = None if self.options.max_events is None else run.snapshot()
 
     def make_room(self, run: Session) -> bool:
         """Have the sink make room in the full history: see `run_loop.Watch`."""

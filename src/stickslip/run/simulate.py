@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from stickslip.foundation.arguments import as_path
@@ -99,12 +98,11 @@ def simulate(
     return run_to_end(Session.begin(problem, options), WholeHistory())
 
 
-@dataclass
 class WholeHistory:
     """The sink (`monitor.Sink`) of a run that keeps its whole history and becomes a solution."""
 
-    who: str = "simulate"
-    wants_events: bool = False
+    who = "simulate"
+    wants_events = False
 
     def record(self, run: Session, stream: EventStream, look: Look) -> None:
         """Report the events: the history holds them."""
