@@ -8,9 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.parameters import fields_of
 
 PAGE = Path(__file__).with_name("laws-and-bodies.md")
 HEADING, NEXT = "## The laws\n", "\n## "

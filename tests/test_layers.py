@@ -35,11 +35,10 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "parameters"),
+        ("formula", "contract"),
         ("law",),
-        ("memory", "composite", "piecewise", "slopes"),
+        ("families", "composite", "piecewise"),
         ("laws", "custom"),
-        ("registry",),
     ),
     "engine": (("codegen",), ("state",), ("series",), ("contact_step",), ("moving_folds", "waves"), ("loop",)),
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),

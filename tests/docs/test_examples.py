@@ -127,7 +127,7 @@ def test_a_law_is_one_file_and_one_line(tmp_path: Path) -> None:
     law = next(block.text for block in blocks if "class PowerSlipWeakening" in block.text)
     scenario = next(block.text for block in blocks if block.language == "toml")
     (package / "friction" / "laws" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
-    registry = package / "friction" / "registry.py"
+    registry = package / "friction" / "__init__.py"
     text = registry.read_text(encoding="utf-8").replace(
         "LAWS: dict", "from stickslip.friction.laws.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
     )

@@ -19,7 +19,7 @@ from stickslip.bodies import ElasticSlab
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
-from stickslip.foundation.quantities import LARGEST, SMALLEST, Quantity, quantities_of
+from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
 from stickslip.run.run_loop import MOST_ROUND_TRIPS, check_round_trips
 from stickslip.scenarios.scenario import Scenario
@@ -131,16 +131,6 @@ def pieces_at_start(problem: Problem) -> Places:
 # ---- valid members and their groups -----------------------------------------------------------------------------------------
 
 
-def allowed(declared: Quantity, value: Floats) -> Booleans:
-    """Return True for the values that a quantity allows, as `Quantity.check` does for one value."""
-    fine = ~np.isnan(value) if declared.infinite else np.abs(value) <= LARGEST
-    if declared.above is not None:
-        fine &= (value > declared.above) & (value >= declared.above + SMALLEST)
-    if declared.at_least is not None:
-        fine &= value >= declared.at_least
-    return fine
-
-
 def are_fine(scenario: Scenario, values: Values) -> Booleans:
     """Return True for the members whose parameters are valid: bodies, laws, problems and scenarios check the same for one."""
     numbers = Numbers.of(values)
@@ -148,7 +138,7 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     for key, value in values.items():
         declared = declared_at(scenario, key)
         assert declared is not None
-        fine &= allowed(declared, value)
+        fine &= declared.allows(value)
     body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
     fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL

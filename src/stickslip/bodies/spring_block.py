@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.foundation.quantities import check_quantities, quantity
+from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
@@ -45,4 +45,4 @@ class SpringBlock:
         return found
 
     def __post_init__(self) -> None:
-        check_quantities(self)
+        check_fields(self)

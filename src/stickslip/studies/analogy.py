@@ -22,7 +22,6 @@ from stickslip.bodies import ElasticSlab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.friction.slopes import slopes
 from stickslip.problem.parameters import Parameter, parameter
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -220,7 +219,7 @@ def weakening(problem: Problem) -> dict[str, float]:
     """
     body = problem.body
     assert isinstance(body, ElasticSlab)
-    by_slip, _ = slopes(problem.friction, problem.law_slip)
+    by_slip, _ = problem.friction.slopes(problem.law_slip)
     massless = replace(problem, body=replace(body, contact_mass=0.0))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.custom.from_expression import ExpressionLaw, FromExpression
+from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
 from stickslip.friction.formula.text import to_text
 
@@ -34,7 +34,7 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
 
     Returns
     -------
-    ExpressionLaw or decorator
+    FromExpression or decorator
         The law, which a scenario file can also hold; without `function`, a decorator that makes the law.
 
     Raises
@@ -56,11 +56,11 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
     return _law(function, tree, {name: value for name, value in values.items() if name in used}, options)
 
 
-def _law(function: Callable[..., Any], tree: Expression, values: dict[str, Any], options: dict[str, Any]) -> ExpressionLaw:
+def _law(function: Callable[..., Any], tree: Expression, values: dict[str, Any], options: dict[str, Any]) -> FromExpression:
     try:
         return FromExpression(to_text(tree), values, **options)
     except InputError as error:
-        raise InputError(f"FromFunction: {_name(function)}: {str(error).removeprefix('ExpressionLaw: ')}") from None
+        raise InputError(f"FromFunction: {_name(function)}: {str(error).removeprefix('FromExpression: ')}") from None
 
 
 def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:

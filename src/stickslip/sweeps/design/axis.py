@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.parameters import Choice
+from stickslip.foundation.quantities import Choice
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import show
 from stickslip.sweeps.design.parameter_paths import Key, key_named

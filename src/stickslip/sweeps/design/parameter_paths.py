@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, fields_of
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.problem.selection_rule import names as rules
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
