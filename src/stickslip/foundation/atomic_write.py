@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
+from typing_extensions import override
+
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -185,19 +187,24 @@ class Sink(io.RawIOBase):
         self._end, self._place = 0, 0
         self.error: OSError | None = None
 
+    @override
     def readable(self) -> bool:
         return True
 
+    @override
     def writable(self) -> bool:
         return True
 
+    @override
     def seekable(self) -> bool:
         return True
 
+    @override
     def seek(self, offset: int, whence: int = os.SEEK_SET, /) -> int:
         self._place = offset + (0, self._place, self._end)[whence]
         return self._place
 
+    @override
     def tell(self) -> int:
         return self._place
 
@@ -225,6 +232,7 @@ class Sink(io.RawIOBase):
         self._place += wanted
         return wanted
 
+    @override
     def truncate(self, size: int | None = None, /) -> int:
         self._end = self._place if size is None else size
         if self.error is None:
@@ -234,6 +242,7 @@ class Sink(io.RawIOBase):
                 self.error = error
         return self._end
 
+    @override
     def close(self) -> None:
         self._file.close()
         super().close()

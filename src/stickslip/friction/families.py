@@ -56,7 +56,6 @@ class SlipWeakening(RemembersSlip):
     """
 
     counts = "path"
-    many = True
 
     static: float = quantity("1", "friction coefficient before slip", at_least=0)
     dynamic: float = quantity("1", "friction coefficient after much slip", at_least=0)
@@ -78,8 +77,6 @@ class Stribeck(FrictionLaw):
 
     The exponent must be whole: with any other the curve has no derivatives at v = 0, where every slip begins.
     """
-
-    many = True
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient at high slip rate, without the viscous term", at_least=0)

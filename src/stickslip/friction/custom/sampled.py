@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, depends_on, evaluate_nodes
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import quoted
 
 LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
 """Largest slip (m) and slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed them."""
@@ -56,7 +56,7 @@ def _check_constants(found: Mapping[Expression, Any]) -> None:
     """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite."""
     for node, value in found.items():
         if np.ndim(value) == 0 and not np.isfinite(value):
-            raise InputError(f"the part '{_shown(node)}' is not a finite number: it is {value:g}")
+            raise InputError(f"the part {quoted(node)} is not a finite number: it is {value:g}")
 
 
 def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:
@@ -66,10 +66,5 @@ def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np
         where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
         what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
         raise InputError(
-            f"{what}, '{_shown(node.arguments[0])}', must stay above 0 to have derivatives, but {where}; add a small number to it"
+            f"{what}, {quoted(node.arguments[0])}, must stay above 0 to have derivatives, but {where}; add a small number to it"
         )
-
-
-def _shown(node: Expression) -> str:
-    part = to_text(node)
-    return part if len(part) <= 60 else f"{part[:57]}..."

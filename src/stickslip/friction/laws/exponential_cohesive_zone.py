@@ -23,6 +23,7 @@ class ExponentialCohesiveZone(SlipWeakening):
         "Bolotskaya 2023, doctoral thesis, Massachusetts Institute of Technology, exponential cohesive zone as in its code "
         "PyLith_custom_friction, doi:10.5281/zenodo.14047393; shape of Xu & Needleman 1994, J. Mech. Phys. Solids 42, 1397"
     )
+    many = True
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "distance": "0.2 m", "offset": "0.1 m"}
 
     static: float = quantity("1", "largest friction coefficient, at y = 1", at_least=0)

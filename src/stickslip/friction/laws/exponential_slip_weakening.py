@@ -19,6 +19,7 @@ class ExponentialSlipWeakening(SlipWeakening):
 
     kind = "exponential-slip-weakening"
     source = "Mizoguchi, Hirose, Shimamoto & Fukuyama 2007, Geophys. Res. Lett. 34, L01308"
+    many = True
     example: ClassVar = {"static": 0.7, "dynamic": 0.2, "distance": "0.5 m"}
 
     distance: float = quantity("m", "slip over which the excess over dynamic falls by a factor e", above=0)

@@ -21,6 +21,7 @@ class ExponentialStribeck(Stribeck):
         "Tustin 1947, J. Inst. Electr. Eng. 94, 143 (exponent 1); Bo & Pavelescu 1982, Wear 82, 277; "
         "Armstrong-Helouvry, Dupont & Canudas de Wit 1994, Automatica 30, 1083"
     )
+    many = True
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 1}
 
     exponent: float = quantity("1", "exponent of v / rate: 1 exponential, 2 Gaussian; whole", at_least=1, whole=True, default=1.0)

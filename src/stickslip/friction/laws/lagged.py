@@ -10,19 +10,14 @@ from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Part, declare, quantity
-from stickslip.friction.composite import PREFIXES, Prefixed
+from stickslip.friction.composite import LawOfParts, PartNumbers
 from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh
 from stickslip.friction.law import FrictionLaw
 
-_PREFIX = PREFIXES[1]
-"""Prefix of the names of the rate law's parameters."""
-_OWN = ("time", "direct", "direct_rate")
-"""Parameters that belong to the lag and not to the rate law."""
-
 
 @dataclass(frozen=True)
-class LaggedFriction(FrictionLaw):
+class LaggedFriction(LawOfParts):
     """mu = law(w) + direct [arcsinh(v / (2 direct_rate)) - arcsinh(w / (2 direct_rate))], with time dw/dt = v - w.
 
     In steady sliding, w = v, friction is that of the law itself. On a slab without contact mass and without direct effect,
@@ -66,18 +61,6 @@ class LaggedFriction(FrictionLaw):
         return _catch_up
 
     @override
-    def parameters(self) -> tuple[str, ...]:
-        return (*(_PREFIX + name for name in self.rate.parameters()), *_OWN)
-
-    @override
-    def piece_values(self, i: int) -> tuple[float, ...]:
-        return (*self.rate.piece_values(0), *(float(getattr(self, name)) for name in _OWN))
-
-    @override
-    def literals(self) -> dict[str, float]:
-        return {_PREFIX + name: value for name, value in self.rate.literals().items()}
-
-    @override
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
         """Return mu as in `FrictionLaw.coefficient`, with negative values of w replaced by 0.
 
@@ -103,7 +86,7 @@ class LaggedFriction(FrictionLaw):
 
 def _with_lag(formula: Formula) -> Formula:
     def lagged(law: Any, u: Any, v: Any, w: Any) -> Any:
-        return formula(Prefixed(law, _PREFIX), u, w)
+        return formula(PartNumbers(law, "rate"), u, w)
 
     return lagged
 

@@ -16,6 +16,7 @@ class LinearSlipWeakening(SlipWeakening):
 
     kind = "linear-slip-weakening"
     source = "Ida 1972, J. Geophys. Res. 77, 3796; Andrews 1976, J. Geophys. Res. 81, 5679"
+    many = True
     example: ClassVar = {"static": 0.677, "dynamic": 0.525, "distance": "0.4 m"}
 
     dynamic: float = quantity("1", "friction coefficient after `distance` of slip", at_least=0)

@@ -23,6 +23,7 @@ class ParabolicSlipWeakening(SlipWeakening):
         "Bolotskaya 2023, doctoral thesis, Massachusetts Institute of Technology, parabolic cohesive zone as in its code "
         "PyLith_custom_friction, doi:10.5281/zenodo.14047393"
     )
+    many = True
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "distance": "0.4 m", "onset": 0.0}
 
     static: float = quantity("1", "friction coefficient at the onset", at_least=0)

@@ -20,6 +20,7 @@ class PowerStribeck(Stribeck):
     source = (
         "Hess & Soom 1990, J. Tribol. 112, 147 (exponent 2); Armstrong-Helouvry, Dupont & Canudas de Wit 1994, Automatica 30, 1083"
     )
+    many = True
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 2}
 
     rate: float = quantity("m/s", "slip rate v_s at which half of the decrease is complete", above=0)

@@ -26,7 +26,7 @@ class SlipTimesRate(CompositeLaw):
     @override
     def check(self) -> None:
         super().check()
-        for part in self.parts:
+        for part in self.parts.values():
             if part.static_excess:
                 raise InputError(f"SlipTimesRate: {part.kind} steps from static to sliding friction; a factor must be continuous")
 
