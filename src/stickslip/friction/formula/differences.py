@@ -133,12 +133,15 @@ def _tanh(a: _Node) -> _Node:
 def _arcsinh(a: _Node) -> _Node:
     """Return the node of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
 
-    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2).
+    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2). Where the squares would overflow, subtract.
     """
     x, y = a.value, a.reference
-    p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
-    gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
-    return _Node(np.arcsinh(y), np.arcsinh(a.step * (1.0 + gap) / (p + q)), np.arcsinh(x), a.slope / p)
+    start, end = np.arcsinh(y), np.arcsinh(x)
+    with np.errstate(over="ignore", invalid="ignore"):
+        p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
+        gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
+        step = np.arcsinh(a.step * (1.0 + gap) / (p + q))
+    return _Node(start, np.where(np.maximum(p, q) > 1e150, end - start, step), end, a.slope / p)
 
 
 def _chain(outer: Any, inner: Any) -> Any:
