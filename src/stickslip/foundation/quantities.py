@@ -199,10 +199,12 @@ class NamedNumbers:
 
     def check(self, owner: str, name: str, value: Any) -> tuple[Named, ...]:
         """Return the numbers from a mapping of names to values or texts with units, or from tuples of name, value and unit."""
+        if not isinstance(value, Mapping | tuple | list | None):
+            raise InputError(f"{owner}: {self.key} must be a mapping of names to values, got {type(value).__name__}")
         if isinstance(value, Mapping):
             named = [Named.read(key, one, f"{owner}:") for key, one in value.items()]
         else:
-            named = [Named(*one) for one in value]
+            named = [Named(*one) for one in value or ()]
         return tuple(Named(n, Quantity("1", "").check(owner, f"{self.key} {ascii(n)[:60]}", x), unit) for n, x, unit in named)
 
 
@@ -225,19 +227,9 @@ def quantity(
     whole: bool = False,
     default: Any = dataclasses.MISSING,
 ) -> Any:
-    """Declare a dataclass field that holds a physical quantity in SI units.
+    """Return a dataclass field that holds a physical quantity in SI units; the arguments but `default` are those of `Quantity`.
 
-    Parameters
-    ----------
-    unit, meaning, above, at_least, infinite, whole
-        Fields of the `Quantity` that describes the field.
-    default : float or None, optional
-        Default value of the field; with None the field is optional.
-
-    Returns
-    -------
-    dataclasses.Field
-        Field with the `Quantity` in its metadata.
+    With None as `default` the field is optional.
     """
     return declare(Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, whole=whole), default)
 
