@@ -176,76 +176,54 @@ def _lock_of(lock: Path, refusal: str) -> int | None:
             return None
 
 
-class Sink(io.RawIOBase):
+class Sink(io.FileIO):
     """A binary file for libraries that crash if a write fails: it stores the first error and reports success.
 
     Bytes that could not be written read back as zeros. Call `check` after the library has closed its file.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("w+b", buffering=0)
-        self._end, self._place = 0, 0
+        super().__init__(path, "w+b")
+        self._end = 0
         self.error: OSError | None = None
 
     @override
-    def readable(self) -> bool:
-        return True
-
-    @override
-    def writable(self) -> bool:
-        return True
-
-    @override
-    def seekable(self) -> bool:
-        return True
-
-    @override
     def seek(self, offset: int, whence: int = os.SEEK_SET, /) -> int:
-        self._place = offset + (0, self._place, self._end)[whence]
-        return self._place
+        if whence == os.SEEK_END:  # the apparent end: the file itself may be shorter
+            return super().seek(self._end + offset)
+        return super().seek(offset, whence)
 
     @override
-    def tell(self) -> int:
-        return self._place
-
     def write(self, data: Any, /) -> int:
         """Write all bytes, or store the error; return the full length in both cases."""
-        view = memoryview(data).cast("B")
-        done = 0
+        view, place, done = memoryview(data).cast("B"), self.tell(), 0
         try:
             while done < len(view) and self.error is None:
-                self._file.seek(self._place + done)
-                done += self._file.write(view[done:])
+                done += super().write(view[done:])
         except OSError as error:
             self.error = error
-        self._place += len(view)
-        self._end = max(self._end, self._place)
+        self._end = max(self._end, super().seek(place + len(view)))
         return len(view)
 
+    @override
     def readinto(self, buffer: Any, /) -> int:
         """Read bytes up to the apparent end of the file; those whose write failed are zeros."""
-        view = memoryview(buffer).cast("B")
-        wanted = max(min(len(view), self._end - self._place), 0)
-        self._file.seek(self._place)
-        found = self._file.readinto(view[:wanted])
+        view, place = memoryview(buffer).cast("B"), self.tell()
+        wanted = max(min(len(view), self._end - place), 0)
+        found = super().readinto(view[:wanted]) or 0
         view[found:wanted] = bytes(wanted - found)
-        self._place += wanted
+        super().seek(place + wanted)
         return wanted
 
     @override
     def truncate(self, size: int | None = None, /) -> int:
-        self._end = self._place if size is None else size
+        self._end = self.tell() if size is None else size
         if self.error is None:
             try:
-                self._file.truncate(self._end)
+                super().truncate(self._end)
             except OSError as error:
                 self.error = error
         return self._end
-
-    @override
-    def close(self) -> None:
-        self._file.close()
-        super().close()
 
     def check(self) -> None:
         """Raise the first error that was stored, if there is one."""

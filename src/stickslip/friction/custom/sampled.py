@@ -32,10 +32,11 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
         found = evaluate_nodes(tree, numbers, u, v)
         _check_constants(found)
         values = np.broadcast_to(found[tree], u.shape)
-        _refuse(~np.isfinite(values), u, v, "is not a finite number")
-        negative = np.where(values < -TOLERANCE, values, 0.0)
-        lowest = int(np.argmin(negative))
-        _refuse(np.arange(len(u)) == lowest if negative[lowest] < 0.0 else np.zeros(len(u), bool), u, v, f"is {values[lowest]:.3g}")
+        finite = np.isfinite(values)
+        worst = int(np.argmin(values)) if finite.all() else int(np.argmin(finite))
+        if not values[worst] >= -TOLERANCE or not finite[worst]:
+            what = f"is {values[worst]:.3g}" if finite[worst] else "is not a finite number"
+            raise InputError(f"friction must be a number >= 0, but at u = {u[worst]:.4g} m, v = {v[worst]:.4g} m/s it {what}")
     for node in found:
         if node.operation in ("sqrt", "log", "pow") and np.ndim(found[node.arguments[0]]):
             _check_argument(node, found[node.arguments[0]], u, v)
@@ -44,12 +45,6 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
 def samples(largest: float) -> NDArray[np.float64]:
     """Return 0 and sample points up to `largest`: evenly spaced ones, and a geometric progression from 1e-9 `largest`."""
     return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 55), np.linspace(0.0, largest, 51))))
-
-
-def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float64], what: str) -> None:
-    if bad.any():
-        i = int(np.argmax(bad))
-        raise InputError(f"friction must be a number >= 0, but at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it {what}")
 
 
 def _check_constants(found: Mapping[Expression, Any]) -> None:
