@@ -83,7 +83,7 @@ class Moments:
 
     @property
     def at_rest(self) -> NDArray[np.bool_]:
-        """Return True for moments at which nothing was recorded because the contact rests."""
+        """True for moments at which nothing was recorded because the contact rests."""
         return self.leaped > 0.0
 
     def recorded(self) -> Moments:
@@ -121,17 +121,17 @@ class History:
 
     @cached_property
     def start(self) -> Floats:
-        """Return the time at which each piece starts, s."""
+        """The time at which each piece starts, s."""
         return self.seconds(self.store.row, self.store.theta_from)
 
     @cached_property
     def end(self) -> Floats:
-        """Return the time at which each piece ends, s."""
+        """The time at which each piece ends, s."""
         return self.seconds(self.store.row, self.store.theta_to)
 
     @property
     def span(self) -> tuple[float, float]:
-        """Return the times (s) of the start and the end of the run."""
+        """The times (s) of the start and the end of the run."""
         start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
         return start, start + self.duration
 
@@ -191,7 +191,7 @@ class History:
 
     @cached_property
     def phases(self) -> Phases:
-        """Return the index of the pieces by phase."""
+        """The index of the pieces by phase."""
         return Phases.of(self.store, self.row_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
@@ -227,7 +227,7 @@ class History:
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
-        """Return True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
+        """True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
         row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
         follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
         last = row[-1:] * self.row_time + end[-1:]

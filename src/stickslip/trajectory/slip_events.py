@@ -202,17 +202,17 @@ class SlipEvents(NamedTuple):
 
     @property
     def begin(self) -> Moments:
-        """Return the moments at which the events begin."""
+        """The moments at which the events begin."""
         return Moments.inside(self.piece[0], self.xi[0])
 
     @property
     def peak(self) -> Moments:
-        """Return the moments at which the slip rate is largest."""
+        """The moments at which the slip rate is largest."""
         return Moments.inside(self.piece[1], self.xi[1])
 
     @property
     def end(self) -> Moments:
-        """Return the moments at which the events end, or the history does."""
+        """The moments at which the events end, or the history does."""
         return Moments.inside(self.piece[2], self.xi[2])
 
     def largest(self, values: Floats) -> Floats:
