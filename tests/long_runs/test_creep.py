@@ -14,7 +14,6 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import Counts, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
 from stickslip.run.monitor import Orders, as_solution
@@ -68,7 +67,7 @@ def step(run: RunInProgress, last: tuple[int, float]) -> bool:
     code = run.advance(last, 1)
     if code == Stop.FULL:
         run.grow(10**6)
-    return code in (OUT_OF_BUDGET, Stop.FULL)
+    return code in (Stop.NONE, Stop.FULL)
 
 
 def around_leaps(name: str) -> list[int]:

@@ -15,7 +15,6 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import State, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.monitor import Orders, as_solution
 from stickslip.run.progress import Report
@@ -33,7 +32,7 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
         code = run.advance(last, 1)
         if code == Stop.FULL:
             run.grow(10**6)
-        elif code != OUT_OF_BUDGET:
+        elif code != Stop.NONE:
             return steps
     raise AssertionError("too long for a test")
 
@@ -69,7 +68,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     for problem, duration in RUNS.values():
         run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, problem.round_trip_time)
         for _ in range(3000):
-            if run.advance(last, 1) not in (OUT_OF_BUDGET, Stop.FULL) or run.length > 400:
+            if run.advance(last, 1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
                 break
             count, state = run.count, run.state
             met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}

@@ -13,7 +13,6 @@ from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner
 from stickslip.engine.state.layout import Counts, Floats, Incoming, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.creep_limits import PATIENCE
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
@@ -180,7 +179,7 @@ class CreepLeaps:
 
     def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
-        while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, Stop.FULL):
+        while (code := run.step(last, STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
-                run.reserve(2 * len(run.store.whole))
+                run.reserve(2 * len(run.store.pieces))
         return code == Stop.PAUSED and run.count.row == row

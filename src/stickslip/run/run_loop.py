@@ -13,7 +13,6 @@ from types import FrameType
 from typing import Protocol, Self
 
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.foundation.errors import InputError
 from stickslip.run.session import RunInProgress
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -76,9 +75,9 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
             while True:
                 start = time.perf_counter()
                 code = run.advance(last, budget)
-                if code == OUT_OF_BUDGET:
+                if code == Stop.NONE:
                     budget = next_budget(budget, time.perf_counter() - start)
-                stop = watch.look(run, now=code != OUT_OF_BUDGET)
+                stop = watch.look(run, now=code != Stop.NONE)
                 if stop is not None:
                     return stop
                 if code == Stop.END_AHEAD:
@@ -86,7 +85,7 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
                 elif code == Stop.FULL:
                     if not watch.make_room(run):
                         return FULL_HISTORY
-                elif code != OUT_OF_BUDGET:
+                elif code != Stop.NONE:
                     return code
                 if is_interrupted():
                     return INTERRUPTED

@@ -70,7 +70,7 @@ class EventStream:
     def history(self, store: Store, length: int) -> History:
         """Return the history so far."""
         kept, row = at.trimmed(store, length), self.problem.round_trip_time
-        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.whole) else 0.0
+        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.pieces) else 0.0
         return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:

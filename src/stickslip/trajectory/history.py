@@ -136,7 +136,7 @@ class History:
         return start, start + self.duration
 
     def __len__(self) -> int:
-        return len(self.store.whole)
+        return len(self.store.pieces)
 
     def is_averaged(self, row: int) -> bool:
         """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
