@@ -55,7 +55,7 @@ ROOMS = {
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
-    "reference": (("bisection", "rate_and_state"), ("block", "slab"), ("method_of_steps",)),
+    "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
 }
 """The same inside some folders."""

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.slab.fold_passage import fold_delay
-from stickslip.reference.slab.hyperbolic_folds import HyperbolicFolds
+from stickslip.reference.slab.folds import HyperbolicFolds, fold_delay
 from stickslip.studies.regularisations import KINDS, regularised
 from stickslip.studies.regularise import Regularisation, regularise
 from stickslip.studies.run_distance import passage

@@ -20,10 +20,10 @@ import pandas as pd
 
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
-from stickslip.contact.regime_map import Axis
+from stickslip.contact.regime_map import Axis, put_both, two_parameters
 from stickslip.foundation.errors import InputError
 from stickslip.friction.slopes import slopes
-from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.trajectory.history import Floats
@@ -172,9 +172,7 @@ def analogy(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
-    if names[0].name == names[1].name:
-        raise InputError(f"analogy: needs two different parameters, got {names[0].name} twice")
+    names = two_parameters(problem, x, y, "analogy")
     if not 0.0 < within < 1.0:
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")
     block_for(problem)
@@ -191,7 +189,7 @@ def analogy(
 
 def _point(names: tuple[Parameter, Parameter], values: tuple[float, float], duration: float, rtol: float) -> dict[str, Any]:
     """Return the columns of the table that describe both bodies at a point."""
-    problem = _put(names, values)
+    problem = put_both(names, values)
     blank = {"weakening_slip": np.nan, "weakening_rate": np.nan}
     events = dict.fromkeys(("slab", "block"), _nothing(REFUSED))
     if problem is not None:
@@ -199,17 +197,6 @@ def _point(names: tuple[Parameter, Parameter], values: tuple[float, float], dura
         events = {name: _first_event(one, duration, rtol) for name, one in (("slab", problem), ("block", block_for(problem)))}
     found = {f"{key}_{name}": value for key in events["slab"] for name in events for value in [events[name][key]]}
     return blank | found | {f"{key}_ratio": found[f"{key}_slab"] / found[f"{key}_block"] for key in QUANTITIES}
-
-
-def _put(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
-    """Return the problem at a point, or None if the values are refused."""
-    pairs = list(zip(names, values, strict=True))
-    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be invalid although both together are valid
-        try:
-            return parameter(first.put(one), second.name).put(other)
-        except InputError:
-            continue
-    return None
 
 
 def weakening(problem: Problem) -> dict[str, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.contact.roots import sign_change
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import Floats
 
@@ -14,8 +15,6 @@ UNIFORM = 2001
 """Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""
 INSIDE = np.linspace(0.0, 1.0, 5)[:-1]
 """Positions of the times within each piece of a history, as shares of its length."""
-HALVINGS = 80
-"""Largest number of bisections, more than the digits of a time need."""
 
 
 @dataclass(frozen=True)
@@ -53,13 +52,5 @@ def passage(solution: Solution, level: float, rising: bool, near: float, start: 
     if not steps.size:
         return math.nan
     step = int(steps[np.argmin(np.abs(time[steps] - near))])
-    low, high = float(time[step]), float(time[step + 1])
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if (float(solution.slip_rate(middle)) > level) == rising:
-            high = middle
-        else:
-            low = middle
-    return high
+    way = 1.0 if rising else -1.0
+    return sign_change(lambda t: way * (float(solution.slip_rate(t)) - level), float(time[step]), float(time[step + 1]))
