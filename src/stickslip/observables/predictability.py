@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip import YEAR
 from stickslip.bodies import ElasticSlab
@@ -22,13 +21,10 @@ from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import Floats, History
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from stickslip.solution.solution import Solution
-
-Floats = NDArray[np.float64]
 
 LOST = 0.1
 """Disturbance, as a share of the waves that slip sends out, that changes an event into another one: it ends the horizon."""
@@ -84,12 +80,22 @@ class Predictability:
         return f"{grown}; predictable up to {when}, beyond it only statistics are"
 
 
-def predictability(solution: Solution) -> Predictability:
+class Run(Protocol):
+    """A run, as far as its predictability is concerned: its history, and the relative tolerance with which it was computed."""
+
+    @property
+    def history(self) -> History: ...
+
+    @property
+    def rtol(self) -> float: ...
+
+
+def predictability(run: Run) -> Predictability:
     """Return how far disturbances have grown along a run.
 
     Parameters
     ----------
-    solution : Solution
+    run : Solution
         Run of a slab without contact mass, under a law of slip rate only.
 
     Returns
@@ -101,15 +107,15 @@ def predictability(solution: Solution) -> Predictability:
     InputError
         For any other problem: there, slip, inertia or a state variable decide how a disturbance grows.
     """
-    problem, body, store = solution.problem, solution.problem.body, solution.history.store
+    history, problem, body, store = run.history, run.history.problem, run.history.problem.body, run.history.store
     if not is_followed(problem):
         raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")
     assert isinstance(body, ElasticSlab)
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
     # the load is stored as a difference from the strength, so only this difference is rounded
     rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())
-    error = max(solution.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
-    return Predictability(solution.history.start, store.amplified, error)
+    error = max(run.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
+    return Predictability(history.start, store.amplified, error)
 
 
 def predictability_of_events(events: pd.DataFrame, rtol: float) -> Predictability:

@@ -7,9 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.history import Floats, History, Moments
 
-Floats = NDArray[np.float64]
 Integrand = Callable[[Moments], Floats]
 
 _GAUSS = np.polynomial.legendre.leggauss(20)

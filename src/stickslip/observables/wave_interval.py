@@ -22,7 +22,7 @@ TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)
 """Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
 
 
-class Stretch:
+class WaveInterval:
     """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 
     The pieces of the history that hold in the interval are looked up once, including those whose echoes arrive in rests that were

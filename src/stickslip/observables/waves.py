@@ -18,9 +18,8 @@ from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
-from stickslip.trajectory.history import START, Epoch, History, Moments
+from stickslip.trajectory.history import START, Epoch, Floats, History, Moments
 
-Floats = NDArray[np.float64]
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""
 
@@ -54,14 +53,9 @@ class Waves:
 
     def stored(self, now: Epoch) -> float:
         """Return the elastic and kinetic energy inside the slab, up to a constant."""
-
-        def down(load: Floats, _: Floats) -> Floats:
-            return load * (2.0 * self.reference + load)
-
-        def up(leaving: Floats, _: Floats) -> Floats:
-            return leaving * (leaving - 2.0 * self.reference)
-
-        return self._inside(now, down, up) / (4.0 * self.body.impedance)
+        doubled = 2.0 * self.reference
+        both = self._inside(now, lambda load, _: load * (doubled + load), lambda leaving, _: leaving * (leaving - doubled))
+        return both / (4.0 * self.body.impedance)
 
     def trapped(self, now: Epoch) -> float:
         """Return the energy of the waves inside the slab: the stored energy beyond that of the same mean stress at rest.

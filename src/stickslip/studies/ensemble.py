@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,20 +19,18 @@ from stickslip.run.simulate import check_run, simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.studies.study import MAX_PIECES, Progress, RunsCompared, say_nothing, uninterrupted
 from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
-MAX_PIECES, MAX_TOTAL = 200_000, 2_000_000
-"""Default limits on the pieces of history of one run and of all runs together, which are held in memory (some 400 bytes each)."""
-Report = Callable[[str], Any]
-"""A function that is called with a line of text on the progress of a study."""
+MAX_TOTAL = 2_000_000
+"""Default limit on the pieces of history of all runs together."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble:
+class Ensemble(RunsCompared):
     """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
     Attributes
@@ -64,10 +61,8 @@ class Ensemble:
         """Return the problem without disturbance."""
         return self.reference.problem
 
-    @cached_property
-    def until(self) -> float:
-        """Return the time (s) up to which runs are compared: the earliest end of a run."""
-        return min(run.history.span[1] for run in (self.reference, *self.runs))
+    def _all_runs(self) -> tuple[Solution, ...]:
+        return self.reference, *self.runs
 
     @property
     def note(self) -> str:
@@ -79,22 +74,14 @@ class Ensemble:
         return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 
     @property
-    def ok(self) -> bool:
-        """Return True if every run reached its end."""
-        return all(run.status.ok for run in (self.reference, *self.runs))
-
-    @property
     def stopped(self) -> str:
         """Return the reason why there are fewer members or a shorter time than asked for; "" if nothing is missing."""
-        early = [run for run in (self.reference, *self.runs) if not run.status.ok]
-        reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
-        parts = [f"interrupted: {len(self.runs)} of {self.wanted} members"] if len(self.runs) < self.wanted else []
-        parts += [f"compared up to {_time(self.until)} only, where the first run ended ({reasons})"] if early else []
-        return "; ".join(parts)
+        missing = f"interrupted: {len(self.runs)} of {self.wanted} members" if len(self.runs) < self.wanted else ""
+        return "; ".join(part for part in (missing, super().stopped) if part)
 
     @cached_property
     def _all_events(self) -> tuple[pd.DataFrame, ...]:
-        return tuple(run.catalogue(self.event_rate) for run in (self.reference, *self.runs))
+        return tuple(run.catalogue(self.event_rate) for run in self._all_runs())
 
     @cached_property
     def catalogues(self) -> tuple[pd.DataFrame, ...]:
@@ -242,7 +229,6 @@ class Ensemble:
 
         Raises InputError if the name ends otherwise, or if an .nc file cannot be written.
         """
-        from stickslip.figures.studies.ensemble import data
         from stickslip.foundation.atomic_write import write_atomically
         from stickslip.foundation.netcdf_file import write
         from stickslip.io.netcdf import origin
@@ -252,19 +238,11 @@ class Ensemble:
             return write_atomically(path, lambda draft: self.table.to_csv(draft, index=False, lineterminator="\n"))
         if path.suffix.lower() != ".nc":
             raise InputError(f"ensemble: {path}: the name must end in .csv or .nc")
-        return write(data(self).assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), path)
+        return write(self.dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), path)
 
-    def plot(self) -> Figure:
-        """Plot the events of every member, the growth of the disturbance, and the distribution of slips."""
-        from stickslip.figures.studies.ensemble import data, draw
-
-        return draw(data(self))
-
-    def __repr__(self) -> str:
+    def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
-        return "\n".join(
-            ["stickslip Ensemble", *(f"  {line}" for line in (about, self.note, self.text, self.growth_text, self.stopped) if line)]
-        )
+        return about, self.note, self.text, self.growth_text, self.stopped
 
 
 def ensemble(
@@ -277,7 +255,7 @@ def ensemble(
     events: int | None = None,
     seed: int = 0,
     event_rate: float | None = None,
-    progress: Report | None = None,
+    progress: Progress | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
     """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
@@ -329,7 +307,7 @@ def ensemble(
     pushes = drawn(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
-    tell = progress or (lambda text: None)
+    tell = progress or say_nothing
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     tell("undisturbed")
     reference = _run(problem, duration, rtol, events, most)
@@ -346,11 +324,9 @@ def ensemble(
 
 def _run(problem: Problem, duration: float, rtol: float, events: int | None, max_pieces: int) -> Solution:
     # leaps over creep and lumped events would hide the small differences between the runs
-    exact: dict[str, Any] = {"creep_rtol": 0.0, "shortest_event": 0.0}
-    solution = simulate(problem, duration, rtol, events=events, max_pieces=max_pieces, **exact)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
-    return solution
+    return uninterrupted(
+        simulate(problem, duration, rtol, events=events, max_pieces=max_pieces, creep_rtol=0.0, shortest_event=0.0)
+    )
 
 
 def _time(seconds: float) -> str:

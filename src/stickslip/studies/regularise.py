@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 
-from stickslip import YEAR
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
@@ -24,15 +23,10 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
+from stickslip.studies.study import MAX_PIECES, Progress, RunsCompared, say_nothing, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
-
-MAX_PIECES = 200_000
-"""Default limit on the pieces of history of one run, which are held in memory."""
 LARGEST_SHARE, FACTOR, COUNT = 30.0, 4.0, 8
 """Default sizes: the largest is the two-way travel time over LARGEST_SHARE; each of COUNT is the one before over FACTOR."""
 RESOLVED = 100.0
@@ -40,12 +34,9 @@ RESOLVED = 100.0
 FIRST_JUMPS = 12
 """Largest number of jumps that are timed."""
 
-Report = Callable[[str], Any]
-"""A function that is called with a line of text on the progress of a study."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Regularisation:
+class Regularisation(RunsCompared):
     """The result of `regularise`, which compares all runs from t = 0 to `until` (s).
 
     Attributes
@@ -74,10 +65,8 @@ class Regularisation:
     runs: tuple[Solution, ...]
     seconds: tuple[float, ...]
 
-    @cached_property
-    def until(self) -> float:
-        """Return the time (s) up to which runs are compared: the earliest end of a run."""
-        return min(float(run.breaks[-1]) for run in (*self.exact.values(), *self.runs))
+    def _all_runs(self) -> tuple[Solution, ...]:
+        return *self.exact.values(), *self.runs
 
     @cached_property
     def floor(self) -> float:
@@ -127,14 +116,6 @@ class Regularisation:
         """Return the rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
         return self.verdict.rules[0] if self.verdict.rules else min(self.exact, key=lambda rule: float(self.errors(rule)[-1]))
 
-    @property
-    def stopped(self) -> str:
-        """Return the reason why the comparison ends before the duration that was asked for; "" if it does not."""
-        early = [run for run in (*self.exact.values(), *self.runs) if not run.status.ok]
-        reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
-        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
-        return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if early else ""
-
     @cached_property
     def jumps(self) -> pd.DataFrame:
         """Return the jumps in the exact solution of the target rule.
@@ -146,9 +127,12 @@ class Regularisation:
             decreases; expected, the order from theory: "2/3" at a fold, "1 (log)" for a jump out of rest under a ramp of load,
             and "1" for a jump caused by a jump of the load.
         """
-        from stickslip.studies.tables import jumps_table
-
-        return jumps_table(self)
+        shocks = self.shocks
+        table = shocks[["time", "cause", "rate_before", "rate_after"]].copy()
+        table["order"] = [self.delay_order(j).power for j in range(len(shocks))]
+        ramped = (shocks.cause == "fold") | ((shocks.cause == "start") & (self.problem.excess == 0.0))
+        table["expected"] = np.select([ramped & (shocks.rate_before == 0.0), ramped], ["1 (log)", "2/3"], "1")
+        return table
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
@@ -182,9 +166,21 @@ class Regularisation:
             difference (m) from its exact solution, and order_, between neighbouring sizes; change, the mean difference (m) from the
             size before; delay_ of each jump (s); pieces of history; seconds of computing time; status.
         """
-        from stickslip.studies.tables import sizes_table
-
-        return sizes_table(self)
+        kind = kind_of(self.by)
+        columns: dict[str, object] = {"size": self.sizes}
+        if kind.parameter != "time":
+            columns[kind.parameter] = [kind.value(self.problem, size) for size in self.sizes.tolist()]
+        for group, found in self.differences.items():
+            for rule in group:
+                name = rule.replace("-", "_")
+                columns |= {f"{part}_{name}": [getattr(one, part) for one in found] for part in ("mean", "largest", "end")}
+                columns[f"order_{name}"] = self.local_orders(rule)
+        columns["change"] = self.changes
+        columns |= {f"delay_{j + 1}": delay for j, delay in enumerate(self.delays.T)}
+        columns["pieces"] = [len(run.history) for run in self.runs]
+        columns["seconds"] = list(self.seconds)
+        columns["status"] = [run.status.name for run in self.runs]
+        return pd.DataFrame(columns)
 
     def delay_order(self, jump: int) -> Order:
         """Return the order with which the delay of a jump (a row of `jumps`) decreases with the size."""
@@ -194,15 +190,8 @@ class Regularisation:
         """Return the order of the errors relative to a rule between each size and the one before, shape (n,); NaN first."""
         return local_orders(self.sizes, self.errors(rule))
 
-    def plot(self) -> Figure:
-        """Plot the errors against size, and the runs near a jump."""
-        from stickslip.figures.studies.regularise import data, draw
-
-        return draw(data(self))
-
-    def __repr__(self) -> str:
-        lines = [f"regularised by {kind_of(self.by).title}, {len(self.sizes)} sizes", self.verdict.text, self.stopped]
-        return "\n".join(["stickslip Regularisation", *(f"  {line}" for line in lines if line)])
+    def _lines(self) -> tuple[str, ...]:
+        return f"regularised by {kind_of(self.by).title}, {len(self.sizes)} sizes", self.verdict.text, self.stopped
 
 
 def default_sizes(two_way_time: float) -> tuple[float, ...]:
@@ -218,7 +207,7 @@ def regularise(
     rules: Sequence[str] = SELECTION_RULES,
     rtol: float = 1e-10,
     *,
-    progress: Report | None = None,
+    progress: Progress | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
     """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.
@@ -258,26 +247,26 @@ def regularise(
     """
     slab = check_massless(problem)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
-    tell = progress or (lambda text: None)
+    tell = progress or say_nothing
     softened = [regularised(problem, by, size) for size in times.tolist()]
     exact = {}
     for rule in _known(rules):
         tell(f"exact answer, {rule}")
-        exact[rule] = _run(replace(problem, selection=rule), duration, rtol, max_pieces)[0]
-    done = []
+        exact[rule], _ = _run(replace(problem, selection=rule), duration, rtol, max_pieces)
+    runs, seconds = [], []
     for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
         tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
-        done.append(_run(one, duration, rtol, max_pieces))
-    return Regularisation(problem, by, times, rtol, exact, tuple(run for run, _ in done), tuple(spent for _, spent in done))
+        run, spent = _run(one, duration, rtol, max_pieces)
+        runs.append(run)
+        seconds.append(spent)
+    return Regularisation(problem, by, times, rtol, exact, tuple(runs), tuple(seconds))
 
 
 def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tuple[Solution, float]:
     """Run a problem, and return the solution and the seconds that it took, without compilation."""
     prepare(problem, rtol)
     start = time.perf_counter()
-    solution = simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
+    solution = uninterrupted(simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0))
     return solution, time.perf_counter() - start
 
 

@@ -136,6 +136,11 @@ class History:
         start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
         return start, start + self.duration
 
+    @cached_property
+    def breaks(self) -> Floats:
+        """Return the times (s) at which recorded pieces begin or end, including the start and the end of the run."""
+        return np.append(np.union1d(self.start, self.end[self.rests]), self.span[1])
+
     def __len__(self) -> int:
         return len(self.store.whole)
 

@@ -9,23 +9,16 @@ tests the run, and is not an identity.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.quadrature import Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Epoch, History, Moments
-
-if TYPE_CHECKING:
-    from stickslip.solution.evaluation import Readings
-    from stickslip.solution.solution import Solution
-
-Floats = NDArray[np.float64]
+from stickslip.trajectory.history import Epoch, Floats, History, Moments
 
 LONG_NAMES = {
     "work": "work of the driver",
@@ -41,15 +34,15 @@ LONG_NAMES = {
 """Long names of the energies in a dataset."""
 
 
-def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
+def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
     """Return the energies of a run as differences from their values at an origin.
 
     Parameters
     ----------
-    readings : Readings
-        A run, or a window on it.
+    history : History
+        History of a run.
     t : array_like
-        Times, s.
+        Times since the history's epoch, s.
     origin : float, optional
         Time at which the differences are zero, s. The default is the start of the run.
 
@@ -72,7 +65,6 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
     waves.
     """
     time = np.atleast_1d(np.asarray(t, float))
-    history = readings.history
     begin = history.span[0] if origin is None else origin
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
@@ -123,14 +115,14 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
     }
 
 
-def trapped_note(solution: Solution) -> str:
+def trapped_note(history: History) -> str:
     """Return one line on the waves that travel in the slab at the end of a run; empty for a block, which has none."""
-    history, body = solution.history, solution.problem.body
+    body = history.problem.body
     if not isinstance(body, ElasticSlab):
         return ""
     end = epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
     energy = Waves(history, body).trapped(end)
-    holds = solution.problem.strength**2 / (2.0 * body.stiffness)
+    holds = history.problem.strength**2 / (2.0 * body.stiffness)
     share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
     return f"{energy:.6g} J/m2 in waves at the end{share}"
 

@@ -21,33 +21,32 @@ from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Floats, History, Moments
 from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import friction_before
+from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 
 if TYPE_CHECKING:
     import pandas as pd
 
 ENERGETICS_COLUMNS = {
-    "start": ("s", "when |v| rises above the threshold"),
-    "slip": ("m", "slip within the event, positive in either direction"),
+    "start": EVENT_COLUMNS["start"],
+    "slip": EVENT_COLUMNS["slip"],
     "work": ("energy", "work of the driver, net of what is radiated"),
     "elastic": ("energy", "elastic energy that the event takes from the body"),
     "kinetic": ("energy", "kinetic energy at the end less that at the start"),
     "heat": ("energy", "all work of friction, from the law: fracture energy is part of it"),
     "fracture": ("energy", "fracture energy, summed over the pulses"),
-    "damped": ("energy", "dissipated by the block's damping"),
+    "damped": ENERGY_COLUMNS["damped"],
     "radiated": ("energy", "energy radiated through a driver of finite impedance during the event"),
-    "trapped": ("energy", "energy of waves travelling in the slab at the end, beyond that of the same mean stress at rest"),
+    "trapped": ENERGY_COLUMNS["trapped"],
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
-    "static_drop": ("load", "stiffness (G/h, or K) times slip"),
+    "static_drop": EVENT_COLUMNS["static_drop"],
     "dynamic_drop": ("load", "traction at rest before the slip less the smallest one while it slips"),
     "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
-"""Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
-
+"""Columns of `Solution.energetics`: unit and meaning, as in EVENT_COLUMNS."""
 
 ROUNDING = 1e-12
 """Rounding of a stress drop, relative to the normal stress (block: force)."""

@@ -8,13 +8,10 @@ s^2 (3 - 2 s) for the place in such an interval they are smooth functions of s u
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import Epoch, Moments
-
-Floats = NDArray[np.float64]
+from stickslip.trajectory.history import Epoch, Floats, Moments
 
 PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
