@@ -41,32 +41,11 @@ class Field(NamedTuple):
 
 
 def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
-    """Return displacement, velocity and shear stress inside the slab.
+    """Return displacement, velocity and shear stress inside the slab; for the parameters see `Solution.field`.
 
-    Parameters
-    ----------
-    history : History
-        History of a run.
-    slip : callable
-        Returns the displacement of the contact (m) at times (s).
-    x : array_like
-        Distances from the contact, m.
-    t : array_like
-        Times since the history's epoch, s; `x` and `t` are broadcast together.
-    side : {"right", "left"}
-        Limit in time at a wave front: "left" before the front passes, "right" after it. A point within rounding of a front
-        lies on it.
-
-    Returns
-    -------
-    Field
-        Displacement (m), velocity (m/s) and shear stress (Pa), each of the broadcast shape.
-
-    Raises
-    ------
-    InputError
-        For a block, for places outside the slab, for times outside the run, and if the waves in the slab left the contact in
-        a leap over creep.
+    `slip` returns the displacement of the contact (m) at times (s). At a wave front `side` "left" is the limit before the front
+    passes, "right" the one after it; a point within rounding of a front lies on it. Raises InputError for a block, for places
+    outside the slab, for times outside the run, and if the waves in the slab left the contact in a leap over creep.
     """
     body = slab_of(history.problem)
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
@@ -115,7 +94,7 @@ class _Inside:
         slack = rounding(since, half) * (1.0 if side == "left" else -1.0)
         left = self.time - (waves.round - away)  # when the wave left the contact
         sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first)
-        return np.where(since < half + slack, waves.excess + waves.slope * since, sent_back)
+        return np.where(since < half + slack, waves.first_load(since), sent_back)
 
     def _load_coming(self, away: Floats) -> Floats:
         """Return the integral of that load over the time until then, Pa s."""

@@ -50,7 +50,7 @@ class Predictability:
 
     @property
     def horizon(self) -> float:
-        """Return the time (s) from which on single events mean nothing; inf if there is none in this run.
+        """The time (s) from which on single events mean nothing; inf if there is none in this run.
 
         It is the first time at which the disturbance exceeds a tenth of the waves that slip sends out.
         """
@@ -59,12 +59,12 @@ class Predictability:
 
     @property
     def largest(self) -> float:
-        """Return the largest amplification in the run."""
+        """The largest amplification in the run."""
         return float(np.nanmax(self.amplification, initial=1.0))
 
     @property
     def exponent(self) -> float:
-        """Return ln(largest) divided by the time (s) at which it was reached: an estimate of the largest Lyapunov exponent, 1/s."""
+        """An estimate of the largest Lyapunov exponent, 1/s: ln(largest) divided by the time at which it was reached."""
         if not self.largest > 1.0:
             return 0.0
         reached = float(self.time[int(np.nanargmax(self.amplification))])
@@ -72,7 +72,7 @@ class Predictability:
 
     @property
     def text(self) -> str:
-        """Return the result as one line of text."""
+        """The result as one line of text."""
         grown = f"echoes multiply an error of the load by up to {self.largest:.3g}"
         if math.isinf(self.horizon):
             return f"{grown}; single events are predictable throughout"
@@ -84,10 +84,14 @@ class Run(Protocol):
     """A run, as far as its predictability is concerned: its history, and the relative tolerance with which it was computed."""
 
     @property
-    def history(self) -> History: ...
+    def history(self) -> History:
+        """The history of the run."""
+        ...
 
     @property
-    def rtol(self) -> float: ...
+    def rtol(self) -> float:
+        """The relative tolerance."""
+        ...
 
 
 def predictability(run: Run) -> Predictability:

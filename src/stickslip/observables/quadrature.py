@@ -23,13 +23,13 @@ BLOCK = 1 << 14
 
 
 def over(
-    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: Floats | None = None
+    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, *, leaped: Floats | None = None
 ) -> Floats:
     """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
     leaped = np.zeros(len(piece)) if leaped is None else leaped
     if len(piece) > BLOCK:
         cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
-        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped[cut]) for cut in cuts])
+        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut]) for cut in cuts])
     xi = low[:, None] + (high - low)[:, None] * NODES
     nodes = np.repeat(piece, len(NODES))
     at = Moments(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)

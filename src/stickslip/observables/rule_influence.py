@@ -49,7 +49,7 @@ class RuleInfluence:
 
     @property
     def note(self) -> str:
-        """Return one line on whether the result depends on the selection rule, and how much of it."""
+        """One line on whether the result depends on the selection rule, and how much of it."""
         if self.regime == "regular":
             return f"{self.rule}: without effect, the solution is unique"
         depends = f"{self.rule}: the contact equation has several solutions, this run depends on the rule"

@@ -65,8 +65,7 @@ class WaveInterval:
         """Return w plus the reference (Pa) at times (s) in the interval."""
         part = self._part(time, side)
         inside = np.maximum(part, 0)
-        since = time - self.first
-        start = -self.waves.slope * since - self.waves.excess
+        start = self.waves.left_before(time - self.first)
         return np.where(part < 0, start, _series(self._wave, inside, self._xi(time, inside)))
 
     def total(self, time: Floats) -> Floats:
@@ -94,7 +93,7 @@ class WaveInterval:
 
     @cached_property
     def _integral(self) -> Floats:
-        """Return the Chebyshev series of the wave's integral in time from the start of each piece.
+        """The Chebyshev series of the wave's integral in time from the start of each piece.
 
         The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
         """
@@ -104,9 +103,9 @@ class WaveInterval:
 
     @cached_property
     def _sums(self) -> Floats:
-        """Return what to add to those integrals so that they count from the start of the interval, for each part.
+        """The addends, one for each part, with which those integrals count from the start of the interval.
 
-        It is the integral up to the start of the part, less the value of the part's own series there.
+        Each is the integral up to the start of the part, less the value of the part's own series there.
         """
         parts = np.arange(len(self.start))
         begin, end = (

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
-from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError
 from stickslip.io.netcdf import PAPER, load
 from stickslip.observables.energy.energetics import extreme_tractions
@@ -20,7 +19,7 @@ from stickslip.run.progress import Progress
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.schema import check_rtol
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, say_nothing, uninterrupted
+from stickslip.studies.study import Study, TextProgress, say_nothing, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents
 from stickslip.trajectory.tables import default_event_rate
 
@@ -31,13 +30,13 @@ COLUMNS = {
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
     "events": ("", "slip events, see `Solution.events`"),
-    "pulses": ("", "of the largest event: maxima of the slip rate, see `Solution.events`"),
+    "pulses": ("", "maxima of the slip rate in the largest event, see `Solution.events`"),
     "slip": ("m", "slip of the largest event"),
     "peak_rate": ("m/s", "largest slip rate of the run"),
-    "static_drop": ("load", "of the largest event: stiffness (G/h, or K) times its slip"),
-    "traction_drop": ("load", "of the largest event: traction at rest before it minus traction at rest after it"),
-    "dynamic_drop": ("load", "of the largest event: traction at rest before it minus the smallest one while it slips"),
-    "duration": ("s", "of the first event; NaN if it is not over"),
+    "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
+    "traction_drop": ("load", "traction at rest before the largest event minus traction at rest after it"),
+    "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
+    "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate"),
     "slip_rate": ("", "smooth, or jumps"),
     "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
@@ -105,17 +104,11 @@ class Comparison(Study):
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return the table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
+        """The table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
         return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
 
-    def save(self, path: str | Path) -> Path:
-        """Write the table as CSV and return its path.
-
-        Comment lines (#) before the table give the version, the units of the columns, and every scenario in SI units.
-        """
-        return write_table(Path(path), self.table, self._about())
-
     def _about(self) -> Iterator[str]:
+        """Yield the version, the columns with their units, and every scenario in SI units, for the file of the table."""
         yield f"stickslip {stickslip.__version__}: runs side by side. Method: {PAPER}"
         for name, (unit, meaning) in COLUMNS.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
@@ -133,7 +126,7 @@ def compare(
     event: int | None = None,
     until: float | None = None,
     rtol: float | None = None,
-    progress: Callable[[str], Any] | None = None,
+    progress: TextProgress | None = None,
 ) -> Comparison:
     """Compare two or more runs in one table and one figure.
 

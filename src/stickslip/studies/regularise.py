@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 
 import numpy as np
 import pandas as pd
@@ -23,7 +24,7 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
-from stickslip.studies.study import MAX_PIECES, Progress, RunsCompared, say_nothing, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
 
@@ -70,23 +71,25 @@ class Regularisation(RunsCompared):
 
     @cached_property
     def floor(self) -> float:
-        """Return the mean slip difference (m) below which runs are equal to within their accuracy."""
+        """The mean slip difference (m) below which runs are equal to within their accuracy."""
         first = next(iter(self.exact.values()))
         return RESOLVED * self.rtol * max(float(np.ptp(first.slip(np.linspace(0.0, self.until, 101)))), 1e-300)
 
     @cached_property
     def groups(self) -> tuple[tuple[str, ...], ...]:
-        """Return the rules in groups that have the same exact solution."""
+        """The rules in groups that have the same exact solution."""
         return tuple(groups(tuple(self.exact), self._apart, self.floor))
 
     @cached_property
     def _apart(self) -> dict[tuple[str, str], float]:
-        pairs = ((one, other) for one in self.exact for other in self.exact)
-        return {(a, b): difference(self.exact[a], self.exact[b], self.until).mean if a != b else 0.0 for a, b in pairs}
+        found = {(rule, rule): 0.0 for rule in self.exact}
+        for a, b in combinations(self.exact, 2):
+            found[a, b] = found[b, a] = difference(self.exact[a], self.exact[b], self.until).mean
+        return found
 
     @cached_property
     def differences(self) -> dict[tuple[str, ...], list[Difference]]:
-        """Return, for each group of rules, the difference in slip (m) of each run from their exact solution."""
+        """The differences in slip (m) of each run from the exact solution of each group of rules."""
         return {group: [difference(run, self.exact[group[0]], self.until) for run in self.runs] for group in self.groups}
 
     def errors(self, rule: str) -> Floats:
@@ -100,25 +103,25 @@ class Regularisation(RunsCompared):
 
     @cached_property
     def changes(self) -> Floats:
-        """Return the mean magnitude of the slip difference (m) between each run and the one before, shape (n,); NaN first."""
+        """The mean magnitude of the slip difference (m) between each run and the one before, shape (n,); NaN first."""
         pairs = zip(self.runs[1:], self.runs[:-1], strict=True)
         return np.array([np.nan, *(difference(run, before, self.until).mean for run, before in pairs)])
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Return the rule to which the runs converge, and the order of convergence."""
+        """The rule to which the runs converge, and the order of convergence."""
         against = {group: self.errors(group[0]) for group in self.groups}
         apart = {a: min([math.inf, *(self._apart[a[0], b[0]] for b in self.groups if b != a)]) for a in self.groups}
         return judge(Errors(self.sizes, against, self.changes, apart, self.floor))
 
     @property
     def target(self) -> str:
-        """Return the rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
+        """The rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
         return self.verdict.rules[0] if self.verdict.rules else min(self.exact, key=lambda rule: float(self.errors(rule)[-1]))
 
     @cached_property
     def jumps(self) -> pd.DataFrame:
-        """Return the jumps in the exact solution of the target rule.
+        """The jumps in the exact solution of the target rule.
 
         Returns
         -------
@@ -136,13 +139,13 @@ class Regularisation(RunsCompared):
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Return the first shocks of the target's exact solution before `until` (at most FIRST_JUMPS): see `Solution.shocks`."""
+        """The first shocks of the target's exact solution before `until` (at most FIRST_JUMPS): see `Solution.shocks`."""
         shocks = self.exact[self.target].shocks
         return shocks[shocks.time < self.until].head(FIRST_JUMPS)
 
     @cached_property
     def delays(self) -> Floats:
-        """Return the delay (s) of each run (row) at each of the `jumps` (column), relative to the exact solution.
+        """The delay (s) of each run (row) at each of the `jumps` (column), relative to the exact solution.
 
         A run makes a jump when its slip rate passes the middle between the rates before and after; NaN if it does not.
         """
@@ -152,12 +155,12 @@ class Regularisation(RunsCompared):
         found = np.full((len(self.runs), len(times)), np.nan)
         for j, (at, before, after) in enumerate(zip(times, shocks.rate_before, shocks.rate_after, strict=True)):
             for i, run in enumerate(self.runs):
-                found[i, j] = passage(run, 0.5 * (before + after), after > before, at, edges[j], edges[j + 1]) - at
+                found[i, j] = passage(run, 0.5 * (before + after), after > before, at, (edges[j], edges[j + 1])) - at
         return found
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return a table with one row for each size.
+        """A table with one row for each size.
 
         Returns
         -------
@@ -205,9 +208,9 @@ def regularise(
     by: str = "contact-mass",
     sizes: Sequence[float] | None = None,
     rules: Sequence[str] = SELECTION_RULES,
-    rtol: float = 1e-10,
     *,
-    progress: Progress | None = None,
+    rtol: float = 1e-10,
+    progress: TextProgress | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
     """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.

@@ -47,7 +47,7 @@ class Separation(NamedTuple):
 
     @property
     def small(self) -> NDArray[np.bool_]:
-        """Return True for the intervals before the first in which the separation of a member is saturated or only rounding."""
+        """True for the intervals before the first in which the separation of a member is saturated or only rounding."""
         fine = ((self.apart < self.saturation) & (self.apart > self.noise)).all(axis=0)
         return np.logical_and.accumulate(fine)
 

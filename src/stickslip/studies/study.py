@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip import YEAR
+from stickslip.foundation.atomic_write import write_table
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 MAX_PIECES = 200_000
 """Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""
-Progress = Callable[[str], Any]
+TextProgress = Callable[[str], Any]
 """A function that is called with a line of text on the progress of a study."""
 
 
@@ -31,7 +33,20 @@ def uninterrupted(solution: Solution) -> Solution:
 
 
 class Study:
-    """The result of a study. Its figure is drawn by the module of `stickslip.figures.studies` that has the study's name."""
+    """The result of a study: a table, a text and a figure.
+
+    The figure is drawn by the module of `stickslip.figures.studies` that has the study's name.
+    """
+
+    table: Any
+    """Results as a pandas.DataFrame; its columns are described in each study."""
+
+    def save(self, path: str | Path) -> Path:
+        """Write the table as CSV and return its path; comment lines (#) before it, if there are any, say where it comes from."""
+        return write_table(Path(path), self.table, self._about())
+
+    def _about(self) -> Iterable[str]:
+        return ()
 
     def dataset(self) -> xr.Dataset:
         """Return what `plot` draws, in SI units."""
@@ -62,17 +77,17 @@ class RunsCompared(Study):
 
     @cached_property
     def until(self) -> float:
-        """Return the time (s) up to which runs are compared: the earliest end of a run."""
+        """The time (s) up to which runs are compared: the earliest end of a run."""
         return min(run.history.span[1] for run in self._all_runs())
 
     @property
     def ok(self) -> bool:
-        """Return True if every run reached its end."""
+        """True if every run reached its end."""
         return all(run.status.ok for run in self._all_runs())
 
     @property
     def stopped(self) -> str:
-        """Return the reason why the comparison ends before the duration that was asked for; "" if it does not."""
+        """The reason why the comparison ends before the duration that was asked for; "" if it does not."""
         reasons = ", ".join(dict.fromkeys(run.status.name for run in self._all_runs() if not run.status.ok))
         years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
         return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if reasons else ""

@@ -55,7 +55,7 @@ class _Both:
 
     def _left(self, time: Floats) -> Floats:
         """Return w plus the reference (Pa) that left the contact at these times."""
-        found = -self.waves.slope * (self.begun + time) - self.waves.excess
+        found = self.waves.left_before(self.begun + time)
         known = np.flatnonzero(time > -self.begun) if len(self.start) else np.empty(0, np.intp)
         which = np.maximum(np.searchsorted(self.start, time[known], side="right") - 1, 0)
         piece = self.piece[which]
@@ -67,5 +67,6 @@ class _Both:
     def _coming(self, away: Floats) -> Floats:
         """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s)."""
         since, left = self.begun + away, away - self.waves.round
-        of_start = self.waves.excess + self.waves.slope * since
-        return np.where(since < self.waves.half, of_start, self.waves.arriving(self._left(left), self.begun + left))
+        return np.where(
+            since < self.waves.half, self.waves.first_load(since), self.waves.arriving(self._left(left), self.begun + left)
+        )

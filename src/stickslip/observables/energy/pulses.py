@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 PULSE_COLUMNS = {
     "event": ("1", "row of the event in the catalogue"),
     "start": ("s", "start of the event, or where |v| is smallest since the pulse before"),
-    "start_after": ("s", "the same since the event began, without rounding"),
-    "duration": ("s", "until the next pulse, or the end of the event"),
+    "start_after": ("s", "time from the start of the event to that of the pulse, without rounding"),
+    "duration": ("s", "time until the next pulse, or the end of the event"),
     "slip": ("m", "slip during the pulse, positive in either direction"),
     "peak_rate": ("m s-1", "largest |v|"),
-    "smallest_traction": ("load", "of the pulse while it slips, against the slip"),
+    "smallest_traction": ("load", "smallest traction of the pulse while it slips, against the slip"),
     "weakening_slip": ("m", "slip until the smallest traction"),
     "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
 }
