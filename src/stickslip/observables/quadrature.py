@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.history import Floats, History, Positions
 
-Integrand = Callable[[Moments], Floats]
+Integrand = Callable[[Positions], Floats]
 
 _GAUSS = np.polynomial.legendre.leggauss(20)
 NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
@@ -32,14 +32,14 @@ def over(
         return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut]) for cut in cuts])
     xi = low[:, None] + (high - low)[:, None] * NODES
     nodes = np.repeat(piece, len(NODES))
-    at = Moments(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
+    at = Positions(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
     values = integrand(at).reshape(xi.shape)
     speed, bend = history.store.speed[piece], history.store.bend[piece]
     return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ WEIGHTS * (high - low))
 
 
-def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
-    """Integrate over all pieces, or the given ones, up to each moment; rest that was not recorded is left out."""
+def up_to(history: History, at: Positions, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
+    """Integrate over all pieces, or the given ones, up to each position; rest that was not recorded is left out."""
     at = at.recorded()
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
@@ -52,8 +52,8 @@ def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[n
     return total
 
 
-def between(history: History, first: Moments, last: Moments, integrand: Integrand) -> Floats:
-    """Integrate from each first moment to the last one of the same slip event; nothing outside the event enters."""
+def between(history: History, first: Positions, last: Positions, integrand: Integrand) -> Floats:
+    """Integrate from each first position to the last one of the same slip event; nothing outside the event enters."""
 
     def one(begin: int, end: int, low: float, high: float) -> float:
         pieces = np.arange(begin, end + 1)

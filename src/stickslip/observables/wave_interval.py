@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.errors import InputError
 from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import Floats, Moments, Side
+from stickslip.trajectory.history import Floats, Positions, Side
 
 POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
 """Points at which the wave of a piece is sampled. Their number makes the interpolation exact for the polynomials of the history
@@ -47,7 +47,7 @@ class WaveInterval:
         store = self.history.store
         self._origin = self.history.seconds(store.row[self._piece] + leaped, store.theta_from[self._piece])
         count = len(POINTS)
-        places = Moments.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
+        places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
         self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
         self._wave = TO_SERIES @ self._values
 

@@ -18,7 +18,7 @@ from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
-from stickslip.trajectory.history import START, Epoch, Floats, History, Moments
+from stickslip.trajectory.history import START, Epoch, Floats, History, Positions
 
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""
@@ -34,7 +34,7 @@ class Waves:
         self.slope = body.impedance * history.problem.first_pull_rate / self.half  # G V / h
         self.inflow = inflow_of(history.problem)
 
-    def leaving(self, at: Moments) -> Floats:
+    def leaving(self, at: Positions) -> Floats:
         """Return w plus the reference, Pa."""
         return 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
 
@@ -204,10 +204,10 @@ class Waves:
             total += (self.half - begun) * float(down(self.first_load(begun + away), away) @ WEIGHTS)
         return total + self._between(now, max(-self.round, -self.half - begun), -self.half, back)
 
-    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Moments], Floats]:
-        """Return the density as a function of moments, with the time counted from an epoch."""
+    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Positions], Floats]:
+        """Return the density as a function of positions, with the time counted from an epoch."""
 
-        def integrand(at: Moments) -> Floats:
+        def integrand(at: Positions) -> Floats:
             store = self.history.store
             theta = store.theta_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
             time = (store.row[at.piece] + at.leaped - since.row) * self.round + (theta - since.offset)
@@ -241,7 +241,7 @@ class Waves:
             total += self._in_row(row, begin, end, self._of(density, now))
         return total
 
-    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
+    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Positions], Floats]) -> float:
         """Integrate over the offsets from low to high (s) of a row."""
         piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)

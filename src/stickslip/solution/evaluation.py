@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Moments, Side
+from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Readings:
         """Return the first and the last time (s) that figures show by default."""
         return self.history.span
 
-    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
+    def _at(self, t: ArrayLike, side: Side) -> tuple[Positions, tuple[int, ...]]:
         try:
             time = np.asarray(t, float)
         except OverflowError:  # a whole number larger than any float

@@ -19,7 +19,7 @@ from stickslip.observables.energy.balance import epochs, event_energies
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.history import Floats, History, Positions
 from stickslip.trajectory.slip_events import SlipEvents
 from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 
@@ -75,14 +75,14 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     return table[list(ENERGETICS_COLUMNS)]
 
 
-def _energies(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _energies(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
     extra = (_of_slab if isinstance(history.problem.body, ElasticSlab) else _of_block)(history, begin, end)
     made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
     return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
 
 
-def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     body = history.problem.body
     assert isinstance(body, ElasticSlab)
     waves, radiation = Waves(history, body), Radiation(history, body)
@@ -96,7 +96,7 @@ def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats
     }
 
 
-def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     body = history.problem.body
     assert not isinstance(body, ElasticSlab)
     nothing = np.zeros(len(begin.piece))
@@ -104,14 +104,14 @@ def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Float
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
-def extreme_tractions(history: History, begin: Moments, pulses: Pulses) -> tuple[Floats, Floats]:
+def extreme_tractions(history: History, begin: Positions, pulses: Pulses) -> tuple[Floats, Floats]:
     """Return two tractions against the slip of each event (Pa, block: N): at rest before it, and the smallest of its pulses."""
     smallest = np.full(len(begin.piece), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
     return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
 
 
-def friction_at_rest_before(history: History, begin: Moments) -> Floats:
+def friction_at_rest_before(history: History, begin: Positions) -> Floats:
     """Return the traction minus the reference strength at rest before the slip in which each event begins.
 
     This is the load, also if the contact does not rest but only reverses its direction. A block, or a contact with mass, moves

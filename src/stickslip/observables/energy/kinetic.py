@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import Epoch, Floats, Moments
+from stickslip.trajectory.history import Epoch, Floats, Positions
 
 PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
@@ -60,7 +60,7 @@ class _Both:
         which = np.maximum(np.searchsorted(self.start, time[known], side="right") - 1, 0)
         piece = self.piece[which]
         xi = self.waves.history.xi(piece, np.maximum(time[known] - self.origin[which], 0.0))
-        at = Moments(piece, xi, self.leaped[which], np.zeros(len(piece), bool), piece)
+        at = Positions(piece, xi, self.leaped[which], np.zeros(len(piece), bool), piece)
         found[known] = self.waves.leaving(at)
         return found
 
