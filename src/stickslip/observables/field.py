@@ -18,7 +18,7 @@ from typing import NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.foundation.errors import InputError
 from stickslip.observables.wave_interval import WaveInterval, rounding
 from stickslip.observables.waves import Waves
@@ -65,9 +65,7 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
 
 def slab_of(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem. Raises InputError for a block."""
-    if not isinstance(problem.body, ElasticSlab):
-        raise InputError("field: a block is rigid and has no interior field: only an ElasticSlab has a field")
-    return problem.body
+    return as_slab(problem.body, "field: a block is rigid and has no interior field: only an ElasticSlab has a field")
 
 
 class _Inside:
