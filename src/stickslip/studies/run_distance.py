@@ -41,12 +41,12 @@ def _inside(solution: Solution, start: float, end: float) -> Floats:
     return np.append(times[(times >= start) & (times <= end)], min(end, float(breaks[-1])))
 
 
-def passage(solution: Solution, level: float, rising: bool, near: float, start: float, end: float) -> float:
-    """Return the time (s) between start and end at which the slip rate passes a level (m/s), upwards if `rising`.
+def passage(solution: Solution, level: float, rising: bool, near: float, span: tuple[float, float]) -> float:
+    """Return the time (s) in a span (start, end) at which the slip rate passes a level (m/s), upwards if `rising`.
 
     If there are several such times, the result is the one nearest to `near`; it is NaN if there is none.
     """
-    time = _inside(solution, start, end)
+    time = _inside(solution, *span)
     beyond = (solution.slip_rate(time) > level) == rising
     steps = np.flatnonzero(beyond[1:] & ~beyond[:-1])
     if not steps.size:
