@@ -25,7 +25,7 @@ from stickslip.problem.problem import MAY_VARY, Problem
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.scenarios.entries import Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
-from stickslip.scenarios.values import read_quantity, show
+from stickslip.scenarios.values import read_typed, show
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
@@ -172,16 +172,9 @@ def without_owner(error: InputError) -> str:
     return str(error).partition(": ")[2]
 
 
-def read_duration(text: str, where: str, name: str = "duration", declared: Quantity = DURATION) -> float:
-    """Read a time that a user typed, as a number of seconds or with a unit, and return it in s.
-
-    `declared` gives its range, by default that of a run's duration. Raises InputError with a message that begins with `where`.
-    """
-    try:
-        value: float | str = float(text)
-    except ValueError:
-        value = text
-    return read_quantity(value, declared, where, name)
+def read_duration(text: str, where: str, name: str = "duration") -> float:
+    """Return a duration (s) that a user typed, a number or a text with a unit. Raises InputError that begins with `where`."""
+    return read_typed(text, DURATION, where, name)
 
 
 def check_rtol(value: float, where: str, name: str = "rtol") -> float:
