@@ -9,11 +9,9 @@ from typing import Any
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import names, unknown
 from stickslip.scenarios.scenario import Scenario, load_scenario
-from stickslip.scenarios.schema import SHORTEST_EVENT, check_events, check_rtol, read_duration
+from stickslip.scenarios.schema import SHORTEST_EVENT, check_events, check_rtol, check_rule, read_duration
 from stickslip.scenarios.values import read_typed
 
 Reader = Callable[[Any, str, str], Any]
@@ -55,6 +53,4 @@ def _shortest_event(problem: Problem, text: str, command: str, option: str) -> f
 
 
 def _under_rule(problem: Problem, rule: str, command: str, option: str) -> Problem:
-    if rule not in names():
-        raise InputError(f"{command}: {option} '{rule}' {unknown(rule)}")
-    return replace(problem, selection=rule)
+    return replace(problem, selection=check_rule(rule, command, option))

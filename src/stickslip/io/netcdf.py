@@ -30,7 +30,7 @@ from stickslip.solution.window import Window
 from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.status import Status
-from stickslip.trajectory.tables import EVENT_COLUMNS
+from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -181,16 +181,16 @@ def save(solution: Solution, path: str | Path) -> Path:
         raise
 
 
-def save_checkpoint(solution: Solution, path: Path) -> Path:
+def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None = None) -> None:
     """Write only what `load` and `resume` need of a run under way, without curves and tables, to save time.
 
-    A full disk does not end the run: the previous checkpoint stays in the file, and a warning says so.
+    `about` holds the attributes of a checkpoint that is not a solution. A full disk does not end the run: the previous checkpoint
+    stays in the file, and a warning says so.
     """
     try:
-        return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+        write(history_dataset(solution).assign_attrs(origin(solution) | (about or {"stickslip_format": FORMAT})), path)
     except FullDiskError as error:
         warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
-        return path
 
 
 def history_dataset(solution: Solution) -> xr.Dataset:
@@ -208,29 +208,25 @@ def history_dataset(solution: Solution) -> xr.Dataset:
 
 
 def _history(solution: Solution) -> xr.Dataset:
-    store, history = solution.history.store, solution.history
-    dataset = xr.Dataset(
-        {
-            "history_whole": (("piece", "whole_column"), store.whole),
-            "history_real": (("piece", "real_column"), store.real),
-            "history_load": (("piece", "term"), store.load),
-            "history_rate": (("piece", "term"), store.rate),
-            "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
-            "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
-            "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
-        }
-    )
+    store, history, load = solution.history.store, solution.history, solution.problem.load_unit
+    whole = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
+    real = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
+    variables: dict[str, Any] = {
+        "history_whole": (("piece", "whole_column"), store.whole, whole),
+        "history_real": (("piece", "real_column"), store.real, real),
+        "history_load": (("piece", "term"), store.load, {"long_name": "load minus reference, Taylor coefficients", "units": load}),
+        "history_rate": (("piece", "term"), store.rate, {"long_name": "slip rate, Taylor coefficients", "units": "m s-1"}),
+        "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
+        "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
+        "ramp": ((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
+    }
     if len(history.creep):
         about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
-        dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
+        variables["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
-        dataset["history_state"] = (("piece", "term"), store.state, about)
-    dataset.history_whole.attrs = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
-    dataset.history_real.attrs = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
-    dataset.history_load.attrs = {"long_name": "load minus reference, Taylor coefficients", "units": solution.problem.load_unit}
-    dataset.history_rate.attrs = {"long_name": "slip rate, Taylor coefficients", "units": "m s-1"}
-    return dataset
+        variables["history_state"] = (("piece", "term"), store.state, about)
+    return xr.Dataset(variables)
 
 
 def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
@@ -262,8 +258,8 @@ def _tables(solution: Solution) -> xr.Dataset:
 
 def column_unit(name: str, load_unit: str) -> str:
     """Return the unit of a column of the table of events."""
-    unit, _ = EVENT_COLUMNS[name]
-    return load_unit if unit == "load" else unit
+    unit, _ = (EVENT_COLUMNS | ENERGY_COLUMNS)[name]
+    return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
 
 
 def load(path: str | Path) -> Solution:
