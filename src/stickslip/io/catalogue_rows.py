@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation import netcdf_file
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import sync, write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import cannot_be_written, write_with
+from stickslip.foundation.netcdf_file import cannot_be_written, digest_of, write_with
 from stickslip.io.netcdf import column_unit
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ AT_A_TIME = 50_000
 
 CHUNK = 1024
 """Number of rows in a chunk of a netCDF file, whose dimension has no fixed size."""
-BYTES_AT_A_TIME = 2**20
-"""Number of bytes read at a time for a checksum, which bounds the memory."""
 
 
 def check_catalogue(path: Path, where: str = "catalogue") -> None:
@@ -74,18 +72,14 @@ class Rows:
     def sync(self) -> None:
         """Force the rows onto the disk, before a checkpoint that relies on them."""
         if self.growing.exists():
-            with self.growing.open("rb+") as file:
-                os.fsync(file.fileno())
+            sync(self.growing)
 
     def digest(self, size: int) -> str:
         """Return the SHA-256 of the first `size` bytes of the growing file, or of all its bytes if it has fewer."""
-        digest = hashlib.sha256()
-        if self.growing.exists():
-            with self.growing.open("rb") as file:
-                while size > 0 and (some := file.read(min(size, BYTES_AT_A_TIME))):
-                    digest.update(some)
-                    size -= len(some)
-        return digest.hexdigest()
+        if not self.growing.exists():
+            return hashlib.sha256().hexdigest()
+        with self.growing.open("rb") as file:
+            return digest_of(file, size)
 
     def take_up(self, rows: int, size: int, digest: str) -> None:
         """Go back to the first `rows` rows, which filled `size` bytes with this digest.
