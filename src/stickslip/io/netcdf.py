@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 import stickslip
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Store
+from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import FullDiskError, write
-from stickslip.io.soundness import check_history, number
+from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.observables.rule_influence import choices
@@ -193,6 +193,12 @@ def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None
         warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
 
 
+HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name, place in HistoryPiece.places.items()}
+"""Dimensions of the variable of each field of the history's pieces."""
+HISTORY_UNITS = dict.fromkeys(("theta_from", "theta_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
+"""Units of these variables, unless they are pure numbers or loads."""
+
+
 def history_dataset(solution: Solution) -> xr.Dataset:
     """Return the history, and the state of the engine at its end if it is known.
 
@@ -209,13 +215,12 @@ def history_dataset(solution: Solution) -> xr.Dataset:
 
 def _history(solution: Solution) -> xr.Dataset:
     store, history, load = solution.history.store, solution.history, solution.problem.load_unit
-    whole = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
-    real = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
-    variables: dict[str, Any] = {
-        "history_whole": (("piece", "whole_column"), store.whole, whole),
-        "history_real": (("piece", "real_column"), store.real, real),
-        "history_load": (("piece", "term"), store.load, {"long_name": "load minus reference, Taylor coefficients", "units": load}),
-        "history_rate": (("piece", "term"), store.rate, {"long_name": "slip rate, Taylor coefficients", "units": "m s-1"}),
+    units, known = HISTORY_UNITS | {"load": load}, {"load": "load minus reference", "rate": "slip rate"}
+    variables: dict[str, Any] = {}
+    for name, axes in HISTORY_AXES.items():
+        meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
+        variables[f"history_{name}"] = (axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+    variables |= {
         "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
         "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
         "ramp": ((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
@@ -322,10 +327,10 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
-    whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
+    columns = {name: _array(dataset, f"history_{name}") for name in HISTORY_AXES}
     state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, at.TERMS))
     duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
-    store = Store(whole, real, load, rate, state)
+    store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
     row_time, ramp, reached = (float(dataset[name].item()) for name in ("row_time", "ramp", "reached"))
     history = History(store, scenario.problem, row_time, ramp, reached, creep=creep)

@@ -9,7 +9,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.engine_input.forcing import inflow_of
@@ -84,7 +83,7 @@ class Moments:
 
     @property
     def at_rest(self) -> NDArray[np.bool_]:
-        """Return True for moments at which nothing was recorded because the contact rests."""
+        """True for moments at which nothing was recorded because the contact rests."""
         return self.leaped > 0.0
 
     def recorded(self) -> Moments:
@@ -122,22 +121,22 @@ class History:
 
     @cached_property
     def start(self) -> Floats:
-        """Return the time at which each piece starts, s."""
+        """The time at which each piece starts, s."""
         return self.seconds(self.store.row, self.store.theta_from)
 
     @cached_property
     def end(self) -> Floats:
-        """Return the time at which each piece ends, s."""
+        """The time at which each piece ends, s."""
         return self.seconds(self.store.row, self.store.theta_to)
 
     @property
     def span(self) -> tuple[float, float]:
-        """Return the times (s) of the start and the end of the run."""
+        """The times (s) of the start and the end of the run."""
         start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
         return start, start + self.duration
 
     def __len__(self) -> int:
-        return len(self.store.whole)
+        return len(self.store.pieces)
 
     def is_averaged(self, row: int) -> bool:
         """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
@@ -192,7 +191,7 @@ class History:
 
     @cached_property
     def phases(self) -> Phases:
-        """Return the index of the pieces by phase."""
+        """The index of the pieces by phase."""
         return Phases.of(self.store, self.row_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
@@ -228,7 +227,7 @@ class History:
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
-        """Return True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
+        """True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
         row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
         follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
         last = row[-1:] * self.row_time + end[-1:]
@@ -257,7 +256,7 @@ class History:
     def excess(self, at: Moments) -> Floats:
         """Return the load minus the reference strength, Pa (block: N)."""
         value = horner(self.store.load[at.piece], at.xi)
-        if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
+        if at.at_rest.any() and self.problem.body.has_waves:
             left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
             value = np.where(at.at_rest, value - left, value)
         return np.where(at.before, self.problem.excess, value + self._gained(at))
@@ -327,8 +326,8 @@ class History:
         """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body
-        if isinstance(body, ElasticSlab) and body.contact_mass == 0.0:
-            return excess - body.impedance * rate
+        if not body.has_inertia:
+            return excess - body.damping * rate
         law, mode = self.problem.friction, self.mode(at)
         grown = self.grown(at)
         walked = mode * grown if law.counts == "path" else grown
