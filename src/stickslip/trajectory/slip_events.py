@@ -11,7 +11,7 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
-from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.history import History, Positions
 
 MAXIMA_PER_PIECE = 32
 """Largest number of extrema of the slip rate, or of crossings of the threshold, in one piece."""
@@ -209,19 +209,19 @@ class SlipEvents(NamedTuple):
         return self._replace(**{name: column[..., which] for name, column in self._asdict().items()})
 
     @property
-    def begin(self) -> Moments:
-        """The moments at which the events begin."""
-        return Moments.inside(self.piece[0], self.xi[0])
+    def begin(self) -> Positions:
+        """The positions at which the events begin."""
+        return Positions.inside(self.piece[0], self.xi[0])
 
     @property
-    def peak(self) -> Moments:
-        """The moments at which the slip rate is largest."""
-        return Moments.inside(self.piece[1], self.xi[1])
+    def peak(self) -> Positions:
+        """The positions at which the slip rate is largest."""
+        return Positions.inside(self.piece[1], self.xi[1])
 
     @property
-    def end(self) -> Moments:
-        """The moments at which the events end, or the history does."""
-        return Moments.inside(self.piece[2], self.xi[2])
+    def end(self) -> Positions:
+        """The positions at which the events end, or the history does."""
+        return Positions.inside(self.piece[2], self.xi[2])
 
     def largest(self, values: Floats) -> Floats:
         """Return the largest value in each event, from values given for each piece of the history."""

@@ -55,7 +55,7 @@ def regularise(
     chosen = load_with("regularise", scenario, duration=duration, rtol=rtol)
     study = _study(chosen, by, _sizes(chosen, largest, smallest, count))
     show_regularisation(chosen, study)
-    announce(*write_files((out, lambda path: _save(path, study)), (figure, drawing(study.plot))))
+    announce(*write_files((out, study.save), (figure, drawing(study.plot))))
 
 
 def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count: int) -> list[float]:
@@ -81,9 +81,3 @@ def _study(scenario: Scenario, by: str, sizes: list[float]) -> Regularisation:
 
     with progress_to(f"{scenario.name}:") as report:
         return study(scenario.problem, scenario.duration, by, sizes, rtol=scenario.rtol, progress=report)
-
-
-def _save(path: Path, study: Regularisation) -> None:
-    from stickslip.foundation.atomic_write import write_table
-
-    write_table(path, study.table, ())
