@@ -55,7 +55,7 @@ ROOMS = {
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
-    "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
+    "cli": (("output", "names", "overrides"), ("long_run", "options"), ("commands",), ("main",)),
 }
 """The same inside some folders."""
 LAZY_DOORS = {"solution/accessors.py"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -13,9 +12,8 @@ from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.foundation.atomic_write import held
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, FORMAT, history_dataset, origin, read, to_solution
+from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, read, save_checkpoint, to_solution
 from stickslip.io.soundness import check_place
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
@@ -317,11 +315,7 @@ class CatalogueKeeper(Keeper):
             return
         self.rows.sync()
         solution = as_solution(run, self.orders, code)
-        about = self._about(run, self.told, self.rows)
-        try:
-            write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
-        except FullDiskError as error:  # the previous checkpoint is still in the file
-            warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
+        save_checkpoint(solution, checkpoint_of(self.rows), self._about(run, self.told, self.rows))
 
     def finish(self, run: RunInProgress, code: int) -> dict[str, str]:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format.
