@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import show
 from stickslip.sweeps.design.axis import Axis, check_size, read_values
-from stickslip.sweeps.design.parameter_paths import find_parameter
+from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter
 
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
 _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
@@ -24,10 +24,10 @@ def typed_axes(scenario: Scenario, texts: Iterable[str], where: str) -> list[Axi
     return [_typed_axis(scenario, text, where) for text in texts]
 
 
-def typed_value(text: Any) -> Any:
-    """Return a number that was typed as text as a number, and anything else as it is."""
+def typed_value(parameter: ParameterPath, text: Any) -> Any:
+    """Return a number that was typed as text as a number, and words, texts with a unit and anything else as they are."""
     try:
-        return float(text) if isinstance(text, str) else text
+        return float(text) if isinstance(text, str) and parameter.unit else text
     except ValueError:
         return text
 
@@ -38,9 +38,11 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> Axis:
         raise InputError(f"{where} must be {FORM}, got {show(text)}")
     parameter = find_parameter(scenario, name, where)
     found = _RANGE.fullmatch(content)
+    texts = found.group("low", "high") if found else content.split(",")
+    values = [typed_value(parameter, one) for one in texts]
     if not found:
-        return Axis(parameter, read_values(parameter, map(typed_value, content.split(",")), where))
-    axis = Axis.of_range(parameter, [typed_value(found["low"]), typed_value(found["high"])], bool(found["log"]), where)
+        return Axis(parameter, read_values(parameter, values, where))
+    axis = Axis.of_range(parameter, values, bool(found["log"]), where)
     return axis if found["points"] is None else _with_points(axis, int(found["points"]), where)
 
 

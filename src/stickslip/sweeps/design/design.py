@@ -229,6 +229,9 @@ def listed(scenario: Scenario, table: pd.DataFrame, where: str) -> Design:
         raise InputError(f"{where}: the table has no members")
     parameters = tuple(find_parameter(scenario, str(name).strip(), where) for name in table.columns)
     _check_names([parameter.name for parameter in parameters], where)
-    cells = (map(typed_value, table.iloc[:, i]) for i in range(len(parameters)))
-    columns = tuple(read_values(parameter, column, where, math.inf) for parameter, column in zip(parameters, cells, strict=True))
-    return Design(LIST, parameters, columns)
+    columns = (table.iloc[:, i] for i in range(len(parameters)))
+    values = (
+        read_values(parameter, (typed_value(parameter, cell) for cell in column), where, math.inf)
+        for parameter, column in zip(parameters, columns, strict=True)
+    )
+    return Design(LIST, parameters, tuple(values))
