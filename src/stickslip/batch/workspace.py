@@ -42,7 +42,7 @@ class Workspace(NamedTuple):
 
     @property
     def capacity(self) -> int:
-        """Return the number of pieces of history for which each lane has room."""
+        """The number of pieces of history for which each lane has room."""
         return self.store.whole.shape[1]
 
     def ready_for(self, constants: int) -> Workspace:

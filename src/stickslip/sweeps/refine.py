@@ -133,7 +133,7 @@ class _Search:
             return self.round(points, None if folder is None else folder / f"{len(self.rounds):03d}.zarr", run, progress)
 
         try:
-            complete = refine_cells(self.spec.lattice, evaluate, self.spec.differ, self.spec.most).complete
+            complete = refine_cells(self.spec.lattice, evaluate, self.spec.factor, self.spec.most).complete
         except _StoppedError:
             return self.together(complete=False)
         if place is None or folder is None:

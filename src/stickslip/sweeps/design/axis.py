@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.units import to_si
 from stickslip.friction.parameters import Choice
 from stickslip.scenarios.values import show
@@ -74,12 +75,23 @@ class Axis:
 
 def read_values(parameter: ParameterPath, values: Iterable[Any], where: str, most: float = LARGEST_AXIS) -> Values:
     """Return values in SI. Raises InputError for the first that the parameter cannot have, for none, and for more than `most`."""
-    plain = (_without_unit(parameter, value, where) for value in _without_unit(parameter, values, where))
-    read = [parameter.read(value, where) for value in plain]
-    if not read:
+    values = _without_unit(parameter, values, where)
+    if isinstance(values, np.ndarray) and values.dtype.kind in "iuf" and values.size and _takes_an_interval(parameter):
+        for extreme in (values.min(), values.max()):  # both are NaN if any of the values is
+            parameter.read(extreme, where)
+        read = values.astype(float)
+    else:
+        plain = [parameter.read(_without_unit(parameter, value, where), where) for value in values]
+        read = np.array(plain, dtype=float if parameter.unit else np.dtypes.StringDType())
+    if not len(read):
         raise InputError(f"{where}: {parameter.name} needs at least one value")
     check_size(parameter, len(read), where, most)
-    return np.array(read, dtype=float if parameter.unit else np.dtypes.StringDType())
+    return read
+
+
+def _takes_an_interval(parameter: ParameterPath) -> bool:
+    """Return True if a parameter can have all numbers between any two that it can have."""
+    return isinstance(parameter.declared, Quantity) and not parameter.declared.whole
 
 
 def check_size(parameter: ParameterPath, size: int, where: str, most: float = LARGEST_AXIS) -> None:

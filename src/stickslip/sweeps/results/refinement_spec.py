@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.adaptive_grid import Differ, Floats, Integers, Lattice, Refined, apart, refine_cells, unequal
+from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.outcome import NOT_RUN
 
@@ -72,11 +72,6 @@ class RefinementSpec:
     def lattice(self) -> Lattice:
         """The finest grid, which contains every point of the search."""
         return Lattice(tuple(len(column) for column in self.columns.values()), self.depth)
-
-    @property
-    def differ(self) -> Differ:
-        """The comparison that decides whether answers differ."""
-        return unequal if self.factor is None else apart(self.factor)
 
     def values(self, points: Integers) -> tuple[Floats, ...]:
         """Return the values of each parameter (SI) at points (members, axes) of the finest grid.
@@ -158,4 +153,4 @@ def _repeated(spec: RefinementSpec, answers: Floats) -> Refined:
         place += len(points)
         return answers[place - len(points) : place]
 
-    return refine_cells(spec.lattice, evaluate, spec.differ, len(answers))
+    return refine_cells(spec.lattice, evaluate, spec.factor, len(answers))
