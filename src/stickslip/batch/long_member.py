@@ -6,7 +6,7 @@ Slip events are reduced to numbers as soon as they are complete, and history tha
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,53 +32,22 @@ FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
 
 
 @dataclass
-class Fold:
-    """The reduction of slip events to numbers, event by event: those of `reduction.fold_events` and `reduction.fold_first`.
-
-    `out` holds one number for each of `reduction.COLUMNS`. `recurrences` counts the recurrence times so far, and `spread` is the
-    sum of their squared deviations from the mean (s^2).
-    """
-
-    out: Floats
-    recurrences: int = 0
-    spread: float = 0.0
-
-    def add(self, rows: pd.DataFrame) -> None:
-        """Add events, in order of time."""
-        out = self.out
-        if len(rows) and out[of.EVENTS] == 0:
-            out[of.FIRST_START : of.FIRST_STATIC_DROP + 1] = rows[list(FIRST)].iloc[0]
-        out[of.EVENTS] += len(rows)
-        out[of.PULSES] += rows.pulses.sum()
-        for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
-            if not rate <= out[of.PEAK_RATE]:  # also where no event has been counted yet, and the peak is NaN
-                out[of.PEAK_RATE], out[of.PEAK_TIME] = rate, when
-        for since in rows.recurrence.dropna():
-            self.recur(since)
-
-    def recur(self, since: float) -> None:
-        """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
-        mean = 0.0 if self.recurrences == 0 else self.out[of.RECURRENCE]
-        self.recurrences += 1
-        change = since - mean
-        mean += change / self.recurrences
-        self.spread += change * (since - mean)
-        self.out[of.RECURRENCE] = mean
-        if self.recurrences > 1:
-            self.out[of.RECURRENCE_CV] = math.sqrt(self.spread / (self.recurrences - 1)) / mean
-
-
-@dataclass
 class Folding:
     """The watch (`run_loop.Watch`) of a run in bounded memory: it reduces events and discards history when this is full.
 
-    `stop` is the flag that ends the whole batch.
+    Events are reduced one by one to the numbers of `reduction.fold_events` and `reduction.fold_first`.
     """
 
     stream: EventStream
-    fold: Fold
     stop: Integers
-    counted: int = field(default=0)
+    """The flag that ends the whole batch."""
+    out: Floats
+    """One number for each of `reduction.COLUMNS`."""
+    recurrences: int = 0
+    """Number of recurrence times so far."""
+    deviations: float = 0.0
+    """Sum of the squared deviations of the recurrence times from their mean (s^2)."""
+    counted: int = 0
     """Number of pieces whose shocks have been counted."""
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
@@ -92,7 +61,7 @@ class Folding:
         """
         self.count_shocks(run.store, run.length)
         look = self.stream.look(run.store, run.length)
-        self.fold.add(look.table())
+        self.add(look.table())
         look.tell()
         dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
         if dropped > 0:
@@ -102,8 +71,32 @@ class Folding:
 
     def count_shocks(self, store: Store, length: int) -> None:
         """Count the shocks of the pieces that were added since the last count."""
-        self.fold.out[of.SHOCKS] += np.count_nonzero(store.cause[self.counted : length])
+        self.out[of.SHOCKS] += np.count_nonzero(store.cause[self.counted : length])
         self.counted = length
+
+    def add(self, rows: pd.DataFrame) -> None:
+        """Add events, in order of time."""
+        out = self.out
+        if len(rows) and out[of.EVENTS] == 0:
+            out[of.FIRST_START : of.FIRST_STATIC_DROP + 1] = rows[list(FIRST)].iloc[0]
+        out[of.EVENTS] += len(rows)
+        out[of.PULSES] += rows.pulses.sum()
+        for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
+            if not rate <= out[of.PEAK_RATE]:  # also where no event has been counted yet, and the peak is NaN
+                out[of.PEAK_RATE], out[of.PEAK_TIME] = rate, when
+        for since in rows.recurrence.dropna():
+            self.add_recurrence(since)
+
+    def add_recurrence(self, since: float) -> None:
+        """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
+        mean = 0.0 if self.recurrences == 0 else self.out[of.RECURRENCE]
+        self.recurrences += 1
+        change = since - mean
+        mean += change / self.recurrences
+        self.deviations += change * (since - mean)
+        self.out[of.RECURRENCE] = mean
+        if self.recurrences > 1:
+            self.out[of.RECURRENCE_CV] = math.sqrt(self.deviations / (self.recurrences - 1)) / mean
 
 
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
@@ -117,9 +110,9 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     out[:] = np.nan
     out[[of.EVENTS, of.PULSES, of.SHOCKS]] = 0.0
-    watch = Folding(stream, Fold(out), stop)
+    watch = Folding(stream, stop, out)
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
-    watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
+    watch.add(stream.look(run.store, run.length).table(unknown=True))
     of.fold_end(run.store, run.length, row_time(problem), scenario.duration, code, out)
     return code
