@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from stickslip import YEAR
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_block, as_slab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import problem
@@ -34,8 +34,7 @@ def constants() -> list[Constant]:
 
 def _slab() -> list[Constant]:
     case = problem("fig6-slab")
-    slab = case.body
-    assert isinstance(slab, ElasticSlab)
+    slab = as_slab(case.body)
     return [
         Constant("ρ", "density", slab.density, None, "kg/m³"),
         Constant("c", "shear wave speed", slab.wave_speed, None, "m/s"),
@@ -46,9 +45,7 @@ def _slab() -> list[Constant]:
 
 
 def _block() -> list[Constant]:
-    printed, other = problem("fig6-block-printed").body, problem("fig6-block-reconstructed").body
-    assert isinstance(printed, SpringBlock)
-    assert isinstance(other, SpringBlock)
+    printed, other = (as_block(problem(name).body) for name in ("fig6-block-printed", "fig6-block-reconstructed"))
     cube = "m and S describe a cube of 1 km, whose stiffness is G × 10³ m; printed: G × 10⁴ m"
     return [
         Constant("m", "mass of the block", printed.mass, None, "kg"),
@@ -75,8 +72,7 @@ def _laws() -> list[Constant]:
 
 def _derived() -> list[Constant]:
     printed, other, rate = (problem(name) for name in ("fig5-slab-printed", "fig5-slab-reconstructed", "fig6-slab"))
-    slab = rate.body
-    assert isinstance(slab, ElasticSlab)
+    slab = as_slab(rate.body)
     lacking = "S μ'(u0) + K = 0 has no solution as printed"
     return [
         Constant("G", "shear modulus ρc²", slab.shear_modulus, None, "Pa"),

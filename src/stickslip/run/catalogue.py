@@ -309,7 +309,7 @@ class CatalogueKeeper(Keeper):
             self.stream.forget(dropped)
             self._remember(run)
             self.looked = self.stands(run)
-        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
+        return run.length < len(run.store.pieces) // 2 or run.grow(self.orders.most_pieces)
 
     def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""
@@ -339,7 +339,7 @@ class CatalogueKeeper(Keeper):
         self.rows.tidy()
         notes = {
             "predictability": prediction.text if prediction else "",
-            "trapped": trapped_note(solution),
+            "trapped": trapped_note(solution.history),
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_slab
 from stickslip.figures.style import BLUE, GREY, INK, PALE, VERMILLION, letter, panels, quantity, styled
 from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.problem import Problem
@@ -21,17 +21,14 @@ ARROW: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "linew
 
 def data(block: Problem, slab: Problem) -> xr.Dataset:
     """Return the constants of both systems, and the displacement (m) of the slab at t = 0 across its thickness, all in SI."""
-    assert isinstance(block.body, SpringBlock)
-    assert isinstance(slab.body, ElasticSlab)
-    x = np.linspace(0.0, slab.body.thickness, 21)
+    body = as_slab(slab.body)
+    x = np.linspace(0.0, body.thickness, 21)
     contents: dict[str, xr.Variable] = {
-        "initial_displacement": quantity(
-            "x", slab.initial_slip + slab.load / slab.body.shear_modulus * x, "displacement", "u", "m"
-        ),
+        "initial_displacement": quantity("x", slab.initial_slip + slab.load / body.shear_modulus * x, "displacement", "u", "m"),
     }
-    for prefix, body in (("block", block.body), ("slab", slab.body)):
-        for name, declared in quantities_of(type(body)).items():
-            value = getattr(body, name)
+    for prefix, one in (("block", block.body), ("slab", body)):
+        for name, declared in quantities_of(type(one)).items():
+            value = getattr(one, name)
             if value is not None:
                 attributes = {"long_name": declared.meaning, "units": declared.unit}
                 contents[f"{prefix}_{name}"] = xr.Variable((), value, attributes)

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.figures.runs.curves import Name, nearly_flat
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
 
@@ -45,8 +44,8 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
             contents[f"{name}_{row}"] = quantity(f"{name}_time", values, *meaning[row])
         contents[f"{name}_time"] = quantity(f"{name}_time", time, "time", "t", "s")
         body = solution.problem.body
-        if isinstance(body, ElasticSlab):
-            contents[f"{name}_two_way_time"] = quantity((), body.two_way_time, "two-way travel time 2h/c", "R", "s")
+        if body.has_waves:
+            contents[f"{name}_two_way_time"] = quantity((), body.round_trip_time, "two-way travel time 2h/c", "R", "s")
     shown_as = [(titles or {}).get(name, name) for name in solutions]
     attributes = {"title": "Runs side by side", "systems": list(solutions), "system_titles": shown_as}
     return xr.Dataset(contents, attrs=attributes)

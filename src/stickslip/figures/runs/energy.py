@@ -9,7 +9,6 @@ import xarray as xr
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from stickslip.bodies import ElasticSlab
 from stickslip.figures.runs.slab_panels import seen, sheet
 from stickslip.figures.style import BLUE, GREEN, INK, PURPLE, SKY, VERMILLION, letter, quantity, readable, styled, time_unit
 from stickslip.observables.energy.balance import energies
@@ -58,8 +57,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))
     body = readings.problem.body
-    slab = isinstance(body, ElasticSlab)
-    unit = "J/m²" if slab else "J"
+    unit = "J/m²" if body.has_waves else "J"
     parts = {name: values - values[0] for name, values in found.items() if name in ("radiated", "damped", "heat", "work")}
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     total = parts["elastic"][0] + parts["kinetic"][0] + parts["work"] + parts["radiated"]

@@ -32,7 +32,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     and x, padded with NaN. Raises InputError for a block, and for times outside the run.
     """
     readings, start, end = seen(readings, start, end)
-    body = slab_of(readings)
+    body = slab_of(readings.problem)
     contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
     lines = [_bounces(time, end, body.two_way_time, body.reflection) for time in _origins(readings, start, end)]
@@ -50,7 +50,7 @@ def _origins(readings: Readings, start: float, end: float) -> Floats:
     One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
     characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
     """
-    history, round_trip = readings.history, slab_of(readings).two_way_time
+    history, round_trip = readings.history, slab_of(readings.problem).two_way_time
     events = run_of(readings).events
     begin = history.seconds(events.start_row.to_numpy(), events.start_offset.to_numpy(float))
     shocks = shocks_table(history, start - round_trip, end).time.to_numpy(float)

@@ -11,20 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    PURPLE,
-    VERMILLION,
-    label,
-    letter,
-    quantity,
-    shown,
-    styled,
-    zero_line,
-)
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILLION, label, letter, quantity, shown, styled, zero_line
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:

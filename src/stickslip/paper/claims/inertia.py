@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import YEAR
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_block, as_slab
+from stickslip.contact.roots import sign_change
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem
 from stickslip.paper.claims.verdict import Verdict, judge, verdict
@@ -58,11 +59,9 @@ def _lightened(factor: float) -> tuple[Problem, float]:
     The duration is 120 times that in which a small slip rate grows by a factor e without the spring; it ends after the peak.
     """
     case, slab = problem("fig6-block-reconstructed"), problem("fig6-slab").body
-    body, law = case.body, case.friction
-    assert isinstance(body, SpringBlock)
-    assert isinstance(slab, ElasticSlab)
+    body, law = as_block(case.body), case.friction
     assert isinstance(law, HyperbolicRate)
-    area = body.normal_force / slab.normal_stress
+    area = body.normal_force / slab.normal_load
     mass, damping = body.mass * factor, slab.impedance * area
     growth = (body.normal_force * (law.static - law.dynamic) * law.alpha - damping) / mass
     return replace(case, body=replace(body, mass=mass, damping=damping)), 120.0 / growth
@@ -70,8 +69,7 @@ def _lightened(factor: float) -> tuple[Problem, float]:
 
 def _with_contact_mass(mass: float) -> Problem:
     case = problem("fig6-slab")
-    assert isinstance(case.body, ElasticSlab)
-    return replace(case, body=replace(case.body, contact_mass=mass))
+    return replace(case, body=replace(as_slab(case.body), contact_mass=mass))
 
 
 def _peak(solution: Solution) -> float:
@@ -86,17 +84,12 @@ def rise_time(solution: Solution) -> float:
 
 
 def _reaches(solution: Solution, rate: float, start: float, end: float) -> float:
-    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s).
-
-    The interval is divided into 256 parts again and again, and the first part in which the rate is reached is kept.
-    """
-    for _ in range(12):
-        time = np.linspace(start, end, 257)
-        first = int(np.argmax(solution.slip_rate(time) >= rate))
-        if first == 0:
-            break
-        start, end = float(time[first - 1]), float(time[first])
-    return end
+    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s)."""
+    time = np.linspace(start, end, 257)
+    first = int(np.argmax(solution.slip_rate(time) >= rate))
+    if first == 0:
+        return end
+    return sign_change(lambda t: float(solution.slip_rate(t)) - rate, float(time[first - 1]), float(time[first]))
 
 
 def block_stays_put(runs: Runs) -> Verdict:
@@ -144,6 +137,5 @@ def reloading_time(solution: Solution, at: float) -> float:
     The block must rest at that time.
     """
     case = solution.problem
-    assert isinstance(case.body, SpringBlock)
     strength = case.normal * float(case.friction.static_coefficient(float(solution.slip(at))))
     return float(strength - solution.load(at)) / (case.body.stiffness * case.first_pull_rate)

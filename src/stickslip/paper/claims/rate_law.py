@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem
@@ -76,7 +76,7 @@ def irregular_regime(runs: Runs) -> Verdict:
     alphas = [critical + 1e-6, *(factor * critical for factor in SCAN)]
     shares, block_shocks = [], 0
     for alpha in alphas:
-        shares.append(shock_share(runs(_with_alpha(slab, alpha), 1.5 * _round_trip(slab))))
+        shares.append(shock_share(runs(_with_alpha(slab, alpha), 1.5 * slab.round_trip_time)))
         block_shocks += len(runs(_with_alpha(block, alpha), 4.0).shocks)
     dominated = min(shares) > 0.5
     outcome = Outcome.NOT if not dominated or block_shocks else Outcome.PRINTED if min(shares) > 0.9 else Outcome.QUALIFIED
@@ -113,15 +113,10 @@ def _with_alpha(case: Problem, alpha: float) -> Problem:
     return replace(case, friction=replace(case.friction, alpha=alpha))
 
 
-def _round_trip(case: Problem) -> float:
-    assert isinstance(case.body, ElasticSlab)
-    return case.body.two_way_time
-
-
 def just_above_critical(runs: Runs) -> Verdict:
     """Measure claim 18: the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
     case = problem("fig7-slab-critical")
-    back = _round_trip(case)
+    back = case.round_trip_time
     event = runs(case, 2.0 * back)
     shocks = event.shocks
     later = runs(case, SECOND_EVENT_BY).events
@@ -145,7 +140,7 @@ def just_above_critical(runs: Runs) -> Verdict:
 def like_coulomb(runs: Runs) -> Verdict:
     """Measure claim 19: the slip rate divided by that under Coulomb's law, at several alpha."""
     slab = problem("fig6-slab")
-    critical, back = _critical(slab), _round_trip(slab)
+    critical, back = _critical(slab), slab.round_trip_time
     law = slab.friction
     assert isinstance(law, HyperbolicRate)
     middle = 0.5 * back
@@ -173,8 +168,8 @@ def load_before_the_echo(runs: Runs) -> Verdict:
     beyond = []
     for name in ("fig5-slab-reconstructed", "fig6-slab", "fig7-slab-critical"):
         solution = runs.case(name)
-        body, case = solution.problem.body, solution.problem
-        assert isinstance(body, ElasticSlab)
+        case = solution.problem
+        body = as_slab(case.body)
         middle, back = body.thickness / body.wave_speed, body.two_way_time
         for part, start, end in (("to h/c", 0.0, middle), ("from h/c to 2h/c", middle, back)):
             time = np.linspace(start, end, 400)
