@@ -113,67 +113,57 @@ def sync_folder(folder: Path) -> None:
             os.close(number)
 
 
-def _locked(path: Path) -> int | None:
-    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported."""
+@contextmanager
+def held(path: Path, refusal: str) -> Iterator[None]:
+    """Reserve a folder, or the name of a file that need not exist yet, against other processes.
+
+    A folder is locked itself. For a file the lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating
+    system releases the lock when the process ends, however it ends. Raises InputError with the text `refusal` if another process
+    holds the name. If the file system does not support locks, nothing is reserved.
+    """
+    beside = None if path.is_dir() else path.with_name(f".{path.name}.lock")
+    number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    try:
+        yield
+    finally:
+        if beside is not None and number is not None:
+            beside.unlink(missing_ok=True)
+        _close(number)
+
+
+def _locked(path: Path, refusal: str = "", flags: int = os.O_RDONLY) -> int | None:
+    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported.
+
+    Raises InputError with the text `refusal`, if there is one, in place of returning None if another process holds it.
+    """
     try:
         import fcntl
     except ImportError:  # Windows
         return None
-    number = os.open(path, os.O_RDONLY)
+    number = os.open(path, flags, 0o666)
     try:
         fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
+    except OSError as error:
         os.close(number)
+        if refusal and isinstance(error, BlockingIOError):
+            raise InputError(refusal) from None
         return None
     return number
+
+
+def _locked_beside(lock: Path, refusal: str) -> int | None:
+    """Create and lock a file of this name, which another process may be about to remove. Returns and raises as `_locked` does."""
+    while True:
+        number = _locked(lock, refusal, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0))
+        with suppress(FileNotFoundError):
+            if number is None or os.path.samestat(os.fstat(number), lock.stat()):
+                return number
+        _close(number)  # the file was removed in between, so no other process would ever see this lock: try again
 
 
 def _close(number: int | None) -> None:
     if number is not None:
         os.close(number)
-
-
-@contextmanager
-def held(path: Path, refusal: str) -> Iterator[None]:
-    """Reserve a file name against other processes, even if the file does not exist yet.
-
-    The lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating system releases the lock when the
-    process ends, however it ends. Raises InputError with the text `refusal` if another process holds the name. If the file system
-    does not support locks, nothing is reserved.
-    """
-    lock = path.with_name(f".{path.name}.lock")
-    number = _lock_of(lock, refusal)
-    try:
-        yield
-    finally:
-        if number is not None:
-            lock.unlink(missing_ok=True)
-            os.close(number)
-
-
-def _lock_of(lock: Path, refusal: str) -> int | None:
-    """Lock the file of this name, which another process may be about to remove, and return its descriptor.
-
-    Returns None if locks are not supported. Raises InputError with the text `refusal` if another process holds the lock.
-    """
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return None
-    while True:
-        number = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        try:
-            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            with suppress(FileNotFoundError):
-                if os.path.samestat(os.fstat(number), lock.stat()):
-                    return number
-            os.close(number)  # the file was removed in between, so no other process would ever see this lock: try again
-        except BlockingIOError:
-            os.close(number)
-            raise InputError(refusal) from None
-        except OSError:  # a file system without locks
-            os.close(number)
-            return None
 
 
 class Sink(io.FileIO):

@@ -16,7 +16,7 @@ from stickslip.figures.sweeps.colours import Colours, colours_of, explain, faile
 from stickslip.figures.sweeps.maps import side_by_side
 from stickslip.figures.sweeps.members import axes_of, draw_members
 from stickslip.figures.sweeps.varied import Scaled, Shown, shown
-from stickslip.sweeps.results.refinement_spec import Recipe, RefinedMap, cells_of
+from stickslip.sweeps.results.refinement_spec import RefinedMap, RefinementSpec, cells_of
 
 
 def draw_cells(dataset: xr.Dataset) -> Figure:
@@ -24,9 +24,9 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
 
     For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
     """
-    recipe, title = Recipe.read(dataset), str(dataset.attrs.get("title", ""))
-    names = list(recipe.columns)
-    if dataset.attrs["quantity"] != recipe.quantity or len(names) not in (2, 3):
+    spec, title = RefinementSpec.read(dataset), str(dataset.attrs.get("title", ""))
+    names = list(spec.columns)
+    if dataset.attrs["quantity"] != spec.quantity or len(names) not in (2, 3):
         return draw_members(dataset)
     quantity, cells = shown(dataset), cells_of(dataset)
     colours, places = colours_of(quantity, cells.answer), axes_of(dataset)
@@ -35,7 +35,7 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
         _draw(grid[0, 0], quantity, colours, cells, places)
         letter(grid[0, 0], title)
     else:
-        values = recipe.columns[names[2]]
+        values = spec.columns[names[2]]
         third = xr.DataArray(values, name=names[2], attrs=dataset[names[2]].attrs)
         figure, grid = side_by_side(third, lambda axes, k: _draw(axes, quantity, colours, cells.at(names[2], values[k]), places))
         figure.suptitle(title, fontsize=9.5, fontweight="bold")

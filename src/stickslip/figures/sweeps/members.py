@@ -15,7 +15,7 @@ from stickslip.figures.style import BLUE, GREY, PALE, letter, panels
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain
 from stickslip.figures.sweeps.curves import mark_failed, show_ordinate
 from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, Recipe
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 SIZE = 12.0
 """Area of a point (in square points, as `scatter` takes it)."""
@@ -51,7 +51,7 @@ def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
     if ATTRIBUTE not in dataset.attrs:
         return found
     # The values themselves do not tell: members crowd where the answer changes.
-    logarithmic = dict(zip(names, Recipe.read(dataset).logarithmic, strict=True))
+    logarithmic = dict(zip(names, RefinementSpec.read(dataset).logarithmic, strict=True))
     return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 
