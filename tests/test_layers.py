@@ -44,7 +44,7 @@ ROOMS = {
     "engine": (("codegen",), ("state",), ("series",), ("contact_step",), ("moving_folds", "waves"), ("loop",)),
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
-    "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
+    "figures": (("style",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "reference": (("bisection", "rate_and_state"), ("block", "slab"), ("method_of_steps",)),
     "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
 }

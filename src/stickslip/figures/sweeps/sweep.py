@@ -12,9 +12,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stickslip.figures.style import styled
-from stickslip.figures.sweeps.cells import draw_cells
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
-from stickslip.figures.sweeps.maps import draw_maps
+from stickslip.figures.sweeps.maps import draw_cells, draw_maps
 from stickslip.figures.sweeps.members import draw_members
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
