@@ -153,10 +153,14 @@ def narrow(text: str) -> str:
     return text if "\n" in text else text.replace(" (", "\n(")
 
 
+def name_system(body: str, law: str) -> str:
+    """Return the title of a figure of one system, from the kinds of its body and its friction law."""
+    return f"{body.replace('-', ' ').capitalize()}, {law} friction"
+
+
 def system_title(problem: Problem) -> str:
-    """Return the title of a figure of one system: its body and its friction law."""
-    body = type(problem.body).kind.replace("-", " ").capitalize()
-    return f"{body}, {type(problem.friction).kind} friction"
+    """Return the title of a figure of one problem: its body and its friction law."""
+    return name_system(type(problem.body).kind, type(problem.friction).kind)
 
 
 def clock(readings: Readings) -> str:

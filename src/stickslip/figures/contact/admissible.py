@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.figures.contact.resistance import draw_branches
 from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILLION, Floats, curve_quantity, label, quantity, styled
+from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -28,9 +29,6 @@ _ROOM = 1.25
 """The curve ends at this multiple of the largest slip rate of interest, so that all folds, jumps and the run lie inside."""
 _TINY = 1e-3
 """If the loads span less than this share of the static strength, they are drawn as differences from it."""
-
-PARTS = {1: ("slip, stable", BLUE, "-"), -1: ("slip, unstable", VERMILLION, "--"), 0: ("slip, continuum", PURPLE, "-")}
-"""Legend, colour and line style of the parts of the curve, by their `kind`."""
 
 
 def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
@@ -150,15 +148,9 @@ def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> Non
     """Draw stick (vertical) and the stable, unstable and flat parts of the curve, or their mirror image for sign -1."""
     rate, excess, kind = (dataset[name].values for name in ("slip_rate", "excess", "kind"))
     stick = height(np.array([-float(dataset["strength"]), 0.0]), sign)
-    axes.plot([0.0, 0.0], stick, color=GREY, linewidth=3.0, label="stick" if sign > 0 else None)
-    for which, (name, colour, style) in PARTS.items():
-        chosen = kind == which
-        if not chosen.any():
-            continue
-        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
-            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
-        values = np.where(chosen, height(excess, sign), np.nan)
-        axes.plot(sign * rate, values, color=colour, linewidth=3.0, linestyle=style, label=name if sign > 0 else None)
+    look: dict[str, Any] = {"linewidth": 3.0} if sign > 0 else {"linewidth": 3.0, "label": None}
+    axes.plot([0.0, 0.0], stick, **{"color": GREY, "label": "stick"} | look)
+    draw_branches(axes, sign * rate, height(excess, sign), kind, **look)
 
 
 def _draw_jumps(axes: Axes, dataset: xr.Dataset, height: Height) -> None:

@@ -13,11 +13,14 @@ from matplotlib.figure import Figure
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
 from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, curve_quantity, label, quantity, shown, styled
+from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, Floats, curve_quantity, label, quantity, shown, styled
 from stickslip.problem.problem import Problem
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
+
+BRANCHES = {1: ("slip, stable", BLUE, "-"), -1: ("slip, unstable", VERMILLION, "--"), 0: ("slip, continuum", PURPLE, "-")}
+"""Legend, colour and line style of the parts of the curve: 1 stable, -1 unstable, 0 a continuum of solutions."""
 
 
 def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
@@ -81,17 +84,22 @@ def draw(dataset: xr.Dataset) -> Figure:
 def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False) -> None:
     """Draw the branches of K: stick (vertical), stable slip and unstable slip; `quiet` draws them in grey, as a background."""
     rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"])
-    rising = dataset[f"{case}_slope"].values > 0
-    parts: list[tuple[Any, ...]] = [("stick", INK, "-", [0, 0], [0, float(shown(dataset[f"{case}_strength"]))])]
-    parts.append(("slip, stable", BLUE, "-", rate, np.where(rising, load, np.nan)))
-    if not rising.all():
-        # Extend the unstable part to the first rising point: the curve then has no gap.
-        falling = ~rising | np.roll(~rising, 1)
-        parts.append(("slip, unstable", VERMILLION, "--", rate, np.where(falling, load, np.nan)))
-    for text, colour, style, x, y in parts:
-        look: dict[str, Any] = {"color": GREY, "linewidth": 1.0} if quiet else {"color": colour, "linewidth": 1.8, "label": text}
-        axes.plot(x, y, linestyle=style, **look)
+    kind = np.where(dataset[f"{case}_slope"].values > 0, 1, -1)
+    look: dict[str, Any] = {"color": GREY, "linewidth": 1.0, "label": None} if quiet else {"linewidth": 1.8}
+    axes.plot([0, 0], [0, float(shown(dataset[f"{case}_strength"]))], **{"color": INK, "label": "stick"} | look)
+    draw_branches(axes, rate, load, kind, **look)
     axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
+
+
+def draw_branches(axes: Axes, rate: Floats, load: Floats, kind: Any, **look: Any) -> None:
+    """Draw the stable, unstable and flat parts of a curve, told apart by `kind`; `look` replaces colours, widths and labels."""
+    for which, (name, colour, style) in BRANCHES.items():
+        chosen = kind == which
+        if not chosen.any():
+            continue
+        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
+            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
+        axes.plot(rate, np.where(chosen, load, np.nan), **{"color": colour, "linestyle": style, "label": name} | look)
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:

@@ -16,7 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import letter, zero_line
-from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, places, seen, snapshots
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, places, snapshots
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, narrow, styled
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
@@ -55,10 +55,10 @@ def _ffmpeg() -> str | None:
 def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
     """Return the field at the time of each frame (default 150 frames), and the contact, from `start` to `end` (s), in SI.
 
-    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Raises InputError for a block, for times outside
-    the run, and for fewer than two frames.
+    The default interval is that of `choose_interval`. Raises InputError for a block, for times outside the run, and for fewer than
+    two frames.
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     frames = FRAMES if frames is None else frames
     if frames < 2:
         raise InputError(f"animation: needs at least 2 frames, got {frames}")
@@ -77,7 +77,7 @@ def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND
     path = Path(path)
     check_animation(path, "animation:")
     figure = _Film(figsize=SIZE, dpi=DPI, layout="constrained")
-    move, moving = _stage(figure, dataset)
+    move, moving = _draw_stage(figure, dataset)
     figure.keep_still(moving)
     frames, codec = dataset.sizes["time"], CODECS[path.suffix.lower()]
     ffmpeg: Any = {"animation.ffmpeg_path": _ffmpeg()} if codec else {}
@@ -119,12 +119,12 @@ class _Film(Figure):
 def frame(dataset: xr.Dataset, n: int) -> Figure:
     """Return the n-th frame as a figure, counted from 0."""
     figure = Figure(figsize=SIZE, layout="constrained")
-    move, _ = _stage(figure, dataset)
+    move, _ = _draw_stage(figure, dataset)
     move(n)
     return figure
 
 
-def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
+def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw the film's panels; return a function that moves them to the n-th frame, and the list of artists that it changes."""
     scales = Scales(dataset)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))

@@ -154,7 +154,7 @@ def _draw_distribution(axes: Axes, slip: Floats) -> None:
         count_ticks(axes)
     if not wide:
         axes.set_xlim(0.0, 1.15 * ordered[-1])
-    axes.set(xlabel="slip (m)", ylabel="number of events with slip ≥ $x$")
+    axes.set(xlabel="slip $x$ (m)", ylabel="number of events with slip ≥ $x$")
     letter(axes, "E  slip")
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from stickslip.bodies import ElasticSlab
 from stickslip.figures.panels import letter, sheet
-from stickslip.figures.runs.slab_panels import seen
+from stickslip.figures.runs.slab_panels import choose_interval
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -53,7 +53,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     readings : Readings
         A run, or a window on one.
     start, end : float, optional
-        The interval (s); by default the one that `figures.runs.slab_panels.seen` chooses.
+        The interval (s); by default that of `choose_interval`.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     InputError
         For times outside the run, and if the waves inside the slab are not known (a leap over creep).
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))

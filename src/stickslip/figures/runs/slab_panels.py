@@ -36,7 +36,7 @@ ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
 
 
-def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
+def choose_interval(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
     """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
 
     The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a

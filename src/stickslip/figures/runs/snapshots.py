@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from stickslip.figures.panels import letter, sheet
-from stickslip.figures.runs.slab_panels import Scales, about, places, seen, snapshots
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, places, snapshots
 from stickslip.figures.style import label, length_unit, styled
 from stickslip.observables.field import slab_of
 
@@ -25,11 +25,11 @@ COUNT, PLACES = 6, 1500
 def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
     """Return the field at the given times (s), in SI.
 
-    The default is six times over the first round trip of the interval that `figures.runs.slab_panels.seen` chooses, or from the
-    start of the event if it chooses a window. Raises InputError for a block, and for times outside the run.
+    The default is six times over the first round trip of the interval of `choose_interval`, or from the start of the event if that
+    is a window. Raises InputError for a block, and for times outside the run.
     """
     if times is None:
-        readings, start, end = seen(readings, None, None)
+        readings, start, end = choose_interval(readings, None, None)
         start = max(start, 0.0) if "event_slip" in readings.curves else start
         # 0.35, and not 0.5: fronts on their way back would else lie where others were on their way out.
         shares = (np.arange(COUNT) + 0.35) / COUNT

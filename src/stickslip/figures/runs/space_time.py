@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from stickslip.figures.panels import letter, sheet, zero_line
 from stickslip.figures.runs.run import MANY
-from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, means, places, seen
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, means, places
 from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled
 from stickslip.observables.field import slab_of
 from stickslip.solution.solution import Solution
@@ -30,10 +30,10 @@ FAINT = 0.1
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
     """Return field, contact and characteristics from `start` to `end` (s), in SI.
 
-    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Each characteristic is a line of corners in time
-    and x, padded with NaN. Raises InputError for a block, and for times outside the run.
+    The default interval is that of `choose_interval`. Each characteristic is a line of corners in time and x, padded with NaN.
+    Raises InputError for a block, and for times outside the run.
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     body = slab_of(readings)
     contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))

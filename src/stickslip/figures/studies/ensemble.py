@@ -160,7 +160,7 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
     if not wide:
         axes.set_xlim(0.0, 1.1 * slip.max())
     set_scale(axes, "y", (member == 0).sum() > WIDE)
-    axes.set(xlabel="slip (m)", ylabel="number of events with slip ≥ $x$")
+    axes.set(xlabel="slip $x$ (m)", ylabel="number of events with slip ≥ $x$")
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:

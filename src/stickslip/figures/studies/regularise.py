@@ -15,7 +15,6 @@ from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quant
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:
-    from stickslip.solution.solution import Solution
     from stickslip.studies.regularise import Regularisation
 
 SHADES = ("#C6DBEF", "#85BCDC", "#3F8FC5", "#0B559F")
@@ -81,22 +80,19 @@ def _around_jump(dataset: xr.Dataset, study: Regularisation, jump: int) -> xr.Da
 
 
 def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], window: tuple[float, float], at: float) -> xr.Dataset:
+    """Return the dataset with the exact answer and the runs drawn; their times count from `at` (s)."""
     contents: dict[str, xr.Variable] = {}
-    for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
-        contents |= _curves(name, run, window, at)
-    return dataset.assign(contents).assign_attrs(drawn=drawn)
-
-
-def _curves(name: str, run: Solution, window: tuple[float, float], at: float) -> dict[str, xr.Variable]:
-    (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
     meaning = ("time after the jump", "t - t_J") if at else ("time", "t")
-    return {
-        f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
-        f"{name}_rate": curve_quantity(f"{name}_time", rate, "slip_rate"),
-        f"{name}_load": curve_quantity(f"{name}_time", load, "load"),
-        f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
-        f"{name}_slip": curve_quantity(f"{name}_slip_time", slip, "slip"),
-    }
+    for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
+        (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
+        contents |= {
+            f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
+            f"{name}_rate": curve_quantity(f"{name}_time", rate, "slip_rate"),
+            f"{name}_load": curve_quantity(f"{name}_time", load, "load"),
+            f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
+            f"{name}_slip": curve_quantity(f"{name}_slip_time", slip, "slip"),
+        }
+    return dataset.assign(contents).assign_attrs(drawn=drawn)
 
 
 @styled
