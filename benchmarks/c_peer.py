@@ -49,7 +49,7 @@ def structure(record: type[Record], name: str = "") -> str:
     for field, place in record.places.items():
         kind = "double" if place.kind in (float, FLOATS) else "int64_t"
         if isinstance(place.kind, type) and issubclass(place.kind, Record):
-            lines.append(f"    {place.kind.__name__} {field};")
+            lines.append(f"    {place.kind.__name__} {'' if place.inside else '*'}{field};")
             if place.size > place.kind.total:
                 lines.append(f"    double after_{field}[{place.size - place.kind.total}];")
         elif place.kind in (float, int):
@@ -67,7 +67,7 @@ def header(writer: FormulaWriter) -> str:
     }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
     defines.append(f"#define GUARDS {len(writer.guards)}")
-    records = [structure(record) for record in (layout.Params, layout.State, layout.Counts, layout.Series)]
+    records = [structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, Record) and one.places]
     return (
         "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])
         + "\n\n"

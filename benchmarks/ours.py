@@ -7,13 +7,11 @@ from collections.abc import Callable
 
 from benchmarks.problems import Case, Floats, arrest_of
 from benchmarks.runner import Runner
-from stickslip.engine.contact_step.on_demand import lend_implicit_steps
-from stickslip.engine.loop import advance
+from stickslip.engine.loop import run_until
+from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of
-from stickslip.engine.waves.echo_queue import new_echoes
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.run.run_loop import split_time
 from stickslip.solution.solution import Solution
@@ -24,16 +22,16 @@ CAPACITY = 2048
 BUDGET = 1_000_000
 
 
-def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -> Runner:
+def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until) -> Runner:
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
     setup, state, count = prepare(case.problem, tolerance)
     count.to_the_end = 1  # nothing goes on behind it
-    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), new_echoes(CAPACITY)
+    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
     memory = memory_of(setup.par, state, count)
     lend(memory, setup, store, echoes)
-    lend_implicit_steps(memory)
+    lend_parts_of_batch(memory, setup.par, count)
     first, count = memory.copy(), counts_in(memory)
-    last_row, last_theta = split_time(case.duration, row_time(case.problem))
+    last_row, last_theta = split_time(case.duration, case.problem.round_trip_time)
 
     lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner
 
@@ -47,7 +45,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = advance) -
         history = History(
             at.trimmed(store, int(count.length)),
             case.problem,
-            row_time(case.problem),
+            case.problem.round_trip_time,
             float(setup.par.ramp),
             case.duration,
         )

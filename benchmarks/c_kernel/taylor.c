@@ -17,13 +17,17 @@
 
 typedef struct {
     const Params *par;
-    const double *c, *shift, *offset, *rate_from, *rate_to, *keep_from, *keep_to, *excess_from, *excess_to;
-    const double *first_theta, *first_load, *first_slope, *first_jump;
+    const double *c;
+    const LawPiece *law;
+    const Branch *branch;
+    const FirstLoad *first_load;
     State *state;
     Counts *count;
-    double *real, *all_load, *all_rate;
-    int64_t *whole, branches, loads, capacity;
-    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS], value[4];
+    HistoryPiece *history;
+    int64_t branches, loads, capacity;
+    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS];
+    LawValue value;
+    Friction friction;
     Series k;
 } Run;
 
@@ -161,29 +165,29 @@ static double first_descent(const double *c) {
 /* ---- the contact ---------------------------------------------------------------------------------------------------------- */
 
 static void friction_at(Run *r, double slip, double rate) {
-    value(r->c, slip + r->shift[0], rate, r->value);
-    r->value[3] = r->value[0] + r->offset[0];
-    r->value[0] = r->par->normal * r->value[3];
-    r->value[1] *= r->par->normal;
+    value(r->c, slip + r->law->slip_shift, rate, (double *)&r->value);
+    r->friction.coefficient = r->value.mu + r->law->offset;
+    r->friction.stress = r->par->normal * r->friction.coefficient;
+    r->friction.by_rate = r->value.by_rate * r->par->normal;
 }
 
 static double rest_limit(Run *r) {
     friction_at(r, r->state->law_slip, 0.0);
-    return r->par->normal * (r->value[3] + r->par->static_excess) + r->par->stick_to;
+    return r->par->normal * (r->friction.coefficient + r->par->static_excess) + r->par->stick_to;
 }
 
 static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par->reference; }
 
 static double rate_on_branch(Run *r, double load, double guess) {
     int64_t branch = r->count->branch;
-    double low = r->rate_from[branch], high = r->rate_to[branch];
-    if (load <= r->excess_from[branch]) return low;
-    if (load >= r->excess_to[branch]) return high;
+    double low = r->branch[branch].rate_from, high = r->branch[branch].rate_to;
+    if (load <= r->branch[branch].excess_from) return low;
+    if (load >= r->branch[branch].excess_to) return high;
     high = fmin(high, (load + r->par->largest_drop) / r->par->impedance * (1.0 + 1e-12));
     double s = low < guess && guess < high ? guess : 0.5 * (low + high);
     for (int i = 0; i < 200; i++) {
         friction_at(r, r->state->law_slip, s);
-        double error = r->par->impedance * s + r->value[0] - load, slope = r->par->impedance + r->value[1];
+        double error = r->par->impedance * s + r->friction.stress - load, slope = r->par->impedance + r->friction.by_rate;
         if (error > 0.0) high = s;
         else if (error < 0.0) low = s;
         else return s;
@@ -198,17 +202,17 @@ static double rate_on_branch(Run *r, double load, double guess) {
 static void choose_branch(Run *r, double load) {
     r->state->exit = NAN;
     for (int64_t branch = 0; branch < r->branches; branch++)
-        if (load <= r->keep_to[branch]) { r->count->branch = branch; return; }
+        if (load <= r->branch[branch].keep_to) { r->count->branch = branch; return; }
 }
 
 static void leave_branch(Run *r, double load) {
     int64_t branch = r->count->branch;
     r->state->exit = NAN;
-    if (load >= r->keep_to[branch])
+    if (load >= r->branch[branch].keep_to)
         for (int64_t other = branch + 1; other < r->branches; other++)
-            if (load <= r->keep_to[other]) { r->count->branch = other; return; }
+            if (load <= r->branch[other].keep_to) { r->count->branch = other; return; }
     for (int64_t other = branch - 1; other >= 0; other--)
-        if (r->keep_from[other] <= load) { r->count->branch = other; return; }
+        if (r->branch[other].keep_from <= load) { r->count->branch = other; return; }
     r->count->mode = 0;
 }
 
@@ -222,7 +226,7 @@ static double branch_exit(Run *r) {
     int64_t branch = r->count->branch, mode = r->count->mode;
     double part[TERMS], xi = r->state->xi, first = NONE;
     for (int upper = 0; upper < 2; upper++) {
-        double bound = upper ? r->keep_to[branch] : r->keep_from[branch], sign = upper ? -1.0 : 1.0;
+        double bound = upper ? r->branch[branch].keep_to : r->branch[branch].keep_from, sign = upper ? -1.0 : 1.0;
         if (isinf(bound)) continue;
         restrict_to(r->load, xi, 1.0 - xi, part);
         double start = sign * (towards(r, part[0], mode) - bound);
@@ -236,8 +240,8 @@ static double branch_exit(Run *r) {
 static void end_branch(Run *r) {
     int64_t branch = r->count->branch, direction = r->count->mode;
     double seen = towards(r, evaluate(r->load, r->state->xi), direction);
-    int upper = fabs(seen - r->keep_to[branch]) < fabs(seen - r->keep_from[branch]);
-    leave_branch(r, upper ? r->keep_to[branch] : r->keep_from[branch]);
+    int upper = fabs(seen - r->branch[branch].keep_to) < fabs(seen - r->branch[branch].keep_from);
+    leave_branch(r, upper ? r->branch[branch].keep_to : r->branch[branch].keep_from);
     if (r->count->mode == 0) note_jump(r, 0.0, FOLD), r->state->rate_now = 0.0;
     else r->count->edge = direction;
 }
@@ -249,15 +253,14 @@ static double theta_at(Run *r, double xi) {
 static void record(Run *r, double xi_to) {
     double xi = r->state->xi, width = xi_to - xi, theta_from = theta_at(r, xi), theta_to = theta_at(r, xi_to);
     if (theta_to > theta_from) {
-        int64_t n = r->count->length, *whole = r->whole + WHOLE * n;
-        double *real = r->real + REAL * n;
-        whole[S_ROW] = r->count->row, whole[S_MODE] = r->count->mode, whole[S_PIECE] = r->count->piece;
-        whole[S_JUMP] = r->count->jump, whole[S_CAUSE] = r->count->cause, whole[S_ECHO_OF] = r->count->echo_of;
-        real[S_AMPLIFIED] = real[S_GAIN] = NAN;
-        real[S_THETA_FROM] = theta_from, real[S_THETA_TO] = theta_to;
-        real[S_SPEED] = (r->state->speed + 2.0 * r->state->bend * xi) * width, real[S_BEND] = r->state->bend * width * width;
-        real[S_SLIP] = r->state->slip_now, real[S_LAW_SLIP] = r->state->law_slip;
-        r->count->length = n + 1;
+        HistoryPiece *kept = r->history + r->count->length;
+        kept->row = r->count->row, kept->mode = r->count->mode, kept->law_piece = r->count->piece;
+        kept->jump = r->count->jump, kept->cause = r->count->cause, kept->echo_of = r->count->echo_of;
+        kept->amplified = kept->gain = NAN;
+        kept->theta_from = theta_from, kept->theta_to = theta_to;
+        kept->speed = (r->state->speed + 2.0 * r->state->bend * xi) * width, kept->bend = r->state->bend * width * width;
+        kept->slip = r->state->slip_now, kept->law_slip = r->state->law_slip;
+        r->count->length++;
         r->count->jump = r->count->cause = r->count->stalled = 0;
     } else r->count->stalled++;
     r->state->xi = xi_to;
@@ -269,10 +272,10 @@ static void arrive(Run *r) {
     if (mode != 0 && r->count->is_algebraic) {
         double seen = towards(r, load, mode);
         int64_t branch = r->count->branch;
-        if (!(r->keep_from[branch] <= seen && seen <= r->keep_to[branch])) leave_branch(r, seen);
+        if (!(r->branch[branch].keep_from <= seen && seen <= r->branch[branch].keep_to)) leave_branch(r, seen);
     } else if (mode != 0 && !r->count->has_inertia) {
         friction_at(r, r->state->law_slip, 0.0);
-        if (towards(r, load, mode) < r->value[0]) r->count->mode = 0;
+        if (towards(r, load, mode) < r->friction.stress) r->count->mode = 0;
     }
     if (r->count->mode == 0 && r->count->edge == 0)
         for (int direction = 1; direction >= -1; direction -= 2)
@@ -282,7 +285,7 @@ static void arrive(Run *r) {
 
 static void stick(Run *r, double xi_to) {
     double width = xi_to - r->state->xi, limit = rest_limit(r), part[TERMS], onset = NONE;
-    double *load = r->all_load + TERMS * r->count->length, *rate = r->all_rate + TERMS * r->count->length;
+    double *load = r->history[r->count->length].load, *rate = r->history[r->count->length].rate;
     int direction = 0;
     restrict_to(r->load, r->state->xi, width, load);
     for (int way = 1; way >= -1; way -= 2) {
@@ -358,7 +361,7 @@ static void series(Run *r, double guess) {
     k->stiffness = r->par->stiffness;
     k->chi = r->par->counts_net == 1.0 ? direction : 1.0;
     k->speed = (r->state->speed + 2.0 * r->state->bend * xi) * guess, k->bend = 2.0 * r->state->bend * guess * guess;
-    k->slip = r->state->law_slip + r->shift[0], k->offset = r->offset[0];
+    k->slip = r->state->law_slip + r->law->slip_shift, k->offset = r->law->offset;
     k->rate = fabs(r->state->rate_now), k->free = edge ? 0.0 : 1.0;
     k->force = edge ? r->par->normal * r->par->static_excess : 0.0;
     if (r->count->is_algebraic) k->rate = rate_on_branch(r, r->seen[0], fabs(r->state->rate_now));
@@ -385,10 +388,10 @@ static int obeys_contact(Run *r, const double *rate, double length, double grown
     for (int k = 1; k <= r->count->degree; k++) load += r->powers[k] * r->seen[k];
     if (r->k.free == 0.0) {
         value(r->c, r->k.slip, 0.0, now);
-        unbalanced = r->seen[0] - r->par->normal * (now[0] + r->offset[0]) - r->k.force;
+        unbalanced = r->seen[0] - r->par->normal * (now[0] + r->law->offset) - r->k.force;
     }
     value(r->c, dx, rate_end, now);
-    double friction = now[0] + r->offset[0], normal = r->par->normal, impedance = r->par->impedance;
+    double friction = now[0] + r->law->offset, normal = r->par->normal, impedance = r->par->impedance;
     double missing = load - impedance * rate_end - normal * friction - unbalanced;
     double terms = r->par->reference + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
     double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
@@ -404,7 +407,7 @@ static int obeys_contact(Run *r, const double *rate, double length, double grown
 
 static void keep_step(Run *r, double *restrict rate, double length, double to) {
     double direction = r->count->mode, speed = r->k.speed * length, bend = r->k.bend * length * length;
-    double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->all_load + TERMS * r->count->length;
+    double grown = speed * integral(rate, 1), rate_end = total(rate), *restrict load = r->history[r->count->length].load;
     if (bend != 0.0) grown += bend * integral(rate, 2);
     if (!within_guards(r, length) || !obeys_contact(r, rate, length, grown, rate_end)) abort();
     for (int k = 0; k < TERMS; k++) load[k] = r->local[k] * r->powers[k];
@@ -443,7 +446,7 @@ static void slip(Run *r, double xi_to) {
     int reached = length >= limit;
     if (reached) length = limit;
     else if (length > 0.5 * limit) length = 0.5 * limit;
-    double *rate = r->all_rate + TERMS * r->count->length;
+    double *rate = r->history[r->count->length].rate;
     stretch(r, length, rate);
     if (!r->count->is_algebraic && rate[0] <= magnitude(rate)) end = first_descent(rate);
     int rests = end <= 1.0 - TIE;
@@ -463,21 +466,23 @@ static int next_piece(Run *r) {
     if (r->count->is_block || r->count->row == 0) {
         int64_t source = r->count->source;
         if (source >= r->loads - 1) return 0;
-        state->theta_from = r->first_theta[source], state->theta_to = r->first_theta[source + 1];
+        const FirstLoad *first = r->first_load + source;
+        state->theta_from = first->theta, state->theta_to = first[1].theta;
         state->speed = state->theta_to - state->theta_from, state->bend = 0.0, r->count->echo_of = -1;
-        r->load[0] = r->count->is_block && r->count->row > 0 ? state->load_now : r->first_load[source];
-        r->load[1] = r->first_slope[source] * state->speed;
+        r->load[0] = r->count->is_block && r->count->row > 0 ? state->load_now : first->load;
+        r->load[1] = first->slope * state->speed;
         r->count->arriving = r->count->row == 0 && source == 0 ? START : NO_CAUSE;
     } else {
         int64_t source = r->count->previous_from + r->count->source;
         if (source >= r->count->previous_to) return 0;
         r->count->echo_of = source;
-        double *real = r->real + REAL * source, *rate = r->all_rate + TERMS * source, *load = r->all_load + TERMS * source;
-        state->theta_from = real[S_THETA_FROM], state->theta_to = real[S_THETA_TO];
-        state->speed = real[S_SPEED], state->bend = real[S_BEND];
+        const HistoryPiece *left = r->history + source;
+        const double *rate = left->rate, *load = left->load;
+        state->theta_from = left->theta_from, state->theta_to = left->theta_to;
+        state->speed = left->speed, state->bend = left->bend;
         for (int k = 0; k < TERMS; k++) r->load[k] = r->par->reflection * (2.0 * r->par->impedance * rate[k] - load[k]);
         r->load[0] += r->par->inflow;
-        r->count->arriving = r->whole[WHOLE * source + S_JUMP] && r->par->reflection != 0.0 ? ECHO : NO_CAUSE;
+        r->count->arriving = left->jump && r->par->reflection != 0.0 ? ECHO : NO_CAUSE;
     }
     r->count->source++;
     state->xi = 0.0, state->exit = NAN;
@@ -490,7 +495,7 @@ static int next_piece(Run *r) {
 }
 
 static void end_row(Run *r) {
-    if (r->count->is_block) r->state->load_now = total(r->all_load + TERMS * (r->count->length - 1));
+    if (r->count->is_block) r->state->load_now = total(r->history[r->count->length - 1].load);
     r->count->row++;
     r->count->previous_from = r->count->row_from, r->count->previous_to = r->count->row_from = r->count->length;
     r->count->source = r->count->moved = 0;
@@ -499,11 +504,7 @@ static void end_row(Run *r) {
 int64_t advance(Memory *m, int64_t last_row, double last_theta, int64_t budget) {
     Run run, *r = &run;
     run.par = &m->par, run.state = &m->state, run.count = &m->counts, run.c = m->constants;
-    run.shift = m->slip_shift, run.offset = m->offset;
-    run.rate_from = m->rate_from, run.rate_to = m->rate_to, run.keep_from = m->keep_from, run.keep_to = m->keep_to;
-    run.excess_from = m->excess_from, run.excess_to = m->excess_to;
-    run.first_theta = m->first_theta, run.first_load = m->first_load, run.first_slope = m->first_slope, run.first_jump = m->first_jump;
-    run.whole = m->whole, run.real = m->real, run.all_load = m->stored_load, run.all_rate = m->stored_rate;
+    run.law = m->law, run.branch = m->branch_table, run.first_load = m->first_load, run.history = m->history;
     run.branches = m->branches, run.loads = m->loads, run.capacity = m->capacity;
     while (1) {
         if (run.count->length + 8 > run.capacity) return FULL;
@@ -542,21 +543,17 @@ int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *le
 #pragma omp parallel num_threads(threads) reduction(+ : failed)
     {
         Memory own = *lent;
-        int64_t *addresses = (int64_t *)&own, *whole = malloc(own.capacity * WHOLE * sizeof *whole);
-        double *real = malloc(own.capacity * REAL * sizeof *real);
-        double *load = malloc(own.capacity * TERMS * sizeof *load), *rate = malloc(own.capacity * TERMS * sizeof *rate);
+        int64_t *addresses = (int64_t *)&own;
+        HistoryPiece *history = malloc(own.capacity * sizeof *history);
 #pragma omp for schedule(dynamic, 256)
         for (int64_t n = 0; n < members; n++) {
             for (int64_t k = 0; k < ADDRESSES; k++) addresses[k] = base[k] + n * stride[k];
             own.par = par[n * par_stride], own.state = *state, own.counts = *count, own.counts.to_the_end = 1;
-            own.whole = whole, own.real = real, own.stored_load = load, own.stored_rate = rate;
-            double *b = own.rate_from;
-            own.branches = branches[n], own.rate_to = b + own.branches, own.keep_from = b + 2 * own.branches;
-            own.keep_to = b + 3 * own.branches, own.excess_from = b + 4 * own.branches, own.excess_to = b + 5 * own.branches;
+            own.history = history, own.branches = branches[n];
             failed += advance(&own, last_row[n], last_theta[n], INT64_MAX) != FINISHED;
             slip[n] = own.state.slip_now;
         }
-        free(whole), free(real), free(load), free(rate);
+        free(history);
     }
     return failed;
 }

@@ -64,8 +64,8 @@ def test_what_a_workspace_held_before_does_not_matter(name: str, monkeypatch: py
 
     def soiled() -> Workspace:
         work = new_workspace()
-        for table in (work.table.view(np.float64), work.store.real, work.store.load, work.store.rate, work.echoes.heights):
-            table[:] = math.nan
+        for table in (work.table, work.store.pieces, work.echoes):
+            table.view(np.float64)[:] = math.nan
         return work
 
     monkeypatch.setattr(run, "new_workspace", soiled)

@@ -15,7 +15,7 @@ from stickslip.batch.vectorised_problem import groups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine_input.automatic import wait_for_creep
-from stickslip.engine_input.prepare import prepare, row_time
+from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
 from stickslip.run.run_loop import split_time
 from stickslip.scenarios.scenario import Scenario
@@ -35,7 +35,7 @@ def row_of(table: at.Floats, n: int) -> at.Floats:
 def branch_of(setups: Setups, n: int) -> at.Floats:
     """The table of a member."""
     count = int(setups.branches[n])
-    return row_of(setups.branch, n)[: 6 * count].reshape(6, count)
+    return row_of(setups.branch_table, n)[:count].T
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -52,18 +52,17 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
             assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
             others = [place for place in range(Params.total) if place != Params.places["stick_to"].first]
             assert np.array_equal(row_of(setups.par, n)[others], setup.par.numbers[others])
-            assert np.array_equal(setups.address, setup.address)
             assert np.array_equal(row_of(setups.constants, n), setup.constants)
             assert np.array_equal(row_of(setups.law, n), setup.law)
-            assert np.array_equal(row_of(setups.first, n), setup.first)
+            assert np.array_equal(row_of(setups.first_load, n), setup.first_load)
             assert np.array_equal(setups.state, state.numbers)
             assert np.array_equal(setups.counts, count.numbers)
             assert setups.threshold[n] == default_event_rate(problem)
             assert setups.excess[n] == problem.excess
-            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, row_time(problem))
+            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, problem.round_trip_time)
             found = branch_of(setups, n)
-            assert found[:2] == pytest.approx(setup.branch[:2], rel=1e-14, abs=0)
-            assert found[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
+            assert found[:2] == pytest.approx(setup.branches.T[:2], rel=1e-14, abs=0)
+            assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -84,8 +83,8 @@ def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> Non
         contact = ss.uniqueness(problem)
         setup = prepare(problem, scenario.rtol)[0]
         assert setups.irregular[n] == (contact.regime == "irregular")
-        assert branch_of(setups, n)[:2] == pytest.approx(setup.branch[:2], rel=1e-9, abs=0)
-        assert branch_of(setups, n)[2:] == pytest.approx(setup.branch[2:], rel=0, abs=LEVEL * problem.strength)
+        assert branch_of(setups, n)[:2] == pytest.approx(setup.branches.T[:2], rel=1e-9, abs=0)
+        assert branch_of(setups, n)[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
         assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
 
 

@@ -18,7 +18,8 @@ from stickslip.contact.folds import certified
 from stickslip.contact.folds.certified import certificate
 from stickslip.contact.folds.lowest import lowest_slope, proven_regime
 from stickslip.contact.uniqueness import uniqueness
-from stickslip.engine_input.branch_table import branch_rows
+from stickslip.engine.state.layout import Branch
+from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.friction import LAWS, FromExpression
 from stickslip.friction.formula import enclosure
 from stickslip.scenarios.scenario import read_scenario
@@ -72,10 +73,10 @@ def test_a_bump_of_any_width_has_its_two_folds(width):
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_the_engine_is_given_the_folds_of_a_bump(width):
-    rows, stick_to = branch_rows(bump(width), 0.0)
+    table, stick_to = table_of_branches(bump(width), 0.0)
     wanted = [float(one) for one in folds_of_bump(width)]
-    assert rows[0].tolist() == pytest.approx([0.0, wanted[1]], rel=1e-12, abs=0)
-    assert rows[1, 0] == pytest.approx(wanted[0], rel=1e-12, abs=0)
+    assert Branch.of(table).rate_from.tolist() == pytest.approx([0.0, wanted[1]], rel=1e-12, abs=0)
+    assert Branch.of(table).rate_to[0] == pytest.approx(wanted[0], rel=1e-12, abs=0)
     assert stick_to == 0.0
 
 

@@ -18,11 +18,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.engine.loop import advance
+from stickslip.engine.loop import run_until
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, state_in
-from stickslip.engine.waves.echo_queue import new_echoes, resized
 from stickslip.engine_input.prepare import prepare
 from stickslip.trajectory.history import History
 
@@ -39,16 +38,16 @@ def printed(faster: float) -> ss.Problem:
 def by_engine(problem: ss.Problem) -> float:
     """Time (s) at which slip has grown by GROWN, by the exact engine, one round trip at a time."""
     setup, state, count = prepare(problem, 1e-10)
-    store, trees = at.new_store(4096), new_echoes(4096)
+    store, trees = at.new_store(4096), at.EchoNode.table(4096)
     memory = memory_of(setup.par, state, count)
     state, count = state_in(memory), counts_in(memory)
     lend(memory, setup, store, trees)
     count.pause_at = 1
     while True:
-        code = advance(memory, 10**9, 1.0, 10**9)
+        code = run_until(memory, 10**9, 1.0, 10**9)
         if code == Stop.FULL:
-            store = at.resized(store, int(count.length), 2 * len(store.whole))
-            trees = resized(trees, 0, len(store.whole))
+            store = at.resized_store(store, int(count.length), 2 * len(store.pieces))
+            trees = at.EchoNode.table(len(store.pieces))
             lend(memory, setup, store, trees)
             continue
         assert code == Stop.PAUSED

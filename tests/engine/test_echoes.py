@@ -8,7 +8,6 @@ import pytest
 import stickslip as ss
 from stickslip.engine.state import layout as at
 from stickslip.engine.waves.echo_queue import NOTHING
-from stickslip.engine_input.forcing import row_time
 from stickslip.run.run_loop import split_time
 from stickslip.run.session import RunInProgress
 from stickslip.trajectory.phase_index import Phases
@@ -56,14 +55,14 @@ def test_at_an_edge_the_side_decides() -> None:
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
 def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
-    run, last, met = RunInProgress.begin(problem, 1e-10), split_time(2000.0, row_time(problem)), 0
+    run, last, met = RunInProgress.begin(problem, 1e-10), split_time(2000.0, problem.round_trip_time), 0
     impedance, ramp = SLAB.impedance, float(run.setup.par.ramp)
     while run.advance(last, 1) == -1 and met < 150:
         between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING
         if not between_trips or run.count.new_from != run.length or run.count.mode != 0:
             continue
         store = at.trimmed(run.store, run.length)
-        piece, low, high = Phases.of(store, row_time(problem)).standing(run.length - 1)
+        piece, low, high = Phases.of(store, problem.round_trip_time).standing(run.length - 1)
         assert low[0] == 0.0
         assert (low[1:] == high[:-1]).all()
         leaves = np.polynomial.polynomial.polyval(PLACES, (store.load[piece] - 2.0 * impedance * store.rate[piece]).T)

@@ -69,7 +69,7 @@ def test_knot_of_a_law() -> None:
     law = F.LinearSlipWeakening(0.8, 0.3, 2.0)
     run = ss.simulate(ss.Problem(SLAB, law, initial_excess=1e4), 5.0)
     store = run.history.store
-    behind = np.flatnonzero(store.whole[:, 2] == 1)[0]
+    behind = np.flatnonzero(store.law_piece == 1)[0]
     assert store.law_slip[behind] == pytest.approx(2.0, rel=1e-12, abs=0.0)
     # exponential growth: u = (excess / k)(exp(k t / Z) - 1), k = S (mus - mud) / D
     k = NORMAL * 0.5 / 2.0

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 import stickslip as ss
 from stickslip.contact.branches import search_grid
 from stickslip.contact.equation import resistance as contact_resistance
-from stickslip.engine.moving_folds.branch_scan import branches_at, new_branches
+from stickslip.engine.folds.branch_scan import branches_at, new_scan
+from stickslip.engine.state.layout import Branch
 from stickslip.engine_input import branch_table
 from stickslip.run.session import RunInProgress
 
@@ -253,10 +254,11 @@ def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.Fric
     """Ends and levels of the branches at a law slip, in compiled code and by `contact.branches`, to rounding of g."""
     case = ss.Problem(SLAB, law, initial_excess=1e6)
     run = RunInProgress.begin(case, 1e-10)
-    scan = search_grid(contact_resistance(case))
-    table = new_branches(scan)
-    found = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan, table)
-    expected, _ = branch_table.branch_rows(case, law_slip)
-    assert found == expected.shape[1]
-    assert table[:2, :found] == pytest.approx(expected[:2], rel=1e-9, abs=1e-300)
-    assert table[2:4, :found] == pytest.approx(expected[4:6], rel=0.0, abs=1e-14 * S)
+    scan = new_scan(search_grid(contact_resistance(case)))
+    count = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan)
+    expected, found = Branch.of(branch_table.table_of_branches(case, law_slip)[0]), Branch.of(scan.found[:count])
+    assert count == len(expected.rate_from)
+    for name in ("rate_from", "rate_to"):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-300)
+    for name in ("excess_from", "excess_to"):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=0.0, abs=1e-14 * S)

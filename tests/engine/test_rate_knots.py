@@ -12,7 +12,6 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.engine.state.layout import S_PIECE
 
 Z, S = 9.8e6, 1e8
 SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=S)
@@ -26,7 +25,7 @@ def test_a_contact_with_mass_passes_knots_when_the_closed_form_says_so() -> None
     mass, excess = 1e6, 3e7
     problem = ss.Problem(replace(SLAB, driver_impedance=Z, contact_mass=mass), LAW, initial_excess=excess)
     run = ss.simulate(problem, HALF)
-    pieces = run.history.store.whole[:, S_PIECE]
+    pieces = run.history.store.law_piece
     passed = [float(run.history.start[np.flatnonzero(pieces == piece)[0]]) for piece in range(1, 5)]
     time, expected = 0.0, []
     for v0, v1 in zip(LAW.rates[:-1], LAW.rates[1:], strict=True):
@@ -54,7 +53,7 @@ def test_a_block_that_speeds_up_and_slows_down_over_knots_agrees_with_scipy() ->
     assert theirs.y[1].max() > LAW.rates[3]
     assert run.slip(theirs.t) == pytest.approx(theirs.y[0], rel=0.0, abs=1e-8 * theirs.y[0].max())
     assert run.slip_rate(theirs.t) == pytest.approx(theirs.y[1], rel=0.0, abs=1e-7 * theirs.y[1].max())
-    assert np.unique(run.history.store.whole[run.history.store.mode > 0, S_PIECE]).tolist() == [0, 1, 2, 3, 4]
+    assert np.unique(run.history.store.law_piece[run.history.store.mode > 0]).tolist() == [0, 1, 2, 3, 4]
 
 
 def stable_rates(load: float) -> list[float]:

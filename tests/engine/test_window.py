@@ -105,7 +105,7 @@ def test_local_time_reaches_over_years_of_rest() -> None:
 def test_slip_in_an_event_keeps_its_digits_after_much_slip() -> None:
     """A slab that has slipped 1e9 m before, where two numbers are 1.2e-7 m apart."""
     run = ss.simulate(replace(rate_law_slab(), pull_rate=0.05), 30.0)
-    store = run.history.store._replace(real=run.history.store.real.copy())
+    store = run.history.store._replace(pieces=run.history.store.pieces.copy())
     store.slip[:] += 1e9
     moved = replace(run, history=replace(run.history, store=store))
     local = np.linspace(0.0, 5.0, 101)

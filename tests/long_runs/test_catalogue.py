@@ -114,11 +114,11 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     keeper = CatalogueKeeper.of(run, Orders(duration), stream)
     keeper.rows = RowsInMemory()
-    capacities = {len(run.store.whole)}
+    capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):
         drive(run, share * duration, keeper)
         run.count.to_the_end, run.before_end = 0, None
-        capacities.add(len(run.store.whole))
+        capacities.add(len(run.store.pieces))
     assert stream.told > 9_000
     assert run.forgotten > 150_000
     assert capacities == {512}

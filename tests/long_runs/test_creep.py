@@ -14,8 +14,6 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import Counts, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
-from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
 from stickslip.run.monitor import Orders, as_solution
@@ -56,7 +54,7 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
 
 def begun(name: str) -> tuple[RunInProgress, tuple[int, float]]:
     problem, duration, rtol = RUNS[name]
-    return RunInProgress.begin(problem, 1e-10, rtol), split_time(duration, row_time(problem))
+    return RunInProgress.begin(problem, 1e-10, rtol), split_time(duration, problem.round_trip_time)
 
 
 def gone_on(path: Path, duration: float) -> ss.Solution:
@@ -69,7 +67,7 @@ def step(run: RunInProgress, last: tuple[int, float]) -> bool:
     code = run.advance(last, 1)
     if code == Stop.FULL:
         run.grow(10**6)
-    return code in (OUT_OF_BUDGET, Stop.FULL)
+    return code in (Stop.NONE, Stop.FULL)
 
 
 def around_leaps(name: str) -> list[int]:

@@ -15,8 +15,6 @@ import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import State, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
-from stickslip.engine_input.forcing import row_time
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.monitor import Orders, as_solution
 from stickslip.run.progress import Report
@@ -29,19 +27,19 @@ from tests.long_runs.problems import RUNS, SLOW, differences
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
     """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
-    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, problem.round_trip_time)
     for steps in range(100_000):
         code = run.advance(last, 1)
         if code == Stop.FULL:
             run.grow(10**6)
-        elif code != OUT_OF_BUDGET:
+        elif code != Stop.NONE:
             return steps
     raise AssertionError("too long for a test")
 
 
 def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
     """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
-    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+    run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, problem.round_trip_time)
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
@@ -68,9 +66,9 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     """At rest, in slip both explicit and implicit, on the way to a fold, within a piece, with crossings noted."""
     met = set()
     for problem, duration in RUNS.values():
-        run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, row_time(problem))
+        run, last = RunInProgress.begin(problem, 1e-10), split_time(duration, problem.round_trip_time)
         for _ in range(3000):
-            if run.advance(last, 1) not in (OUT_OF_BUDGET, Stop.FULL) or run.length > 400:
+            if run.advance(last, 1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
                 break
             count, state = run.count, run.state
             met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.batch.kernels import reduction as of
+from stickslip.batch.kernels.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Store
-from stickslip.engine_input.forcing import row_time
 from stickslip.run.run_loop import drive
 from stickslip.run.session import RunInProgress
 from stickslip.scenarios.scenario import Scenario
@@ -28,44 +27,45 @@ LARGEST = 500_000
 """Largest number of pieces of history: those of one event, and those whose waves are still in the body. A member that needs more
 fails, because they take 250 MB."""
 FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
-"""Columns of an event table that are kept of the first event, in the order of `reduction.FIRST_START` and its successors."""
+"""Columns of an event table that are kept of the first event, as fields `first_...` of `reduction.Reduced`."""
 
 
 @dataclass
 class Fold:
     """The reduction of slip events to numbers, event by event: those of `reduction.fold_events` and `reduction.fold_first`.
 
-    `out` holds one number for each of `reduction.COLUMNS`. `recurrences` counts the recurrence times so far, and `spread` is the
+    `recurrences` counts the recurrence times so far, and `spread` is the
     sum of their squared deviations from the mean (s^2).
     """
 
-    out: Floats
+    out: Reduced
     recurrences: int = 0
     spread: float = 0.0
 
     def add(self, rows: pd.DataFrame) -> None:
         """Add events, in order of time."""
         out = self.out
-        if len(rows) and out[of.EVENTS] == 0:
-            out[of.FIRST_START : of.FIRST_STATIC_DROP + 1] = rows[list(FIRST)].iloc[0]
-        out[of.EVENTS] += len(rows)
-        out[of.PULSES] += rows.pulses.sum()
+        if len(rows) and out.events == 0:
+            for name in FIRST:
+                setattr(out, f"first_{name}", rows[name].iloc[0])
+        out.events += len(rows)
+        out.pulses += rows.pulses.sum()
         for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
-            if not rate <= out[of.PEAK_RATE]:  # also where no event has been counted yet, and the peak is NaN
-                out[of.PEAK_RATE], out[of.PEAK_TIME] = rate, when
+            if not rate <= out.peak_rate:  # also where no event has been counted yet, and the peak is NaN
+                out.peak_rate, out.peak_time = rate, when
         for since in rows.recurrence.dropna():
             self.recur(since)
 
     def recur(self, since: float) -> None:
         """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
-        mean = 0.0 if self.recurrences == 0 else self.out[of.RECURRENCE]
+        mean = 0.0 if self.recurrences == 0 else self.out.recurrence
         self.recurrences += 1
         change = since - mean
         mean += change / self.recurrences
         self.spread += change * (since - mean)
-        self.out[of.RECURRENCE] = mean
+        self.out.recurrence = mean
         if self.recurrences > 1:
-            self.out[of.RECURRENCE_CV] = math.sqrt(self.spread / (self.recurrences - 1)) / mean
+            self.out.recurrence_cv = math.sqrt(self.spread / (self.recurrences - 1)) / mean
 
 
 @dataclass
@@ -98,11 +98,11 @@ class Folding:
         if dropped > 0:
             self.stream.forget(dropped)
             self.counted -= dropped
-        return run.length < len(run.store.whole) // 2 or run.grow(LARGEST)
+        return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST)
 
     def count_shocks(self, store: Store, length: int) -> None:
         """Count the shocks of the pieces that were added since the last count."""
-        self.fold.out[of.SHOCKS] += np.count_nonzero(store.cause[self.counted : length])
+        self.fold.out.shocks += np.count_nonzero(store.cause[self.counted : length])
         self.counted = length
 
 
@@ -116,10 +116,11 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     run.reserve(capacity)
     stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
     out[:] = np.nan
-    out[[of.EVENTS, of.PULSES, of.SHOCKS]] = 0.0
-    watch = Folding(stream, Fold(out), stop)
+    reduced = Reduced(out)
+    reduced.events = reduced.pulses = reduced.shocks = 0.0
+    watch = Folding(stream, Fold(reduced), stop)
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
     watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
-    of.fold_end(run.store, run.length, row_time(problem), scenario.duration, code, out)
+    fold_end(run.store.pieces, run.length, problem.round_trip_time, scenario.duration, code, out)
     return code

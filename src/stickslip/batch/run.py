@@ -11,8 +11,8 @@ import numpy as np
 
 from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
-from stickslip.batch.kernels.reduction import BRANCHES, COLUMNS, IRREGULAR, OF_EVENTS
-from stickslip.batch.kernels.runs import AT_END, FREE, run_group
+from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
+from stickslip.batch.kernels.runs import Stage, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
@@ -177,14 +177,15 @@ class _Batch:
             lane = run_group(self.engine, setups, base, stride, work, self.wants_events, self.stop, codes, out)
             if lane == WIDTH or self.stop[0] != 0:
                 break
-            if work.stage[lane] == AT_END:
+            if work.stage[lane] == Stage.AT_END:
                 work = work.with_more_points()
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
-                n, work.stage[lane] = work.member[lane], FREE
+                n, work.stage[lane] = work.member[lane], Stage.FREE
                 codes[n] = run_alone(self.member(places[n]), LARGEST_CAPACITY, self.stop, out[n])
-        out[:, IRREGULAR], out[:, BRANCHES] = setups.irregular, setups.branches
+        reduced = Reduced.of(out)
+        reduced.irregular, reduced.branches = setups.irregular, setups.branches
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes
         for name, column in self.results.items():

@@ -10,12 +10,11 @@ import numpy as np
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, branch_tables
 from stickslip.batch.kernels.constants import fill_constants
 from stickslip.batch.vectorised_problem import Values, many, member, shared
-from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
-from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State
+from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
-from stickslip.engine_input.branch_table import branch_rows, has_inertia, is_algebraic
-from stickslip.engine_input.prepare import addresses_of, first_load, parameters_of, set_tolerance, start_of, together
+from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
+from stickslip.engine_input.prepare import first_load, functions_of, parameters_of, set_tolerance, start_of, together
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.problem import Problem
@@ -36,12 +35,11 @@ class Setups(NamedTuple):
     """
 
     par: Floats  # (members, numbers of Params)
-    address: Integers  # (5, pieces of the law), the same for all members
     jets: Integers  # (pieces,): addresses of the formulas' series for lanes; (0,) if members take their steps alone
     constants: Floats  # (members, pieces, size)
-    law: Floats  # (members, 3, pieces)
-    branch: Floats  # (members, 6 times the largest number of branches); in row n the first 6 branches[n] numbers are filled
-    first: Floats  # (members, 4, pieces of the first load + 1)
+    law: Integers  # (members, pieces of the law, LawPiece.total)
+    branch_table: Floats  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
+    first_load: Floats  # (members, pieces of the first load + 1, FirstLoad.total)
     branches: Integers  # (members,): number of branches; 0 if Z v + S mu does not rise at high rates, -1 if more than MOST_BRANCHES
     irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
     state: Floats  # at t = 0, the same for all members
@@ -58,7 +56,7 @@ class Alike(NamedTuple):
     """The properties that the members of a group share, whatever their numbers."""
 
     problem: Problem  # the problem of one of the members
-    address: Integers  # (5, pieces of the law): addresses of the law's compiled functions
+    functions: Integers  # table of LawPiece in which only the functions are set
     jets: Integers  # as in `Setups`
     prepare: Integers  # (pieces,): addresses of the functions that fill the constants of each piece
     size: int  # number of constants for which each piece has room
@@ -72,13 +70,13 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     law = problem.friction
     with LOADING:
         compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
-        address = np.array([addresses_of(formula, problem) for formula in compiled], np.int64).T.copy()
+        functions = functions_of(compiled, problem)
         jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64)
         prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
     wait_for_creep(counts, problem, scenario.creep_rtol)
-    return Alike(problem, address, jets, prepare, max(formula.size for formula in compiled), state, counts)
+    return Alike(problem, functions, jets, prepare, max(formula.size for formula in compiled), state, counts)
 
 
 def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Setups:
@@ -91,7 +89,7 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
     last_row, last_theta = split_times(duration, spread(par.row_time, count))
     constants, law = formulas(problem, group)
-    branch, branches, irregular, stick_to = branches_of(problem, group, constants, count)
+    branch_table, branches, irregular, stick_to = branches_of(problem, group, constants, count)
     rtol = values.get("run.rtol", scenario.rtol)
     if par.numbers.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
         par = Params(spread(par.numbers[:, None], count))
@@ -99,13 +97,12 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     if par.numbers.ndim > 1:
         par.numbers[Params.places["stick_to"].first] = stick_to
     return Setups(
-        par=rows(par.numbers, 1),
-        address=group.address,
+        par=rows(par.numbers),
         jets=group.jets,
         constants=constants,
-        law=rows(law, 2),
-        branch=branch,
-        first=rows(first_load(problem), 2),
+        law=law,
+        branch_table=branch_table,
+        first_load=for_each(first_load(problem), 2),
         branches=branches,
         irregular=irregular,
         state=group.state.numbers,
@@ -119,12 +116,14 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     )
 
 
-def rows(table: Floats, axes: int) -> Floats:
-    """Return a table with its last axis, that of the members, moved before the other axes, of which there are `axes`.
+def rows(numbers: Floats) -> Floats:
+    """Return numbers, which have a column for each member if these differ, with a row for each; or with a single row."""
+    return for_each(numbers.T, 1)
 
-    A table that has only these other axes, because the members do not differ, gets a first axis of length 1.
-    """
-    return np.ascontiguousarray(np.moveaxis(table, -1, 0) if table.ndim > axes else table[None])
+
+def for_each(table: Floats, axes: int) -> Floats:
+    """Return a table with a first axis of members; it has only the given number of other axes if the members do not differ."""
+    return np.ascontiguousarray(table if table.ndim > axes else table[None])
 
 
 def spread(numbers: Any, count: int) -> Floats:
@@ -144,11 +143,10 @@ def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
 # ---- the law ----------------------------------------------------------------------------------------------------------------
 
 
-def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
-    """Return the constants of the law's functions, and the table of slip shifts, offsets and knots, as in `engine_input.prepare`.
+def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
+    """Return the constants of the law's functions and the pieces of the law, as `engine_input.prepare.law_tables` does.
 
-    The constants have the shape (members or 1, pieces, size). The table has the shape (3, pieces), with a last axis of members if
-    these differ.
+    Both have a first axis of members, of length 1 if these do not differ.
     """
     law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
     near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
@@ -157,12 +155,15 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Floats]:
     at_reference = [shared(law.pieces[i](law, x, 0.0)) for i, x in enumerate(references)]
     offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
     knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
-    table = together([*(start - reference for reference in references), *offsets, *knots])
+    fields = rows(together([*(start - reference for reference in references), *offsets, *knots]))
+    law_pieces = np.array(np.broadcast_to(group.functions, (len(fields), *group.functions.shape)), order="C")
+    own = LawPiece.of(law_pieces)
+    own.slip_shift, own.offset, own.knot = (fields[:, n * pieces : (n + 1) * pieces] for n in range(3))
     numbers = together([*(getattr(law, name) for name in law.parameters()), *references])
-    rows_of = rows(numbers, 1)
+    rows_of = rows(numbers)
     constants = np.zeros((len(rows_of), pieces, group.size))
     fill_constants(group.prepare, rows_of, constants)
-    return constants, table.reshape(3, pieces, *table.shape[1:])
+    return constants, law_pieces
 
 
 def steps_alone(problem: Problem) -> bool:
@@ -172,7 +173,7 @@ def steps_alone(problem: Problem) -> bool:
 
 def jets_of(formula: CompiledFormula, problem: Problem) -> int:
     """Return the address of the compiled series of a formula for lanes."""
-    return formula.address("motion_jets" if has_inertia(problem) else "rate_jets")
+    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
@@ -181,23 +182,22 @@ def jets_of(formula: CompiledFormula, problem: Problem) -> int:
 def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
     """Return the branches of each member's resistance g(v) = Z v + S mu(v), and what follows from them.
 
-    The results are the rows of `Setups.branch`, the number of branches, 1 for members for which some load has several solutions,
+    The results are `Setups.branch_table`, the number of branches, 1 for members for which some load has several solutions,
     and the load minus strength (Pa) at which stick ends.
     """
     branches, one = np.ones(count, np.int64), group.problem
     if group.counts.is_algebraic == 0:
-        return branch_rows(one, 0.0)[0].T.copy(), branches, np.zeros(count), np.zeros(count)
+        return table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
-    assert isinstance(body, ElasticSlab)
-    own = problem.normal * law.variation / body.impedance
+    own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
-    impedance, normal, start = (spread(x, count) for x in (body.impedance, problem.normal, -problem.normal * law.static_excess))
+    impedance, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
     kind = one.friction.bends_one_way, RULES.index(one.rule)
-    table, irregular, stick_to = np.empty((count, 6 * (1 if kind[0] else MOST_BRANCHES))), np.empty(count), np.empty(count)
+    table, irregular, stick_to = Branch.table(count, 1 if kind[0] else MOST_BRANCHES), np.empty(count), np.empty(count)
     with np.errstate(divide="ignore", invalid="ignore"):
         near = law.rate_at_slope(-impedance / normal)
     near = spread(np.nan if near is None else near, count)
-    contact = (group.address[0, 0], constants, impedance, normal, start, slowest, fastest, near)
+    contact = (LawPiece(group.functions[0]).value_at, constants, impedance, normal, start, slowest, fastest, near)
     branch_tables(*contact, *kind, np.empty(4), table, branches, irregular, stick_to)
     return table, branches, irregular, stick_to
 

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.engine.state.layout import Floats
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.quantities import LARGEST, SMALLEST, Quantity, quantities_of
 from stickslip.problem.problem import Problem
@@ -81,7 +80,7 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
         check_rtol(run["rtol"], "run")
     problem = replace(scenario.problem, body=body, friction=law, **numbers.problem)
     check_shortest_event(problem, scenario.shortest_event, "run")
-    check_round_trips(run.get("duration", scenario.duration), row_time(problem), "run")
+    check_round_trips(run.get("duration", scenario.duration), problem.round_trip_time, "run")
     return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
 
 
@@ -153,7 +152,7 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
     fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
     with np.errstate(all="ignore"):  # members that are refused already may overflow or divide by zero
-        row = row_time(with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem))
+        row = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem).round_trip_time
         fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= MOST_ROUND_TRIPS * np.asarray(row)
     if isinstance(body, ElasticSlab):
         if body.p_wave_speed is not None:

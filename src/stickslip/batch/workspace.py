@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lanes import AWAY, CONSTANTS
+from stickslip.batch.kernels.lanes import CONSTANTS, Waits
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
-from stickslip.batch.kernels.runs import FREE
+from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.contact_step.on_demand import lend_implicit_steps
+from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, Store
+from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
-from stickslip.engine.waves.echo_queue import Echoes, new_echoes
 from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
@@ -29,11 +28,11 @@ class Workspace(NamedTuple):
     """The memory of one thread, which serves all its members. The tables of `store` and `echoes` have a first axis of lanes."""
 
     store: Store
-    echoes: Echoes
+    echoes: Integers
     points: Points
     numbers: Floats  # room for the block of `kernels.lanes`
     block: Integers  # the address of this block
-    stage: Integers  # (WIDTH,): FREE, UNDER_WAY or AT_END, see `kernels.runs`
+    stage: Integers  # (WIDTH,): codes of `kernels.runs.Stage`
     waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
     member: Integers  # (WIDTH,): index of the member in the lane
     code: Integers  # (WIDTH,): what the engine returned last for this member
@@ -43,19 +42,19 @@ class Workspace(NamedTuple):
     @property
     def capacity(self) -> int:
         """Return the number of pieces of history for which each lane has room."""
-        return self.store.whole.shape[1]
+        return self.store.pieces.shape[1]
 
     def ready_for(self, constants: int) -> Workspace:
         """Free all lanes and begin with the first member of a group, whose law has the given number of constants."""
-        self.stage[:], self.waits[:], self.upcoming[:] = FREE, AWAY, 0
+        self.stage[:], self.waits[:], self.upcoming[:] = Stage.FREE, Waits.NONE, 0
         numbers, block = new_block(constants)
         return self._replace(numbers=numbers, block=block)
 
     def larger(self) -> Workspace:
         """Return a workspace with room for four times as many pieces, up to LARGEST_CAPACITY, which keeps the histories so far."""
         capacity = min(4 * self.capacity, LARGEST_CAPACITY)
-        store, echoes = in_lanes(at.new_store(WIDTH * capacity)), in_lanes(new_echoes(WIDTH * capacity))
-        for old, new in zip((*self.store, *self.echoes), (*store, *echoes), strict=True):
+        store, echoes = in_lanes(at.new_store(WIDTH * capacity)), EchoNode.table(WIDTH, capacity)
+        for old, new in zip((*self.store, self.echoes), (*store, echoes), strict=True):
             new[:, : old.shape[1]] = old
         return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
 
@@ -64,18 +63,14 @@ class Workspace(NamedTuple):
         return self._replace(points=new_points(2 * len(self.points.xi)))
 
 
-Tables = TypeVar("Tables", Store, Echoes)
+def divided(table: Any) -> Any:
+    """Return a table with a first axis of lanes, which have equally many rows of it."""
+    return table.reshape(WIDTH, len(table) // WIDTH, table.shape[1])
 
 
-def in_lanes(tables: Tables) -> Tables:
-    """Divide the rows of tables equally among the lanes."""
-    shared: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, table.shape[1]) for table in tables]
-    return type(tables)(*shared)
-
-
-def lane_of(tables: Tables, n: int) -> Tables:
-    """Return the tables of one lane."""
-    return type(tables)(*[table[n] for table in tables])
+def in_lanes(store: Store) -> Store:
+    """Divide the rows of a history's tables equally among the lanes."""
+    return Store(divided(store.pieces), divided(store.state))
 
 
 def apart(*shape: int, dtype: type = float) -> Any:
@@ -100,7 +95,7 @@ def new_workspace() -> Workspace:
     stage, waits, member, code = apart(4, WIDTH, dtype=np.int64)
     return Workspace(
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
-        in_lanes(new_echoes(WIDTH * FIRST_CAPACITY)),
+        EchoNode.table(WIDTH, FIRST_CAPACITY),
         new_points(POINTS_PER_PIECE * FIRST_CAPACITY),
         *new_block(0),
         stage,
@@ -117,22 +112,15 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
 
     The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
     """
-    par, branch = Params(setups.par[0]), setups.branch[0].reshape(6, -1)
-    own = Setup(par, setups.address, setups.constants[0], setups.law[0], branch, setups.first[0], NOT_VARYING)
+    par = Params(setups.par[0])
+    own = Setup(par, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
-        lend(work.table[n], own, lane_of(work.store, n), lane_of(work.echoes, n))
-        if Counts(setups.counts).has_inertia == 1:
-            lend_implicit_steps(work.table[n])
+        lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
+        lend_parts_of_batch(work.table[n], par, Counts(setups.counts))
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
-    own_rows = {
-        ("constants",): setups.constants,
-        ("slip_shift", "offset", "knot"): setups.law,
-        ("rate_from",): setups.branch,
-        ("first_theta", "first_load", "first_slope", "first_jump"): setups.first,
-    }
-    for names, rows in own_rows.items():
-        for name in names:
-            stride[Run.places[name].first] = rows.strides[0] if len(rows) > 1 else 0
+    for name in ("law", "constants", "branch_table", "first_load"):
+        table = getattr(setups, name)
+        stride[Run.places[name].first] = table.strides[0] if len(table) > 1 else 0
     return addresses, stride

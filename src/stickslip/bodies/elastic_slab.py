@@ -46,6 +46,9 @@ class ElasticSlab:
     """
 
     kind: ClassVar[str] = "elastic-slab"
+    load_unit: ClassVar[str] = "Pa"
+    energy_unit: ClassVar[str] = "J m-2"
+    has_waves: ClassVar[bool] = True
 
     density: float = quantity("kg/m^3", "density rho", above=0)
     wave_speed: float = quantity("m/s", "shear wave speed c", above=0)
@@ -77,6 +80,11 @@ class ElasticSlab:
         return self.density * self.wave_speed
 
     @property
+    def damping(self) -> float:
+        """Return the radiation damping, traction per slip rate that leaves with the waves (Pa s/m): the impedance."""
+        return self.impedance
+
+    @property
     def shear_modulus(self) -> float:
         """Return the shear modulus G = rho c^2 (Pa)."""
         return self.density * self.wave_speed**2
@@ -85,6 +93,26 @@ class ElasticSlab:
     def two_way_time(self) -> float:
         """Return the two-way travel time R = 2 h / c (s)."""
         return 2.0 * self.thickness / self.wave_speed
+
+    @property
+    def round_trip_time(self) -> float:
+        """Return the two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
+        return self.two_way_time
+
+    @property
+    def normal_load(self) -> float:
+        """Return the normal stress S (Pa)."""
+        return self.normal_stress
+
+    @property
+    def inertia(self) -> float:
+        """Return the contact mass (kg/m^2)."""
+        return self.contact_mass
+
+    @property
+    def has_inertia(self) -> bool:
+        """Return True if the contact has a mass, so that its slip rate cannot jump."""
+        return self.contact_mass > 0.0
 
     @property
     def reflection(self) -> float:

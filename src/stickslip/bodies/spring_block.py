@@ -32,11 +32,22 @@ class SpringBlock:
     """
 
     kind: ClassVar[str] = "spring-block"
+    load_unit: ClassVar[str] = "N"
+    energy_unit: ClassVar[str] = "J"
+    has_waves: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
+    driver_impedance: ClassVar[float] = math.inf
+    """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
+    is_driven_rigidly: ClassVar[bool] = True
+    reflection: ClassVar[float] = 0.0
 
     mass: float = quantity("kg", "mass m", above=0)
     stiffness: float = quantity("N/m", "stiffness K of the spring", above=0)
     normal_force: float = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: float = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_quantities(self)
 
     @property
     def period(self) -> float:
@@ -44,5 +55,23 @@ class SpringBlock:
         found: float = 2.0 * math.pi * np.sqrt(self.mass / self.stiffness)
         return found
 
-    def __post_init__(self) -> None:
-        check_quantities(self)
+    @property
+    def round_trip_time(self) -> float:
+        """Return the period (s), after which the spring has brought the block's motion back."""
+        return self.period
+
+    @property
+    def impedance(self) -> float:
+        """Return sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        found: float = np.sqrt(self.stiffness * self.mass)
+        return found
+
+    @property
+    def normal_load(self) -> float:
+        """Return the normal force S (N)."""
+        return self.normal_force
+
+    @property
+    def inertia(self) -> float:
+        """Return the mass (kg)."""
+        return self.mass

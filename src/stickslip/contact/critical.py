@@ -156,7 +156,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
     """
     found = parameter(problem, name)
-    if getattr(problem.body, "contact_mass", 0.0) > 0.0:
+    if problem.body.has_waves and problem.body.has_inertia:
         raise InputError("critical value: the contact mass makes the slip rate a state, the motion is unique whatever the law")
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
-from stickslip.foundation.errors import InputError
+from stickslip.bodies import as_slab
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression, evaluate
@@ -169,7 +168,6 @@ def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
     A contact mass does not enter: g is then the resistance at which the contact settles. Raises InputError for a block, whose slip
     rate is a state and solves no contact equation.
     """
-    if not isinstance(problem.body, ElasticSlab):
-        raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
+    slab = as_slab(problem.body, "contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
-    return Resistance(problem.friction, problem.body.impedance, problem.normal, slip)
+    return Resistance(problem.friction, slab.damping, problem.normal, slip)

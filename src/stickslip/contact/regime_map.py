@@ -114,7 +114,7 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
     if names[0].name == names[1].name:
         raise InputError(f"regime map: needs two different parameters, got {names[0].name} twice")
-    if getattr(problem.body, "contact_mass", 0.0) > 0.0:
+    if problem.body.has_waves and problem.body.has_inertia:
         raise InputError("regime map: the contact mass makes the slip rate a state, the motion is unique whatever the law")
     margin(problem)  # raises for a block, which `at` would otherwise turn into a map of NaN
 

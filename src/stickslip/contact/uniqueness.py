@@ -11,7 +11,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import Branch, branches_of, rates_at
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
@@ -181,10 +180,9 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
     -----
     Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
     """
-    if not isinstance(problem.body, ElasticSlab):
-        return Uniqueness("regular", problem.rule, _INERTIA.format(body="The block", rule=problem.rule))
-    if problem.body.contact_mass > 0.0:
-        return Uniqueness("regular", problem.rule, _INERTIA.format(body="The contact mass", rule=problem.rule))
+    if problem.body.has_inertia:
+        mass = "The contact mass" if problem.body.has_waves else "The block"
+        return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
     if problem.friction.state is not None:
         return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, law_slip)

@@ -10,8 +10,7 @@ import numpy as np
 from stickslip.creep.averaged import AveragedCreep
 from stickslip.creep.landing import Piece
 from stickslip.creep.planner import Plan, hermite
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Counts, Floats, State, Store
+from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, State, Store
 from stickslip.problem.problem import Problem
 
 
@@ -54,7 +53,7 @@ class Scribe:
             load[1] += averaged.gain * (t1 - t0) / self.row_time
             self._write(n, row, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
             n += 1
-        self.store.real[n - 1, at.S_THETA_TO] += np.spacing((row + plan.trips) * self.row_time)  # no gap before the next row
+        self.store.theta_to[n - 1] += np.spacing((row + plan.trips) * self.row_time)  # no gap before the next row
         return n
 
     def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
@@ -74,12 +73,15 @@ class Scribe:
         """Write the round trip on which the leap lands, from piece n on."""
         for k, piece in enumerate(pieces):
             self._write(n + k, row, piece)
-            self.store.real[n + k, at.S_THETA_TO] = pieces[k + 1].theta_from if k + 1 < len(pieces) else self.row_time
+            self.store.theta_to[n + k] = pieces[k + 1].theta_from if k + 1 < len(pieces) else self.row_time
 
     def _write(self, n: int, row: int, piece: Piece) -> None:
         store, state = self.store, self.state
         slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
-        store.whole[n] = row, self.direction * piece.slips, self.count.piece, 0, 0, -1
-        store.real[n] = piece.theta_from, piece.theta_to, piece.speed, piece.bend, slip, law_slip, np.nan, np.nan
+        kept = HistoryPiece(store.pieces[n])
+        kept.row, kept.mode, kept.law_piece = row, self.direction * piece.slips, self.count.piece
+        kept.jump, kept.cause, kept.echo_of = 0, 0, -1
+        kept.theta_from, kept.theta_to, kept.speed, kept.bend = piece.theta_from, piece.theta_to, piece.speed, piece.bend
+        kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan
         store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
         store.rate[n] = self.direction * piece.rate

@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.creep.averaged import AveragedCreep, Strength
 from stickslip.creep.history_writer import Scribe, seen
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner
 from stickslip.engine.state.layout import Counts, Floats, Incoming, Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.engine_input.creep_limits import PATIENCE
-from stickslip.engine_input.forcing import row_time
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
 
@@ -57,9 +54,7 @@ class CreepLeaps:
     """The rows of `History.creep`, one for each leap."""
 
     def __post_init__(self) -> None:
-        body = self.problem.body
-        assert isinstance(body, ElasticSlab)
-        self.impedance, self.speed = body.impedance, abs(self.problem.first_pull_rate)
+        self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
 
     def begin(self, count: Counts) -> None:
@@ -141,7 +136,7 @@ class CreepLeaps:
         load[:, 0] += 2.0 * self.impedance * self.speed
         pattern = Pattern(monotone_parts(load, store.theta_from[rows], store.speed[rows], store.bend[rows]))
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
-        strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * row_time(self.problem))
+        strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * self.problem.round_trip_time)
         return AveragedCreep(pattern, strength, self.impedance, self.speed)
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
@@ -150,7 +145,7 @@ class CreepLeaps:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.row), float(run.state.slip_now)
         self._write(run, averaged, plan)
-        delay = plan.error / plan.states[-1].rate * row_time(self.problem)
+        delay = plan.error / plan.states[-1].rate * self.problem.round_trip_time
         self.taken[run.count.creep_leaps :] = [(begun, plan.trips, plan.error, delay)]
         run.count.creep_leaps += 1
         if not self._goes_on(run, begun + plan.trips + 1 + CHECKED, last):
@@ -165,7 +160,7 @@ class CreepLeaps:
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))
         count, landed_on, sign = run.count, int(run.count.row) + plan.trips, averaged.strength.sign
-        scribe = Scribe(run.store, self.problem, row_time(self.problem), self.direction, sign, run.state, count)
+        scribe = Scribe(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
         scribe.write_landing(landed_from, landed_on, pieces)
         self._move(run, pieces[-1], sign)
@@ -184,7 +179,7 @@ class CreepLeaps:
 
     def _goes_on(self, run: RunInProgress, row: int, last: tuple[int, float]) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
-        while (code := run.step(last, STEPS)) in (OUT_OF_BUDGET, Stop.FULL):
+        while (code := run.step(last, STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
-                run.reserve(2 * len(run.store.whole))
+                run.reserve(2 * len(run.store.pieces))
         return code == Stop.PAUSED and run.count.row == row

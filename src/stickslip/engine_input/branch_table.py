@@ -16,41 +16,32 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import scan_rates
 from stickslip.contact.equation import resistance
 from stickslip.contact.rules.selection import selection_table
-from stickslip.engine.loop import advance
-from stickslip.engine.moving_folds.branch_scan import new_branches
-from stickslip.engine.moving_folds.moving_levels import (
+from stickslip.engine.folds.branch_scan import Scan, new_scan
+from stickslip.engine.folds.moving_levels import (
     COMPILED_RULES,
     EXACT,
     FIRST_PLACE,
     LAST_PLACE,
-    MAXWELL,
     NEXT,
     ROUNDING,
     SHORTEST,
     crossing_in,
     set_maxwell_levels,
 )
+from stickslip.engine.loop import run_until
 from stickslip.engine.series.polynomial import RECIPROCAL
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Setup, State, Stop, Store
+from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, Params, Rule, Setup, State, Stop, Store
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 
-OUT_OF_BUDGET = -1
-"""Code that `advance` returns when it has made the number of steps that it was asked for."""
 AT_A_TIME = 100
 """Number of steps that are checked before the caller gets a chance to report progress."""
 STORM_OF, STORM_IN = 30, 1e-6
 """An event storm: this many crossings within this share of a round trip."""
-
-
-def has_inertia(problem: Problem) -> bool:
-    """Return True if the contact itself has mass, so that its slip rate cannot jump."""
-    return not isinstance(problem.body, ElasticSlab) or problem.body.contact_mass > 0.0
 
 
 def is_algebraic(problem: Problem) -> bool:
@@ -58,7 +49,7 @@ def is_algebraic(problem: Problem) -> bool:
 
     This holds for a massless contact under a law of slip rate without a state variable.
     """
-    return not has_inertia(problem) and problem.friction.depends_on_rate and problem.friction.state is None
+    return not problem.body.has_inertia and problem.friction.depends_on_rate and problem.friction.state is None
 
 
 def folds_move(problem: Problem) -> bool:
@@ -66,18 +57,21 @@ def folds_move(problem: Problem) -> bool:
     return is_algebraic(problem) and problem.friction.depends_on_slip
 
 
-def branch_rows(problem: Problem, law_slip: float) -> tuple[Floats, float]:
-    """Return the rows of `Setup.branch` at a law slip (m, minus the initial one), and the load at which the contact leaves stick.
+def table_of_branches(problem: Problem, law_slip: float) -> tuple[Floats, float]:
+    """Return the table of branches at a law slip (m, minus the initial one), and the load at which the contact leaves stick.
 
     That load is in Pa, minus the strength. Where the solution is unique there is one branch, which is never left.
     """
     if not is_algebraic(problem):
-        return np.array([[0.0], [math.inf], [-math.inf], [math.inf], [-math.inf], [math.inf]]), 0.0
-    branches, table = selection_table(problem, problem.law_slip + law_slip)
-    rates = [[getattr(branch, name) for branch in branches] for name in ("rate_from", "rate_to")]
-    ends = [[getattr(branch, name) for branch in branches] for name in ("excess_from", "excess_to")]
-    loads = np.array([table.keep_from, table.keep_to, *ends]) + strength_change(problem, law_slip)
-    return np.array([*rates, *loads]), table.stick_to
+        return np.array([[0.0, math.inf, -math.inf, math.inf, -math.inf, math.inf]]), 0.0
+    branches, levels = selection_table(problem, problem.law_slip + law_slip)
+    table, change = Branch.table(len(branches)), strength_change(problem, law_slip)
+    found = Branch.of(table)
+    found.rate_from, found.rate_to = [one.rate_from for one in branches], [one.rate_to for one in branches]
+    found.keep_from, found.keep_to = np.array(levels.keep_from) + change, np.array(levels.keep_to) + change
+    found.excess_from = np.array([one.excess_from for one in branches]) + change
+    found.excess_to = np.array([one.excess_to for one in branches]) + change
+    return table, levels.stick_to
 
 
 def strength_change(problem: Problem, law_slip: float) -> float:
@@ -92,17 +86,17 @@ def strength_change(problem: Problem, law_slip: float) -> float:
     return problem.normal * float(difference(law.trees()[home], law.numbers(home), start, law_slip, 0.0)[0])
 
 
-def branch_of(rows: Floats, rate: float) -> int:
+def branch_of(branches: Branch, rate: float) -> int:
     """Return the branch to which a slip rate (m/s) belongs.
 
     It is the nearest branch, because rounding may put a rate at a fold outside of every branch.
     """
-    return int(np.argmin(np.maximum(np.maximum(rows[at.RATE_FROM] - rate, rate - rows[at.RATE_TO]), 0.0)))
+    return int(np.argmin(np.maximum(np.maximum(branches.rate_from - rate, rate - branches.rate_to), 0.0)))
 
 
 def has_levels_to_set(problem: Problem) -> bool:
     """Return True if compiled code sets the levels of the rule: those of Maxwell's rule take tenths of a second in Python."""
-    return COMPILED_RULES.get(problem.rule) == MAXWELL
+    return COMPILED_RULES.get(problem.rule) == Rule.MAXWELL
 
 
 def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
@@ -111,10 +105,10 @@ def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Co
     Under Maxwell's rule the levels still have to be set (`RuleFollower.set_levels`).
     """
     case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
-    rows, par.stick_to = branch_rows(case, float(state.law_slip))
-    count.branch = branch_of(rows, abs(float(state.rate_now)))
+    table, par.stick_to = table_of_branches(case, float(state.law_slip))
+    count.branch = branch_of(Branch.of(table), abs(float(state.rate_now)))
     state.table_slip = state.law_slip
-    return setup._replace(branch=rows)
+    return setup._replace(branches=table)
 
 
 @dataclass(frozen=True)
@@ -140,12 +134,12 @@ class Step:
 
     def room(self, xi: float) -> float:
         """Return how far (Pa) the load is inside the interval in which the rule keeps the branch; negative outside."""
-        rows, _ = branch_rows(self.problem, self.law_slip(xi))
+        branches = Branch.of(table_of_branches(self.problem, self.law_slip(xi))[0])
         powers = xi ** np.arange(at.TERMS)
         rate, load = abs(float(self.store.rate[self.row] @ powers)), float(self.store.load[self.row] @ powers)
         seen = load if self.direction > 0 else -load - 2.0 * self.problem.strength
-        branch = branch_of(rows, rate)
-        return min(seen - float(rows[at.KEEP_FROM, branch]), float(rows[at.KEEP_TO, branch]) - seen)
+        branch = branch_of(branches, rate)
+        return min(seen - float(branches.keep_from[branch]), float(branches.keep_to[branch]) - seen)
 
     def crossing(self) -> float | None:
         """Return the place at which the load first leaves that interval, or None if it stays in it."""
@@ -194,29 +188,29 @@ class RuleFollower:
     times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
 
     def advance(self, table: Integers, store: Store, last: tuple[int, float], budget: int) -> int:
-        """Advance the run as `loop.advance` does, under the selection rule.
+        """Advance the run as `loop.run_until` does, under the selection rule.
 
         Returns Stop.STORM if the contact goes to and fro across a level that slip moves against the load.
         """
         if not folds_move(self.problem) or self.problem.rule == "perfect-delay":
-            return advance(table, *last, budget)
+            return run_until(table, *last, budget)
         for _ in range(min(budget, AT_A_TIME)):
             state, count = self.state.copy(), self.count.copy()
-            code = advance(table, *last, 1)
+            code = run_until(table, *last, 1)
             place = self._crossing(table, store, int(count.length))
             if place is not None:
                 state.exit = state.xi + place * (self.state.xi - state.xi)
                 self.state.numbers[:], self.count.numbers[:] = state.numbers, count.numbers
                 if self._storms():
                     return Stop.STORM
-            elif code != OUT_OF_BUDGET:
+            elif code != Stop.NONE:
                 return code
-        return OUT_OF_BUDGET
+        return Stop.NONE
 
     def set_levels(self, table: Integers) -> None:
         """Set the levels that `renewed` has left out, in the setup that the engine uses."""
         if has_levels_to_set(self.problem):
-            set_maxwell_levels(table, *self._scan)
+            set_maxwell_levels(table, self._scan)
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Return the place at which a slip step that has just been made crosses a level of the rule, or None."""
@@ -225,14 +219,13 @@ class RuleFollower:
             return None
         if self.problem.rule not in COMPILED_RULES:
             return Step(self.problem, store, length).crossing()
-        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], *self._scan)
+        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], self._scan)
         return place if place <= 1.0 else None
 
     @cached_property
-    def _scan(self) -> tuple[Floats, Floats]:
-        """Return the slip rates (m/s) at which compiled code looks for branches, and a table for those that it finds."""
-        rates = scan_rates(resistance(self.problem))
-        return rates, new_branches(rates)
+    def _scan(self) -> Scan:
+        """Return the memory with which compiled code looks for branches."""
+        return new_scan(scan_rates(resistance(self.problem)))
 
     def _storms(self) -> bool:
         """Record the time of a crossing, and return True if many have come with hardly any time between them."""

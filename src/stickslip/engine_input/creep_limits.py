@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.bodies import ElasticSlab
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -47,11 +46,11 @@ def _missing(problem: Problem) -> str:
 def missing_but_pull(problem: Problem) -> str:
     """Return what a problem lacks besides a pull rate, which may differ between the members of a batch."""
     body, law = problem.body, problem.friction
-    if not isinstance(body, ElasticSlab):
+    if not body.has_waves:
         return "a slab, which creeps from round trip to round trip"
-    if body.reflection != -1.0:
+    if not body.is_driven_rigidly:
         return "a rigid driver (no driver_impedance)"
-    if body.contact_mass > 0.0:
+    if body.has_inertia:
         return "a contact without mass (no contact_mass)"
     if law.state is not None or law.depends_on_rate:
         return f"a friction law of slip alone ({type(law).__name__} is not one)"

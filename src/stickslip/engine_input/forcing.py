@@ -14,7 +14,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.loading import LoadingHistory, Segment, Tone
 from stickslip.loading.contract import SILENT
@@ -100,29 +99,6 @@ class Inflow:
         return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))
 
 
-DAY = 86_400.0
-"""A day, s: the length of a row for a block that never sticks."""
-LONGEST_ROW = 1e6
-"""Largest number of periods of a block in one row of its history (1)."""
-
-
-def row_time(problem: Problem) -> float:
-    """Return the length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
-
-    A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
-    period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve
-    them; but it never is shorter than one period of the block.
-    """
-    body = problem.body
-    if isinstance(body, ElasticSlab):
-        return body.two_way_time
-    if problem.friction.sticks:
-        return body.period
-    tone = problem.pull_rate.tone if isinstance(problem.pull_rate, LoadingHistory) else SILENT
-    swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
-    return max(body.period, min(DAY, LONGEST_ROW * body.period, swing))
-
-
 EDGE = 1e-13
 """Distance from the edge of a row, as a share of it, within which a break lies on the edge."""
 
@@ -130,14 +106,14 @@ EDGE = 1e-13
 def steady_inflow(problem: Problem) -> tuple[float, float]:
     """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s."""
     body = problem.body
-    if not isinstance(body, ElasticSlab):
+    if not body.has_waves:
         return body.stiffness * problem.first_pull_rate, 0.0
     if body.is_driven_rigidly:
         return 2.0 * body.impedance * problem.first_pull_rate, 0.0
     gain, far = 1.0 + body.reflection, problem.far_stress
     assert not isinstance(far, LoadingHistory)
     excess = problem.excess if far is None else far - problem.strength
-    growth, delay = problem.far_stress_rate, 0.5 * body.two_way_time
+    growth, delay = problem.far_stress_rate, 0.5 * body.round_trip_time
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
 
@@ -148,20 +124,21 @@ def inflow_of(problem: Problem) -> Inflow:
     if not problem.varies:
         value, slope = steady_inflow(problem)
         return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
-    if not isinstance(body, ElasticSlab):
+    if not body.has_waves:
         return _inflow(*_scaled(problem.pull_rate, body.stiffness), 0.0, problem)
-    delay = 0.5 * body.two_way_time
-    if body.reflection == -1.0:
+    delay = 0.5 * body.round_trip_time
+    if body.is_driven_rigidly:
         return _inflow(*_scaled(problem.pull_rate, 2.0 * body.impedance), delay, problem)
-    return _inflow(*_lossy(problem, body), delay, problem)
+    return _inflow(*_lossy(problem), delay, problem)
 
 
-def _lossy(problem: Problem, body: ElasticSlab) -> tuple[list[Segment], Tone]:
+def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:
     """Return the segments and the tone of far stress and pull rate together, as they leave a driver of finite impedance.
 
     One of the two varies.
     """
-    gain, far = 1.0 + body.reflection, problem.far_stress
+    body, far = problem.body, problem.far_stress
+    gain = 1.0 + body.reflection
     if isinstance(far, LoadingHistory):
         segments, tone = _scaled(far, gain)
         steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)
@@ -189,5 +166,4 @@ def _inflow(segments: list[Segment], tone: Tone, delay: float, problem: Problem)
     start = start + delay
     value[0], start[0] = value[0] - slope[0] * delay, 0.0
     late = tone if tone is SILENT else Tone(tone.amplitude, tone.frequency, tone.phase - tone.frequency * delay)
-    is_rigid = isinstance(body, ElasticSlab) and body.reflection == -1.0
-    return Inflow(start, value, slope, late, row_time(problem), not isinstance(body, ElasticSlab), is_rigid)
+    return Inflow(start, value, slope, late, problem.round_trip_time, not body.has_waves, body.is_driven_rigidly)

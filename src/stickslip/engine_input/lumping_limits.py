@@ -12,7 +12,7 @@ sign. No computation can follow that for long, and the events that are lumped th
 
 from __future__ import annotations
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import Body
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -29,11 +29,11 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
     if shortest is None or shortest == 0.0:
         return shortest
     body = problem.body
-    if not isinstance(body, ElasticSlab) or body.reflection != -1.0:
+    if not (body.has_waves and body.is_driven_rigidly):
         raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
     if problem.varies:
         raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull only")
-    largest = LARGEST_SHARE * body.two_way_time
+    largest = LARGEST_SHARE * body.round_trip_time
     if not 0.0 < shortest <= largest:
         raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")
     return shortest
@@ -46,15 +46,15 @@ def lumps_by_itself(problem: Problem) -> bool:
     """
     body, law = problem.body, problem.friction
     return (
-        isinstance(body, ElasticSlab)
-        and body.reflection == -1.0
-        and not body.contact_mass > 0.0
+        body.has_waves
+        and body.is_driven_rigidly
+        and not body.has_inertia
         and not problem.varies
         and law.depends_on_rate
         and law.state is None
     )
 
 
-def automatic_length(body: ElasticSlab) -> float:
+def automatic_length(body: Body) -> float:
     """Return the shortest event (s) of automatic lumping."""
-    return AUTOMATIC_SHARE * body.two_way_time
+    return AUTOMATIC_SHARE * body.round_trip_time

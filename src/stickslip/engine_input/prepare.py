@@ -10,14 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.rules.selection import rule_of
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, Params, Setup, State
+from stickslip.engine.state.layout import Counts, FirstLoad, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine_input.automatic import set_length, set_lumping
-from stickslip.engine_input.branch_table import branch_rows, folds_move, has_inertia, is_algebraic
-from stickslip.engine_input.forcing import inflow_of, row_time, steady_inflow
+from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
+from stickslip.engine_input.forcing import inflow_of, steady_inflow
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
@@ -45,9 +44,9 @@ def set_tolerance(par: Params, rtol: Any, shortest: float | None) -> None:
 @lru_cache(maxsize=256)
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
     par = parameters_of(problem)
-    branches, par.stick_to = branch_rows(problem, 0.0)
+    branches, par.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
-    setup = Setup(par, *_formulas(problem), branches, first, loading_of(problem))
+    setup = Setup(par, *law_tables(problem), branches, first, loading_of(problem))
     for shared in (par.numbers, *setup[1:]):
         shared.flags.writeable = False
     return setup, *start_of(problem)
@@ -60,7 +59,7 @@ def parameters_of(problem: Problem) -> Params:
     """
     body, law = problem.body, problem.friction
     par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
-    par.row_time = row_time(problem)
+    par.row_time = problem.round_trip_time
     par.normal = problem.normal
     par.reference = problem.strength
     par.counts_net = 1.0 if law.counts == "net" else 0.0
@@ -70,18 +69,18 @@ def parameters_of(problem: Problem) -> Params:
     par.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
     par.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    if isinstance(body, ElasticSlab):
-        par.impedance, par.inertia, par.reflection = body.impedance, body.contact_mass, body.reflection
+    par.impedance, par.inertia, par.reflection = body.damping, body.inertia, body.reflection
+    if body.has_waves:
         par.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
-        par.impedance, par.inertia, par.stiffness = body.damping, body.mass, body.stiffness
+        par.stiffness = body.stiffness
     if problem.varies:
         par.tone, par.tone_frequency, par.tone_phase = inflow_of(problem).tone
-    elif not isinstance(body, ElasticSlab):
-        par.ramp = body.stiffness * problem.first_pull_rate * row_time(problem)
+    elif not body.has_waves:
+        par.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
         par.inflow, par.inflow_rate = steady_inflow(problem)
-        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.two_way_time
+        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
     return Params(together([getattr(par, name) for name in Params.places]))
 
 
@@ -103,12 +102,12 @@ SAFETY = 0.1
 def first_load(problem: Problem) -> at.Floats:
     """Return the load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
-    if not isinstance(body, ElasticSlab):
-        return _pieces([0.0, row_time(problem)], [excess], [body.stiffness * pull])
-    slope = body.impedance * pull / (0.5 * body.two_way_time)  # G V / h
+    if not body.has_waves:
+        return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * pull])
+    slope = body.impedance * pull / (0.5 * body.round_trip_time)  # G V / h
     if body.is_driven_rigidly:
-        return _pieces([0.0, body.two_way_time], [excess], [slope])
-    r, half = body.reflection, 0.5 * body.two_way_time
+        return _pieces([0.0, body.round_trip_time], [excess], [slope])
+    r, half = body.reflection, 0.5 * body.round_trip_time
     steady, rate = steady_inflow(problem)
     # for h/c <= t < R the waves of the initial state come back: w(t - R) = G V (R - t) / h - tau0
     reflected = steady + rate * half + r * (slope * half - excess)
@@ -123,9 +122,9 @@ def first_load_varying(problem: Problem) -> at.Floats:
     Its parts are so short that a tone in them is a polynomial to rounding.
     """
     body, excess = problem.body, problem.excess
-    if not isinstance(body, ElasticSlab):
-        return _parts(problem, _pieces([0.0, row_time(problem)], [excess], [0.0]))
-    r, half = body.reflection, 0.5 * body.two_way_time
+    if not body.has_waves:
+        return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
+    r, half = body.reflection, 0.5 * body.round_trip_time
     slope = body.impedance * problem.first_pull_rate / half
     before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
@@ -134,7 +133,8 @@ def first_load_varying(problem: Problem) -> at.Floats:
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     """Return the same load in shorter pieces, in which the phase of a tone changes by at most LARGEST_TURN."""
-    theta, tone = pieces[0], inflow_of(problem).tone
+    known, tone = FirstLoad.of(pieces), inflow_of(problem).tone
+    theta = known.theta
     if tone.amplitude == 0.0:
         return pieces
     counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
@@ -145,38 +145,40 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(theta[:-1], theta[1:], counts, strict=True)]
     of = np.repeat(np.arange(len(counts)), counts)
     begin = np.concatenate(edges)
-    load = pieces[1][of] + pieces[2][of] * (begin - theta[of])
-    jump = np.where(begin == theta[of], pieces[3][of], 0.0)
-    return np.array([[*begin, theta[-1]], [*load, 0.0], [*pieces[2][of], 0.0], [*jump, 0.0]])
+    load = known.load[of] + known.slope[of] * (begin - theta[of])
+    jump = np.where(begin == theta[of], known.jump[of], 0.0)
+    return _pieces([*begin, theta[-1]], [*load], [*known.slope[of]], [*jump])
 
 
-NOT_VARYING = np.zeros((5, 1))
-"""Rows of `Setup.loading` for a loading that does not vary."""
+NOT_VARYING = LoadingSegment.table(1)
+"""Table `Setup.loading` of a loading that does not vary."""
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 """Largest phase (rad) over which a sine's Taylor series is right to rounding, and the largest number of parts of a round trip."""
 
 
 def loading_of(problem: Problem) -> at.Floats:
-    """Return the rows of `Setup.loading`: the segments of the inflow and where they arrive; none if the loading is steady."""
+    """Return the segments of the inflow and where they arrive; an empty one if the loading is steady."""
     if not problem.varies:
         return NOT_VARYING
     inflow = inflow_of(problem)
-    row, offset = zip(*inflow.breaks(), strict=True)
+    table = LoadingSegment.table(len(inflow.start))
+    segments = LoadingSegment.of(table)
+    segments.row, segments.offset = zip(*inflow.breaks(), strict=True)
+    segments.value, segments.slope = inflow.value, inflow.slope
     ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)
-    jump = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))
-    return np.array([row, offset, inflow.value, inflow.slope, [0.0, *jump]])
+    segments.jump[1:] = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))
+    return table
 
 
 def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
-    table = together([*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
-    return table.reshape(4, len(theta), *table.shape[1:])
+    """Return a table of `FirstLoad`, or one for each member of a batch, from the edges of the pieces and from their numbers."""
+    numbers = together([*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
+    fields = numbers.reshape(FirstLoad.total, len(theta), *numbers.shape[1:])
+    return np.ascontiguousarray(np.moveaxis(fields, (1, 0), (-2, -1)))
 
 
-def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
-    """Return three tables of the law's pieces: addresses of their functions, their constants, and their references and knots.
-
-    The last table holds the shift of slip and the offset of friction to each piece's own reference, and the knot at its end.
-    """
+def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
+    """Return the pieces of the law as a table of `LawPiece`, and the constants of their formulas."""
     law, start = problem.friction, problem.law_slip
     change = law.state_tree() if law.state else None
     formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
@@ -189,23 +191,31 @@ def _formulas(problem: Problem) -> tuple[at.Integers, at.Floats, at.Floats]:
         formula.fill(np.array(law.piece_values(i)), references[i], row)
     static = float(law.static_coefficient(start))
     at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
-    offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    address = np.array([addresses_of(formula, problem) for formula in formulas], np.int64).T.copy()
-    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
-    return address, constants, np.array([[start - reference for reference in references], offsets, knots])
+    table = functions_of(formulas, problem)
+    pieces = LawPiece.of(table)
+    pieces.slip_shift = [start - reference for reference in references]
+    pieces.offset = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
+    pieces.knot = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
+    return table, constants
 
 
-def addresses_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int, int, int, int]:
-    """Return the addresses and the number of guards of a formula for `Setup.address`; 0 stands for what is not needed.
+def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.Integers:
+    """Return a table of `LawPiece` in which only the functions are set, those that the engine needs.
 
     A law with a state is always stepped implicitly.
     """
-    stepped_implicitly = problem.friction.state is not None or has_inertia(problem)
-    guards = formula.address("guards") if formula.guard_count and stepped_implicitly else 0
-    if problem.friction.state:
-        return 0, 0, formula.address("state_value"), guards, formula.guard_count
-    jet = formula.address("motion_jet" if has_inertia(problem) else "rate_jet")
-    return formula.address("value"), jet, 0, guards, formula.guard_count
+    table, has_state = LawPiece.table(len(formulas)), problem.friction.state is not None
+    for place, formula in zip(table, formulas, strict=True):
+        piece = LawPiece(place)
+        piece.guard_count = formula.guard_count
+        if formula.guard_count and (has_state or problem.body.has_inertia):
+            piece.guards_at = formula.address("guards")
+        if has_state:
+            piece.state_at = formula.address("state_value")
+        else:
+            piece.value_at = formula.address("value")
+            piece.jet_at = formula.address("motion_jet" if problem.body.has_inertia else "rate_jet")
+    return table
 
 
 def start_of(problem: Problem) -> tuple[State, Counts]:
@@ -217,8 +227,8 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     state.last_step = math.inf
     count.piece = int(problem.friction.piece_at(problem.law_slip))
     count.varies = problem.varies
-    count.is_block = not isinstance(problem.body, ElasticSlab)
-    count.has_inertia = has_inertia(problem)
+    count.is_block = not problem.body.has_waves
+    count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)
     count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
     state.state_now = problem.state

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 import stickslip
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Store
+from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import FullDiskError, write
-from stickslip.io.soundness import check_history, number
+from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.observables.rule_influence import choices
@@ -193,6 +193,12 @@ def save_checkpoint(solution: Solution, path: Path) -> Path:
         return path
 
 
+HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name, place in HistoryPiece.places.items()}
+"""Dimensions of the variable of each field of the history's pieces."""
+HISTORY_UNITS = dict.fromkeys(("theta_from", "theta_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
+"""Units of these variables, unless they are pure numbers or loads."""
+
+
 def history_dataset(solution: Solution) -> xr.Dataset:
     """Return the history, and the state of the engine at its end if it is known.
 
@@ -211,10 +217,7 @@ def _history(solution: Solution) -> xr.Dataset:
     store, history = solution.history.store, solution.history
     dataset = xr.Dataset(
         {
-            "history_whole": (("piece", "whole_column"), store.whole),
-            "history_real": (("piece", "real_column"), store.real),
-            "history_load": (("piece", "term"), store.load),
-            "history_rate": (("piece", "term"), store.rate),
+            **{f"history_{name}": (axes, getattr(store, name)) for name, axes in HISTORY_AXES.items()},
             "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
             "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
             "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
@@ -226,10 +229,11 @@ def _history(solution: Solution) -> xr.Dataset:
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
         dataset["history_state"] = (("piece", "term"), store.state, about)
-    dataset.history_whole.attrs = {"columns": "row mode law_piece jump cause", "long_name": "pieces of the history, whole numbers"}
-    dataset.history_real.attrs = {"columns": "theta_from theta_to speed bend slip law_slip", "units": "s s s s m m"}
-    dataset.history_load.attrs = {"long_name": "load minus reference, Taylor coefficients", "units": solution.problem.load_unit}
-    dataset.history_rate.attrs = {"long_name": "slip rate, Taylor coefficients", "units": "m s-1"}
+    units = HISTORY_UNITS | {"load": solution.problem.load_unit}
+    for name in HISTORY_AXES:
+        dataset[f"history_{name}"].attrs = {"units": units.get(name, "1"), "long_name": f"{name} of a piece of the history"}
+    dataset.history_load.attrs["long_name"] = "load minus reference, Taylor coefficients"
+    dataset.history_rate.attrs["long_name"] = "slip rate, Taylor coefficients"
     return dataset
 
 
@@ -326,10 +330,10 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         rule = attributes["selection_rule"]
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
-    whole, real, load, rate = (_array(dataset, f"history_{name}") for name in ("whole", "real", "load", "rate"))
+    columns = {name: _array(dataset, f"history_{name}") for name in HISTORY_AXES}
     state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, at.TERMS))
     duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
-    store = Store(whole, real, load, rate, state)
+    store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
     row_time, ramp, reached = (float(dataset[name].item()) for name in ("row_time", "ramp", "reached"))
     history = History(store, scenario.problem, row_time, ramp, reached, creep=creep)

@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 
 from stickslip.engine.codegen.records import Record
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Counts, Incoming, Setup, State, Stop
-from stickslip.engine.state.workspace import REAL, WHOLE, WORK_ROWS
-from stickslip.engine_input.branch_table import STORM_OF, branch_rows, folds_move, has_levels_to_set
-from stickslip.engine_input.forcing import row_time
+from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
+from stickslip.engine.state.workspace import WORK_ROWS
+from stickslip.engine_input.branch_table import STORM_OF, folds_move, has_levels_to_set, table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.solution.solution import Solution
@@ -30,6 +29,8 @@ ROUNDING = 1e-9
 """Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
+FINITE = ("theta_from", "theta_to", "speed", "bend", "slip", "law_slip", "load", "rate")
+"""Fields of a piece of the history that must be finite."""
 SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "leaving", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
@@ -85,12 +86,26 @@ def check_history(history: History, path: Path) -> None:
     _refuse(_faults_of_history(history), path)
 
 
+def history_table(columns: dict[str, NDArray[Any]], path: Path) -> NDArray[np.int64]:
+    """Return the table of a history from the fields of its pieces. Raises InputError if one of them has another shape or type."""
+    _refuse(_shapes_of_columns(columns), path)
+    table = HistoryPiece.table(len(columns["row"]))
+    for name, place in HistoryPiece.places.items():
+        table[:, place.first : place.first + place.size] = columns[name].reshape(len(table), -1).view(np.int64)
+    return table
+
+
+def _shapes_of_columns(columns: dict[str, NDArray[Any]]) -> Iterator[Fault]:
+    pieces = columns["row"].size
+    for name, place in HistoryPiece.places.items():
+        shape = (pieces, place.size) if place.inside else (pieces,)
+        yield f"shape or type of history_{name}", not _is(columns[name], shape, "i" if place.kind is int else "f")
+
+
 def _shapes_of_history(history: History) -> Iterator[Fault]:
     store, pieces = history.store, len(history)
     has_state = history.problem.friction.state is not None
     yield "number of pieces of the history", pieces < 1
-    for name, columns, kind in (("whole", WHOLE, "i"), ("real", REAL, "f"), ("load", at.TERMS, "f"), ("rate", at.TERMS, "f")):
-        yield f"shape or type of history_{name}", not _is(getattr(store, name), (pieces, columns), kind)
     yield "shape or type of history_state", not _is(store.state, (pieces if has_state else 0, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
 
@@ -100,17 +115,17 @@ def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:
 
 
 def _faults_of_history(history: History) -> Iterator[Fault]:
-    store, pieces, row = history.store, len(history), row_time(history.problem)
+    store, pieces, row = history.store, len(history), history.problem.round_trip_time
     yield "row_time", not math.isclose(history.row_time, row, rel_tol=1e-9)
     yield "ramp or reached", not (math.isfinite(history.ramp) and math.isfinite(history.duration) and history.duration >= 0.0)
     yield "row of a piece", (store.row < 0).any() or (np.diff(store.row) < 0).any() or store.row[-1] >= at.NEVER
     yield "mode of a piece", _outside(store.mode, -1, 1)
-    yield "law piece of a piece", _outside(store.whole[:, at.S_PIECE], 0, len(history.problem.friction.pieces) - 1)
-    yield "jump of a piece", _outside(store.whole[:, at.S_JUMP], 0, 1)
+    yield "law piece of a piece", _outside(store.law_piece, 0, len(history.problem.friction.pieces) - 1)
+    yield "jump of a piece", _outside(store.jump, 0, 1)
     yield "cause of a piece", _outside(store.cause, 0, LAST_CAUSE)
     yield "echo of a piece", (store.echo_of < -1).any() or (store.echo_of >= np.arange(pieces)).any()
     yield "times of a piece", _no_interval(store.theta_from, store.theta_to, math.inf)  # a leap over creep may span many rows
-    numbers = (store.real[:, : at.S_AMPLIFIED], store.load, store.rate, store.state, history.creep)
+    numbers = (*(getattr(store, name) for name in FINITE), store.state, history.creep)
     yield "numbers of a piece, which are not finite,", not all(np.isfinite(table).all() for table in numbers)
 
 
@@ -136,8 +151,13 @@ def check_checkpoint(solution: Solution, path: Path) -> None:
 
 
 def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
-    branches = checkpoint.branch.shape[1] if checkpoint.branch.ndim == 2 else 0
-    shapes = {"state": (State.total,), "scratch": (WORK_ROWS, at.TERMS), "branch": (6, max(branches, 1)), "stick_to": (1,)}
+    branches = len(checkpoint.branch) if checkpoint.branch.ndim == 2 else 0
+    shapes = {
+        "state": (State.total,),
+        "scratch": (WORK_ROWS, at.TERMS),
+        "branch": (max(branches, 1), Branch.total),
+        "stick_to": (1,),
+    }
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
@@ -164,8 +184,8 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         echoes = setup.par.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
-    yield "engine_count piece", not 0 <= count.piece < setup.address.shape[1]
-    yield "engine_count segment", not 0 <= count.row_segment <= count.segment < setup.loading.shape[1]
+    yield "engine_count piece", not 0 <= count.piece < len(setup.law)
+    yield "engine_count segment", not 0 <= count.row_segment <= count.segment < len(setup.loading)
     yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
     yield "engine_count degree", not 0 <= count.degree < at.TERMS
 
@@ -199,16 +219,18 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
     """Yield checks of the branches, which follow from the problem and, if folds move, from the slip for which they hold."""
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
-    yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < branch.shape[1]
+    yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < len(branch)
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
     if not folds_move(problem):
-        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branch) or stick_to != setup.par.stick_to
+        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branches) or stick_to != setup.par.stick_to
         return
-    rows, level = branch_rows(problem, float(State(checkpoint.state).table_slip))
-    compared = [*range(6)]
+    known, level = table_of_branches(problem, float(State(checkpoint.state).table_slip))
+    compared = list(Branch.places)
     if has_levels_to_set(problem):  # compiled code sets the rule's levels, which agree to rounding only
-        compared = [at.RATE_FROM, at.RATE_TO, at.EXCESS_FROM, at.EXCESS_TO]
-    same = branch.shape == rows.shape and np.array_equal(branch[compared], rows[compared])
+        compared = ["rate_from", "rate_to", "excess_from", "excess_to"]
+    same = branch.shape == known.shape and all(
+        np.array_equal(getattr(Branch.of(branch), name), getattr(Branch.of(known), name)) for name in compared
+    )
     yield "engine_branch", not same
     yield "engine_stick_to", not has_levels_to_set(problem) and stick_to != level
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.foundation.errors import InputError
 from stickslip.observables.wave_interval import Stretch, rounding
 from stickslip.observables.waves import Waves
@@ -85,10 +85,7 @@ def field(readings: Readings, x: ArrayLike, t: ArrayLike, side: Side = "right") 
 
 def slab_of(readings: Readings) -> ElasticSlab:
     """Return the slab of a run. Raises InputError for a block."""
-    body = readings.problem.body
-    if not isinstance(body, ElasticSlab):
-        raise InputError("field: a block is rigid and has no interior field: only an ElasticSlab has a field")
-    return body
+    return as_slab(readings.problem.body, "field: a block is rigid and has no interior field: only an ElasticSlab has a field")
 
 
 class _Inside:

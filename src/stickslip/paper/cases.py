@@ -41,7 +41,7 @@ def problem(name: str) -> Problem:
 
 
 def typed(value: object, kind: type[T]) -> T:
-    """Return a body or a law of a case, which is known to be of this type."""
+    """Return a law of a case, which is known to be of this type."""
     assert isinstance(value, kind)
     return value
 

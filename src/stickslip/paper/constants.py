@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from stickslip import YEAR
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_block, as_slab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import problem, typed
@@ -31,9 +31,9 @@ class Constant:
 def constants() -> list[Constant]:
     """Return every constant, the printed ones before those derived from them."""
     rate, slip, other_slip = (problem(name) for name in ("fig6-slab", "fig5-slab-printed", "fig5-slab-reconstructed"))
-    slab, law = typed(rate.body, ElasticSlab), typed(rate.friction, HyperbolicRate)
+    slab, law = as_slab(rate.body), typed(rate.friction, HyperbolicRate)
     sine, other_sine = (typed(case.friction, SinusoidalSlip) for case in (slip, other_slip))
-    block, other_block = (typed(problem(f"fig6-block-{name}").body, SpringBlock) for name in ("printed", "reconstructed"))
+    block, other_block = (as_block(problem(f"fig6-block-{name}").body) for name in ("printed", "reconstructed"))
     start_k, start_omega = (problem(f"fig5-block-reconstructed-{name}").initial_slip for name in ("k", "omega"))
     cube = "m and S describe a cube of 1 km, whose stiffness is G × 10³ m; printed: G × 10⁴ m"
     needed = "the events described need ω ≥ 6.86 /m"

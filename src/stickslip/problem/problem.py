@@ -10,20 +10,20 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import Body, ElasticSlab
+from stickslip.bodies import BODIES, Body
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_quantities, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
+from stickslip.loading.contract import SILENT
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
-
-
-def normal_load(body: Body) -> float:
-    """Return S: the normal stress (Pa) of a slab, or the normal force (N) of a block."""
-    return body.normal_stress if isinstance(body, ElasticSlab) else body.normal_force
+DAY = 86_400.0
+"""A day, s: the length of a row of the history of a block that never sticks."""
+LONGEST_ROW = 1e6
+"""Largest number of periods of a block in one row of its history (1)."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Problem:
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.body, Body):
+        if not isinstance(self.body, tuple(BODIES.values())):
             raise InputError(f"Problem: body must be an ElasticSlab or a SpringBlock, got {type(self.body).__name__}")
         if not isinstance(self.friction, FrictionLaw):
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
@@ -123,8 +123,7 @@ class Problem:
         object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
 
     def _check_far_side(self) -> None:
-        free = isinstance(self.body, ElasticSlab) and not math.isinf(self.body.driver_impedance)
-        if not free and (self.far_stress is not None or self.far_stress_rate != 0.0):
+        if math.isinf(self.body.driver_impedance) and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
 
     @property
@@ -171,6 +170,21 @@ class Problem:
         return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 
     @property
+    def round_trip_time(self) -> float:
+        """Return the length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
+
+        A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
+        period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve
+        them; but it never is shorter than one period of the block.
+        """
+        period = self.body.round_trip_time
+        if self.body.has_waves or self.friction.sticks:
+            return period
+        tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
+        swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
+        return max(period, min(DAY, LONGEST_ROW * period, swing))
+
+    @property
     def rule(self) -> str:
         """Return the name of the selection rule."""
         return name_of(self.selection)
@@ -178,12 +192,12 @@ class Problem:
     @property
     def normal(self) -> float:
         """Return S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
-        return normal_load(self.body)
+        return self.body.normal_load
 
     @property
     def load_unit(self) -> str:
         """Return the unit of loads and tractions: Pa for the slab, N for the block."""
-        return "Pa" if isinstance(self.body, ElasticSlab) else "N"
+        return self.body.load_unit
 
     @property
     def law_slip(self) -> float:

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.differences import difference
 from stickslip.loading import LoadingHistory
@@ -121,9 +120,7 @@ class _Stepper:
     def __post_init__(self) -> None:
         self.solve_ivp, self.brentq = _scipy()
         body, law = self.problem.body, self.problem.friction
-        self.slab = body if isinstance(body, ElasticSlab) else None
-        self.drag = body.impedance if isinstance(body, ElasticSlab) else body.damping
-        self.mass = body.contact_mass if isinstance(body, ElasticSlab) else body.mass
+        self.mass = body.inertia
         self.normal, self.strength = self.problem.normal, self.problem.strength
         self.trees, self.knots = law.trees(), law.knots
         self.numbers = [law.numbers(i) for i in range(len(law.pieces))]
@@ -167,27 +164,27 @@ class _Stepper:
     def massless_rate(self, sense: int, load: float, walked: float) -> float:
         if self.hyperbolic:
             return fast_rate(self.problem, self.pull(sense, load))
-        return max(self.drive(sense, load, walked, 0.0), 0.0) / self.drag
+        return max(self.drive(sense, load, walked, 0.0), 0.0) / self.problem.body.damping
 
     # ---- the load ---------------------------------------------------------------------------------------------------------------
 
     def load_near(self, time: float) -> Load:
         """Return the load minus initial strength as a function of time and slip, between the breaking points around `time`."""
         p, body, start = self.problem, self.problem.body, self.problem.excess
-        if self.slab is None:
+        if not body.has_waves:
             pulled = _pulled(p.pull_rate, time)
             return lambda t, slip: start + body.stiffness * (pulled(t) - slip)
-        ramp, trip = self.slab.stiffness * p.first_pull_rate, self.slab.two_way_time
+        ramp, trip = body.stiffness * p.first_pull_rate, body.round_trip_time
         if time < 0.5 * trip:
             return lambda t, slip: start + ramp * t
-        r, delay = self.slab.reflection, 0.5 * trip
+        r, delay = body.reflection, 0.5 * trip
         rate, far = _near(p.pull_rate, time - delay), _near(p.load if p.far_stress is None else p.far_stress, time - delay)
-        share = 2.0 * self.drag * (1.0 if math.isinf(self.slab.driver_impedance) else 0.5 * (1.0 - r))
+        share = 2.0 * body.impedance * (1.0 if math.isinf(body.driver_impedance) else 0.5 * (1.0 - r))
         source = next((piece for piece in self.pieces if piece.start <= time - trip < piece.end), None)
 
         def load(t: float, slip: float) -> float:
             x = t - trip
-            outgoing = 2.0 * self.drag * source.rate(x) - source.load(x) if source else -ramp * x - start
+            outgoing = 2.0 * body.impedance * source.rate(x) - source.load(x) if source else -ramp * x - start
             sent = t - delay
             return r * outgoing + share * rate(sent) + (1.0 + r) * (far(sent) + p.far_stress_rate * sent - self.strength)
 
@@ -196,7 +193,8 @@ class _Stepper:
     # ---- time -------------------------------------------------------------------------------------------------------------------
 
     def run(self, duration: float) -> StepsSolution:
-        trip = self.slab.two_way_time if self.slab else math.inf
+        body = self.problem.body
+        trip = body.round_trip_time if body.has_waves else math.inf
         breaks = {0.5 * trip, trip, *self._breaks_of_loading()}
         t, state, sense = 0.0, np.zeros(3), self._sense_at_start()
         while t < duration:
@@ -218,7 +216,8 @@ class _Stepper:
 
     def _breaks_of_loading(self) -> set[float]:
         histories = [h for h in (self.problem.pull_rate, self.problem.far_stress) if isinstance(h, LoadingHistory)]
-        delay = 0.5 * self.slab.two_way_time if self.slab else 0.0
+        body = self.problem.body
+        delay = 0.5 * body.round_trip_time if body.has_waves else 0.0
         return {segment.start + delay for history in histories for segment in history.segments}
 
     def _sense_at_start(self) -> int:
@@ -304,7 +303,7 @@ class _Stepper:
     def _with_mass(self, load: Load, sense: int) -> tuple[Any, Any]:
         def velocity(t: float, y: NDArray[np.float64]) -> list[float]:
             speed = sense * y[2]
-            force = self.drive(sense, load(t, y[0]), y[1], max(speed, 0.0)) - self.drag * speed
+            force = self.drive(sense, load(t, y[0]), y[1], max(speed, 0.0)) - self.problem.body.damping * speed
             return [y[2], speed if self.path else y[2], sense * force / self.mass]
 
         return velocity, _terminal(lambda t, y: sense * y[2], -1.0)

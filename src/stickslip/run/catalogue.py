@@ -309,7 +309,7 @@ class CatalogueKeeper(Keeper):
             self.stream.forget(dropped)
             self._remember(run)
             self.looked = self.stands(run)
-        return run.length < len(run.store.whole) // 2 or run.grow(self.orders.most_pieces)
+        return run.length < len(run.store.pieces) // 2 or run.grow(self.orders.most_pieces)
 
     def save(self, run: RunInProgress, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""

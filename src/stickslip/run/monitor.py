@@ -8,7 +8,6 @@ from typing import Self
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.forcing import row_time
 from stickslip.run.progress import Progress, Reporter
 from stickslip.run.run_loop import NowAndThen, repeat
 from stickslip.run.session import RunInProgress
@@ -53,8 +52,8 @@ def as_solution(run: RunInProgress, orders: Orders, code: int) -> Solution:
     """Return the solution computed so far, with the status that belongs to this code."""
     kept = at.trimmed(run.store, run.length)
     whole = code in (Stop.FINISHED, Stop.LOCKED)
-    reached = orders.duration if whole else float(kept.row[-1] * row_time(run.problem) + kept.theta_to[-1])
-    history = History(kept, run.problem, row_time(run.problem), float(run.setup.par.ramp), reached, creep=run.creep)
+    reached = orders.duration if whole else float(kept.row[-1] * run.problem.round_trip_time + kept.theta_to[-1])
+    history = History(kept, run.problem, run.problem.round_trip_time, float(run.setup.par.ramp), reached, creep=run.creep)
     found = Solution(run.problem, orders.duration, run.rtol, STATUSES[code], history, run.checkpoint(), orders.events)
     found = replace(found, lumping_note=run.lumping_note, rounding_note=run.rounding_note)
     return replace(found, creep_rtol=run.creep_rtol, shortest_event=run.shortest_event)

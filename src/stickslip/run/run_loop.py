@@ -13,8 +13,6 @@ from types import FrameType
 from typing import Protocol, Self
 
 from stickslip.engine.state.layout import Stop
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
-from stickslip.engine_input.forcing import row_time
 from stickslip.foundation.errors import InputError
 from stickslip.run.session import RunInProgress
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -71,15 +69,15 @@ class Watch(Protocol):
 
 def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
     """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
-    last, budget = split_time(duration, row_time(run.problem)), FIRST_BUDGET
+    last, budget = split_time(duration, run.problem.round_trip_time), FIRST_BUDGET
     with interrupts() as is_interrupted:
         try:
             while True:
                 start = time.perf_counter()
                 code = run.advance(last, budget)
-                if code == OUT_OF_BUDGET:
+                if code == Stop.NONE:
                     budget = next_budget(budget, time.perf_counter() - start)
-                stop = watch.look(run, now=code != OUT_OF_BUDGET)
+                stop = watch.look(run, now=code != Stop.NONE)
                 if stop is not None:
                     return stop
                 if code == Stop.END_AHEAD:
@@ -87,7 +85,7 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
                 elif code == Stop.FULL:
                     if not watch.make_room(run):
                         return FULL_HISTORY
-                elif code != OUT_OF_BUDGET:
+                elif code != Stop.NONE:
                     return code
                 if is_interrupted():
                     return INTERRUPTED
@@ -99,7 +97,7 @@ def drive(run: RunInProgress, duration: float, watch: Watch) -> int:
 
 def repeat(run: RunInProgress, since: Checkpoint, duration: float, length: int) -> None:
     """Go back to an earlier state of a run up to `duration` (s), and step from there until the history has `length` pieces."""
-    last = split_time(duration, row_time(run.problem))
+    last = split_time(duration, run.problem.round_trip_time)
     run.restore(since)
     while run.length < length:
         if run.advance(last, 1) == Stop.END_AHEAD:

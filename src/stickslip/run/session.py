@@ -12,16 +12,14 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine.contact_step.on_demand import lend_implicit_steps
+from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Integers, Setup, Stop, Store
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
-from stickslip.engine.waves.echo_queue import Echoes, new_echoes, replant
-from stickslip.engine.waves.echo_queue import resized as with_room
+from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.automatic import lumping_note
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET, RuleFollower, renewed
+from stickslip.engine_input.branch_table import RuleFollower, renewed
 from stickslip.engine_input.creep_limits import creep_tolerance
-from stickslip.engine_input.forcing import row_time
 from stickslip.engine_input.prepare import prepare
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.checkpoint import Checkpoint, engine
@@ -45,7 +43,8 @@ class RunInProgress:
     memory: Integers
     """State, scratch space and addresses of the tables, in one array: see `workspace.Run`."""
     store: Store
-    echoes: Echoes
+    echoes: Integers
+    """Table of `EchoNode`, with a row for each piece of history."""
     follower: RuleFollower
     leaps: CreepLeaps | None = None
     creep_rtol: float | None = None
@@ -69,12 +68,12 @@ class RunInProgress:
         memory = memory_of(setup.par, state, count)
         state, count = state_in(memory), counts_in(memory)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
-        follower = RuleFollower(problem, row_time(problem), state, count)
+        follower = RuleFollower(problem, problem.round_trip_time, state, count)
         tolerance = creep_tolerance(problem, creep_rtol, rtol)
         leaps = CreepLeaps(problem, tolerance, patient=creep_rtol is None) if tolerance > 0.0 else None
         if leaps is not None:
             leaps.begin(count)
-        echoes = new_echoes(FIRST_CAPACITY)
+        echoes = EchoNode.table(FIRST_CAPACITY)
         return cls(problem, rtol, setup, memory, store, echoes, follower, leaps, creep_rtol, shortest_event)
 
     @classmethod
@@ -91,7 +90,7 @@ class RunInProgress:
         if run.leaps is not None:
             run.leaps.take_up(history.creep)
         capacity = max(FIRST_CAPACITY, checkpoint.length + checkpoint.length // 2)
-        run.store, run.echoes = at.resized(history.store, checkpoint.length, capacity), new_echoes(capacity)
+        run.store, run.echoes = at.resized_store(history.store, checkpoint.length, capacity), EchoNode.table(capacity)
         run.restore(checkpoint)
         return run
 
@@ -107,7 +106,7 @@ class RunInProgress:
     def time(self) -> float:
         """Return the simulated time, s."""
         xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
-        return float(self.count.row * row_time(self.problem) + self.state.theta_from + xi * (speed + xi * bend))
+        return float(self.count.row * self.problem.round_trip_time + self.state.theta_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
@@ -127,38 +126,39 @@ class RunInProgress:
     def advance(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
 
-        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as OUT_OF_BUDGET.
+        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as Stop.NONE.
         """
         if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
             self.leaps.at_row_end(self, last)
-            return OUT_OF_BUDGET
+            return Stop.NONE
         code = self.step(last, budget)
-        return OUT_OF_BUDGET if code == Stop.PAUSED else code
+        return Stop.NONE if code == Stop.PAUSED else code
 
     def step(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
         code = self.follower.advance(self.memory, self.store, last, budget)
-        if code == Stop.NEED_IMPLICIT_STEPS:
-            lend_implicit_steps(self.memory)
-            return OUT_OF_BUDGET
+        if code == Stop.NEED_PART:
+            lend_part(self.memory)
+            return Stop.NONE
         if code != Stop.NEED_BRANCHES:
             return code
         self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
         self._lend()
         self.follower.set_levels(self.memory)
-        return OUT_OF_BUDGET
+        return Stop.NONE
 
     def grow(self, max_pieces: int) -> bool:
         """Make room for more pieces. Returns False if the history already has `max_pieces` of them."""
         if self.length >= max_pieces:
             return False
-        self.reserve(min(4 * len(self.store.whole), max_pieces + SPARE))
+        self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
         return True
 
     def reserve(self, pieces: int) -> None:
         """Make sure that there is room for at least the given number of pieces."""
-        if pieces > len(self.store.whole):
-            self.store, self.echoes = at.resized(self.store, self.length, pieces), with_room(self.echoes, self.length, pieces)
+        if pieces > len(self.store.pieces):
+            self.store = at.resized_store(self.store, self.length, pieces)
+            self.echoes = at.resized(self.echoes, self.length, pieces)
             self._lend()
 
     def forget_before(self, piece: int) -> int:
@@ -169,26 +169,26 @@ class RunInProgress:
         piece = min(piece, int(self.count.new_from if self.count.sparse else self.count.previous_from))
         if piece == 0:
             return 0
-        standing, _, _ = standing_behind(at.trimmed(self.store, piece), row_time(self.problem))
+        standing, _, _ = standing_behind(at.trimmed(self.store, piece), self.problem.round_trip_time)
         kept = np.concatenate([np.unique(standing), np.arange(piece, self.length)])
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
         self.count.echo_of = place[self.count.echo_of]
         for name in ("length", "row_from", "previous_from", "previous_to", "new_from"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
-        self._replant()
+        self._rebuild_queue()
         self.forgotten += dropped
         return dropped
 
-    def _replant(self) -> None:
+    def _rebuild_queue(self) -> None:
         """Build the trees of echoes again from the history."""
         self._lend()
         if self.count.sparse == 0:
             return
         first = int(self.count.new_from)
-        pieces, low, _ = standing_behind(at.trimmed(self.store, first), row_time(self.problem))
+        pieces, low, _ = standing_behind(at.trimmed(self.store, first), self.problem.round_trip_time)
         past, ahead = low < self.state.new_since, low >= self.state.taken_to
-        replant(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
+        rebuild_queue(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
         """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
@@ -199,7 +199,7 @@ class RunInProgress:
         """Return a checkpoint of the present state."""
         stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
-        return Checkpoint(state, count, scratch, self.setup.branch.copy(), stick_to, crossings, engine())
+        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, crossings, engine())
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint from which this run, or a longer one, would continue."""
@@ -209,10 +209,10 @@ class RunInProgress:
         """Go back to a checkpoint, on the same history or a copy of it."""
         self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
         self.scratch[:] = checkpoint.scratch
-        self.setup = self.setup._replace(branch=checkpoint.branch.copy())
+        self.setup = self.setup._replace(branches=checkpoint.branch.copy())
         self.par.stick_to = checkpoint.stick_to[0]
         self.follower.times.clear()
         self.follower.times.extend(checkpoint.crossings.tolist())
         if self.count.to_the_end == 0:
             self.before_end = None
-        self._replant()
+        self._rebuild_queue()

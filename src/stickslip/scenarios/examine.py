@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, fields
 from typing import Any
 
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
@@ -101,7 +101,6 @@ def _automatic(scenario: Scenario) -> list[Fact]:
         does = f"leaps over creep after {PATIENCE} round trips with slip, error of slip at most this times the slip so far"
         facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every round trip"))
     if scenario.shortest_event is None and lumps_by_itself(problem):
-        assert isinstance(problem.body, ElasticSlab)
         does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"
         facts.append(Fact("shortest_event", automatic_length(problem.body), "s", f"automatic: {does}; 0 lumps none"))
     return facts
@@ -146,17 +145,18 @@ def _derived(problem: Problem) -> list[Fact]:
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
     start += _steady(problem)
     first = ", at first" if problem.varies else ""
-    if isinstance(body, SpringBlock):
+    if not body.has_waves:
+        impedance = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         return [
-            Fact("period", body.period, "s", "period 2 pi sqrt(m/K) of free oscillation"),
-            Fact("sqrt(K m)", math.sqrt(body.stiffness) * math.sqrt(body.mass), "N s/m", "impedance of the block, in place of Z"),
+            Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
+            Fact("sqrt(K m)", impedance, "N s/m", "impedance of the block, in place of Z"),
             Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", f"rate of loading while stuck{first}"),
             *start,
         ]
     return [
         Fact("Z", body.impedance, "Pa s/m", "impedance rho c"),
-        Fact("G", body.shear_modulus, "Pa", "shear modulus rho c^2"),
-        Fact("R", body.two_way_time, "s", "two-way travel time 2 h/c"),
+        Fact("G", as_slab(body).shear_modulus, "Pa", "shear modulus rho c^2"),
+        Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
         Fact("G/h", body.stiffness, "Pa/m", "load lost per metre of slow slip"),
         Fact("r", body.reflection, "1", "reflection at the driver: -1 rigid, 0 matched, +1 dead load"),
         Fact("G V/h", body.stiffness * problem.first_pull_rate, "Pa/s", "rate of loading at first"),
@@ -185,7 +185,7 @@ def _pulses(problem: Problem) -> list[Fact]:
     The period is 2 pi Z / (omega sqrt((load - mu0 S)^2 - (a S)^2)).
     """
     law, body = problem.friction, problem.body
-    if not isinstance(law, SinusoidalSlip) or not isinstance(body, ElasticSlab):
+    if not isinstance(law, SinusoidalSlip) or not body.has_waves:
         return []
     beyond, swing = problem.load - law.mean * problem.normal, abs(law.amplitude) * problem.normal
     if not (beyond > swing and law.wavenumber):
@@ -227,12 +227,12 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
 
 def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     problem, found = scenario.problem, []
-    steady = isinstance(problem.body, SpringBlock) or math.isinf(problem.body.driver_impedance)
+    steady = math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
-    if isinstance(problem.body, ElasticSlab):
-        found += _slab_warnings(scenario, problem.body, contact)
+    if problem.body.has_waves:
+        found += _slab_warnings(scenario, as_slab(problem.body), contact)
     rule = problem.rule
     moving = problem.friction.depends_on_slip and problem.friction.depends_on_rate
     if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import SpringBlock, as_block, as_slab
 from stickslip.contact.rules.loop import first_rate
 from stickslip.friction import RateAndState
 from stickslip.friction.slopes import slopes
@@ -20,7 +20,7 @@ def loading_rate(problem: Problem) -> float:
     It is exact for a block, and a mean over round trips for a slab.
     """
     body = problem.body
-    if isinstance(body, ElasticSlab) and not math.isinf(body.driver_impedance):
+    if not math.isinf(body.driver_impedance):
         return problem.far_stress_rate
     return body.stiffness * problem.first_pull_rate
 
@@ -65,8 +65,9 @@ def stability_of(problem: Problem) -> str:
     if isinstance(law, RateAndState):
         return _steady_sliding(problem, law)
     by_slip, by_rate = slopes(law, problem.law_slip)
-    if isinstance(body, SpringBlock):
-        return _block_stability(body, by_slip, by_rate)
+    if not body.has_waves:
+        return _block_stability(as_block(body), by_slip, by_rate)
+    body = as_slab(body)
     number = -problem.normal * by_slip / body.stiffness
     if by_slip >= 0:
         return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
@@ -96,13 +97,13 @@ def _steady_sliding(problem: Problem, law: RateAndState) -> str:
     if rate <= 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
     numbers = (problem.normal, law.a, law.b, law.distance, rate)
-    if isinstance(body, SpringBlock):
-        critical = critical_stiffness(*numbers, body.mass, body.damping)
-        growth = block_growth(*numbers, body.stiffness, body.mass, body.damping)
+    if not body.has_waves:
+        critical = critical_stiffness(*numbers, body.inertia, body.damping)
+        growth = block_growth(*numbers, body.stiffness, body.inertia, body.damping)
         text, unit = f"stiffness K = {body.stiffness:.6g}", "N/m"
-    elif math.isinf(body.driver_impedance) and body.contact_mass == 0.0:
+    elif math.isinf(body.driver_impedance) and not body.has_inertia:
         critical = critical_stiffness(*numbers)
-        growth = slab_growth(*numbers, body.impedance, 0.5 * body.two_way_time)
+        growth = slab_growth(*numbers, body.impedance, 0.5 * body.round_trip_time)
         text, unit = f"stiffness G/h = {body.stiffness:.6g}", "Pa/m"
     else:
         return f"critical stiffness of slow sliding S (b - a) / Dc = {critical_stiffness(*numbers):.6g} Pa/m"

@@ -12,7 +12,6 @@ from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.law import StateVariable
 from stickslip.friction.parameters import NamedNumbers, Part, fields_of
 from stickslip.loading import HISTORIES
-from stickslip.problem.problem import normal_load
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of
@@ -106,7 +105,7 @@ def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
     """Return [initial] for a law that never sticks: its example's state, and a load of the example's share of the normal load."""
     source = Source("starter")
     read = build("body", read_table("body", kind_of("body", body, source.file), body, source), source.file)
-    return {"load": law.start["coefficient"] * normal_load(read), "state": law.start["state"]}
+    return {"load": law.start["coefficient"] * read.normal_load, "state": law.start["state"]}
 
 
 def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import pandas as pd
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
@@ -128,9 +128,8 @@ def block_for(problem: Problem) -> Problem:
     InputError
         If the body is a block, or if the driver of the slab is not rigid.
     """
-    if not isinstance(problem.body, ElasticSlab):
-        raise InputError("analogy: needs a slab: a block has no other block that stands for it")
-    return replace(problem, body=problem.body.equivalent_block())
+    slab = as_slab(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
+    return replace(problem, body=slab.equivalent_block())
 
 
 def analogy(
@@ -218,8 +217,7 @@ def weakening(problem: Problem) -> dict[str, float]:
 
     The keys are "weakening_slip" and "weakening_rate".
     """
-    body = problem.body
-    assert isinstance(body, ElasticSlab)
+    body = as_slab(problem.body)
     by_slip, _ = slopes(problem.friction, problem.law_slip)
     massless = replace(problem, body=replace(body, contact_mass=0.0))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}

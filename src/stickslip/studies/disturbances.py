@@ -27,7 +27,7 @@ def disturbed(problem: Problem, push: float) -> Problem:
 
 def is_lossy(problem: Problem) -> bool:
     """Return True if the slab has a driver of finite impedance; its far stress is the initial load by default."""
-    return not math.isinf(getattr(problem.body, "driver_impedance", math.inf))
+    return not math.isinf(problem.body.driver_impedance)
 
 
 def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:

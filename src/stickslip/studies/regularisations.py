@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.equation import resistance
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction import LaggedFriction
@@ -35,17 +35,12 @@ class Kind:
     apply: Callable[[Problem, float], Problem]
 
 
-def _slab(problem: Problem) -> ElasticSlab:
-    assert isinstance(problem.body, ElasticSlab)
-    return problem.body
-
-
 def _mass(problem: Problem, size: float) -> float:
-    return _slab(problem).impedance * size
+    return problem.body.impedance * size
 
 
 def _with_mass(problem: Problem, size: float) -> Problem:
-    return replace(problem, body=replace(_slab(problem), contact_mass=_mass(problem, size)))
+    return replace(problem, body=replace(as_slab(problem.body), contact_mass=_mass(problem, size)))
 
 
 def _with_lag(problem: Problem, size: float) -> Problem:
@@ -57,7 +52,7 @@ def _direct(problem: Problem, size: float) -> float:
 
     It vanishes with the size; at R/50 it is about 0.01, as measured in laboratories.
     """
-    return problem.friction.variation * size / _slab(problem).two_way_time
+    return problem.friction.variation * size / problem.body.round_trip_time
 
 
 def _with_direct_effect(problem: Problem, size: float) -> Problem:
@@ -83,17 +78,17 @@ def kind_of(by: str) -> Kind:
 
 def check_massless(problem: Problem) -> ElasticSlab:
     """Return the slab of a problem. Raises InputError if inertia or a state of the law already makes the slip rate unique."""
-    if not isinstance(problem.body, ElasticSlab):
-        raise InputError("regularise: a block has inertia, which makes its slip rate unique: there is nothing to regularise")
-    if problem.body.contact_mass > 0.0:
+    refusal = "regularise: a block has inertia, which makes its slip rate unique: there is nothing to regularise"
+    slab = as_slab(problem.body, refusal)
+    if slab.has_inertia:
         raise InputError(
-            f"regularise: a contact_mass of {problem.body.contact_mass:g} kg/m^2 makes the slip rate unique already: start from 0"
+            f"regularise: a contact_mass of {slab.contact_mass:g} kg/m^2 makes the slip rate unique already: start from 0"
         )
     if problem.friction.state is not None:
         raise InputError(
             f"regularise: {problem.friction.kind} friction has a state of its own already: start from a law of slip rate"
         )
-    return problem.body
+    return slab
 
 
 def regularised(problem: Problem, by: str, size: float) -> Problem:

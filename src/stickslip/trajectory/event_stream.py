@@ -13,7 +13,6 @@ import numpy as np
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Integers, Store
-from stickslip.engine_input.forcing import row_time
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
@@ -70,8 +69,8 @@ class EventStream:
 
     def history(self, store: Store, length: int) -> History:
         """Return the history so far."""
-        kept, row = at.trimmed(store, length), row_time(self.problem)
-        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.whole) else 0.0
+        kept, row = at.trimmed(store, length), self.problem.round_trip_time
+        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.pieces) else 0.0
         return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:

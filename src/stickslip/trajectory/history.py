@@ -9,7 +9,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.engine_input.forcing import inflow_of
@@ -137,7 +136,7 @@ class History:
         return start, start + self.duration
 
     def __len__(self) -> int:
-        return len(self.store.whole)
+        return len(self.store.pieces)
 
     def is_averaged(self, row: int) -> bool:
         """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
@@ -257,7 +256,7 @@ class History:
     def excess(self, at: Moments) -> Floats:
         """Return the load minus the reference strength, Pa (block: N)."""
         value = horner(self.store.load[at.piece], at.xi)
-        if at.at_rest.any() and isinstance(self.problem.body, ElasticSlab):
+        if at.at_rest.any() and self.problem.body.has_waves:
             left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
             value = np.where(at.at_rest, value - left, value)
         return np.where(at.before, self.problem.excess, value + self._gained(at))
@@ -327,8 +326,8 @@ class History:
         """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body
-        if isinstance(body, ElasticSlab) and body.contact_mass == 0.0:
-            return excess - body.impedance * rate
+        if not body.has_inertia:
+            return excess - body.damping * rate
         law, mode = self.problem.friction, self.mode(at)
         grown = self.grown(at)
         walked = mode * grown if law.counts == "path" else grown

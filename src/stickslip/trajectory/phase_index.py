@@ -136,9 +136,9 @@ def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Fl
     """
     looked = FEW
     while True:
-        first = max(len(store.whole) - looked, 0)
-        recent = trimmed(store, len(store.whole), first)
-        piece, low, high = Phases.of(recent, row_time).standing(len(recent.whole) - 1)
+        first = max(len(store.pieces) - looked, 0)
+        recent = trimmed(store, len(store.pieces), first)
+        piece, low, high = Phases.of(recent, row_time).standing(len(recent.pieces) - 1)
         if first == 0 or (low[0] == 0.0 and high[-1] == row_time and np.array_equal(low[1:], high[:-1])):
             return first + piece, low, high
         looked *= 4

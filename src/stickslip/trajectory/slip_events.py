@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
-from stickslip.engine.state.layout import S_MODE, TERMS, Floats, Integers, Store
+from stickslip.engine.state.layout import TERMS, Floats, Integers
+from stickslip.engine.state.workspace import pieces_in
 from stickslip.trajectory.history import History, Moments
 
 MAXIMA_PER_PIECE = 32
@@ -22,29 +23,32 @@ NOT_YET = -1
 
 @kernel
 def turning_points(
-    store: Store, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
+    table: Integers, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
 ) -> int:
     """Walk along |slip rate| from piece `begin` on and record its starts, ends, extrema and crossings of the threshold.
+
+    `table` is that of a history (`Store.pieces`).
 
     For each point the arrays receive the piece, the place xi in it, the rate (m/s), and the kind: 0 for a point above the
     threshold, +1 if the rate rises above the threshold there, -1 if it falls to it. Returns the number of points, or -1 if the
     arrays are too short.
     """
-    found = 0
+    found, pieces = 0, pieces_in(table)
     p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
     above = False
     for n in range(begin, length):
         if found + 3 * MAXIMA_PER_PIECE > len(piece):
             return -1
-        sign = 1.0 if store.whole[n, S_MODE] >= 0 else -1.0
+        mode, its_rate = pieces[n].mode, pieces[n].rate
+        sign = 1.0 if mode >= 0 else -1.0
         for k in range(TERMS):
-            p[k] = sign * store.rate[n, k]
-        contiguous = n > begin and store.whole[n, S_MODE] == store.whole[n - 1, S_MODE]
-        begins = store.whole[n, S_MODE] != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
+            p[k] = sign * its_rate[k]
+        contiguous = n > begin and mode == pieces[n - 1].mode
+        begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
         if above and not (begins and contiguous):
             found = _note(piece, xi, rate, kind, found, n - 1, 1.0, 0.0, -1)
             above = False
-        if store.whole[n, S_MODE] == 0:
+        if mode == 0:
             continue
         if begins:
             found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
@@ -145,13 +149,14 @@ def rises_over(c: Floats, rate: float) -> bool:
 
 
 @kernel
-def find_aftermath(store: Store, piece: Integers, xi: Floats, by: Integers) -> None:
+def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -> None:
     """Find the piece from which on the aftermath of each event is known; see `SlipEvents.known_by`."""
+    pieces = pieces_in(table)
     for n in range(len(piece)):
-        mode, rate = store.whole[piece[n], S_MODE], abs(evaluate(store.rate[piece[n]], xi[n]))
+        mode, rate = pieces[piece[n]].mode, abs(evaluate(pieces[piece[n]].rate, xi[n]))
         by[n] = NOT_YET
-        for k in range(piece[n] + 1, len(store.whole)):
-            if store.whole[k, S_MODE] != mode or rises_over(store.rate[k], rate):
+        for k in range(piece[n] + 1, len(table)):
+            if pieces[k].mode != mode or rises_over(pieces[k].rate, rate):
                 by[n] = k
                 break
 
@@ -162,7 +167,7 @@ def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, 
     while True:
         piece, kind = np.empty(room, np.int64), np.empty(room, np.int64)
         xi, rate = np.empty(room), np.empty(room)
-        found = turning_points(history.store, begin, len(history), threshold, piece, xi, rate, kind)
+        found = turning_points(history.store.pieces, begin, len(history), threshold, piece, xi, rate, kind)
         if found >= 0:
             order = np.lexsort((-kind[:found] * (xi[:found] < 1.0), xi[:found], piece[:found]))
             return piece[:found][order], xi[:found][order], rate[:found][order], kind[:found][order]
@@ -223,5 +228,5 @@ class SlipEvents(NamedTuple):
         event.
         """
         by = np.empty(len(self.pulses), np.int64)
-        find_aftermath(history.store, self.piece[2], self.xi[2], by)
+        find_aftermath(history.store.pieces, self.piece[2], self.xi[2], by)
         return by

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
@@ -54,9 +53,7 @@ CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 
 def default_event_rate(problem: Problem) -> float:
     """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
-    body = problem.body
-    resistance = body.impedance if isinstance(body, ElasticSlab) else np.sqrt(body.stiffness * body.mass)
-    return 1e-6 * problem.normal * problem.friction.variation / resistance
+    return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
 
 
 def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:

@@ -14,14 +14,13 @@ from typing import Any
 import numpy as np
 
 from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_of, floats, kernel
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine.state.layout import Branch, Floats, Integers, Rule
+from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
 """Largest number of branches for which tables have room."""
 RULES = ("perfect-delay", "minimal", "maximal")
-"""Selection rules that a batch supports."""
-PERFECT_DELAY, MINIMAL, MAXIMAL = range(3)
-"""Numbers of these rules in compiled code."""
+"""Selection rules that a batch supports, in the order of the codes of `Rule`."""
 
 POINTS_PER_DECADE = 64
 """Density of the geometric part of the search grid, as in `contact.branches`."""
@@ -169,23 +168,23 @@ def turns(address: int, c: Any, impedance: float, normal: float, slowest: float,
 
 
 @kernel
-def keep_levels(rule: int, branches: int, table: Floats) -> float:
-    """Write into a member's table between which loads the rule keeps each branch; return the load at which stick ends.
+def keep_levels(rule: int, count: int, branches: Branch) -> float:
+    """Write between which loads the rule keeps each of a member's branches; return the load at which stick ends.
 
     Loads are differences from the static strength (Pa).
     """
     stick_to = 0.0
-    for n in range(branches):
-        low, high = table[4 * branches + n], table[5 * branches + n]
-        if rule == MINIMAL:
+    for n in range(count):
+        low, high = branches[n].excess_from, branches[n].excess_to
+        if rule == Rule.MINIMAL:
             low = max(low, 0.0)
             for other in range(n):
-                low = max(low, table[5 * branches + other])
-        elif rule == MAXIMAL:
+                low = max(low, branches[other].excess_to)
+        elif rule == Rule.MAXIMAL:
             stick_to = min(stick_to, low)
-            for other in range(n + 1, branches):
-                high = min(high, table[4 * branches + other])
-        table[2 * branches + n], table[3 * branches + n] = low, high
+            for other in range(n + 1, count):
+                high = min(high, branches[other].excess_from)
+        branches[n].keep_from, branches[n].keep_to = low, high
     return stick_to
 
 
@@ -207,7 +206,7 @@ def branch_tables(
     irregular: Floats,
     stick_to: Floats,
 ) -> None:
-    """Fill `table` with the rows of `Setup.branch` of each member, one after the other, and the other results for each member.
+    """Fill `table`, of shape (members, largest number of branches, Branch.total), and the other results for each member.
 
     branches receives the number of branches, irregular 1 if several slip rates solve the contact equation at some load, and
     stick_to the load minus strength (Pa) at which stick ends. one_way: mu is convex or concave. rule: an index of RULES. work has
@@ -224,11 +223,12 @@ def branch_tables(
         branches[n], irregular[n], stick_to[n] = found, 0.0, 0.0
         if found <= 0:
             continue
+        own = branches_in(table[n])
         for i in range(found):
             low, high = ends[2 * i], ends[2 * i + 1]
-            table[n, i], table[n, found + i] = low, high
-            table[n, 4 * found + i] = excess_at(address, c, z, s, start[n], low, out)
-            table[n, 5 * found + i] = math.inf if math.isinf(high) else excess_at(address, c, z, s, start[n], high, out)
-            if low > 0.0 or table[n, 4 * found + i] < 0.0:
+            own[i].rate_from, own[i].rate_to = low, high
+            own[i].excess_from = excess_at(address, c, z, s, start[n], low, out)
+            own[i].excess_to = math.inf if math.isinf(high) else excess_at(address, c, z, s, start[n], high, out)
+            if low > 0.0 or own[i].excess_from < 0.0:
                 irregular[n] = 1.0
-        stick_to[n] = keep_levels(rule, found, table[n])
+        stick_to[n] = keep_levels(rule, found, own)

@@ -9,21 +9,21 @@ from numba import types
 from numba.extending import intrinsic
 
 from stickslip.engine.codegen.compiler import address_of
-from stickslip.engine.loop import advance
+from stickslip.engine.loop import run_until
 
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
-"""Types of the arguments of `loop.advance`: table, last row, last theta (s), budget."""
+"""Types of the arguments of `loop.run_until`: table, last row, last theta (s), budget."""
 
 
 @cache
 def engine_address() -> int:
-    """Return the address of the machine code of `loop.advance`; compile it if no single run has done so."""
-    return address_of(advance, ARGUMENTS)
+    """Return the address of the machine code of `loop.run_until`; compile it if no single run has done so."""
+    return address_of(run_until, ARGUMENTS)
 
 
 @intrinsic
-def advance_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
-    """Call `loop.advance`, whose machine code is at `address`, and return the code with which it stops."""
+def run_until_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
+    """Call `loop.run_until`, whose machine code is at `address`, and return the code with which it stops."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         convention = context.call_conv

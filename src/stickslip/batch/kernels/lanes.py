@@ -8,13 +8,16 @@ functions and identical bits. A step in which slip may end, or which meets a kno
 from __future__ import annotations
 
 import math
+from enum import IntEnum
 
 from stickslip.engine.codegen.compiler import ahead, call_jet, floats, inlined, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.codegen.simd import WIDTH, lanes_at
-from stickslip.engine.contact_step.contact_equation import constants_of
-from stickslip.engine.contact_step.radau_step import judge_stiffness
-from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, knot_crossing, move, note_shock, prepare_series
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.engine.contact_step.keep_step import move
+from stickslip.engine.contact_step.step_events import knot_crossing
+from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, note_shock, prepare_series
 from stickslip.engine.contact_step.verify import begin_verification, is_negative, obeys_contact
 from stickslip.engine.loop import ROOM
 from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
@@ -36,8 +39,17 @@ formula sees it, load, series of the rate, bound of the guards, powers of the le
 numbers (length, lower bound of the rate, slip in the step, rate at its end, guess, whether the target is reached, last step,
 tolerance), and last the law's constants."""
 
-AWAY, FRESH, SLIPPING, ALONE = range(4)
-"""What a lane waits for: nothing; its first step on a piece of load; another step on it; a step that the engine must take."""
+
+class Waits(IntEnum):
+    """Say what a lane waits for."""
+
+    NONE = 0
+    FRESH = 1
+    """Its first step side by side on a piece of load."""
+    SLIPPING = 2
+    """Another step side by side on the same piece of load."""
+    ALONE = 3
+    """A step that the engine must take."""
 
 
 @kernel
@@ -48,7 +60,7 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
     formulas' series, one for each piece of the law; block is the address of the numbers in lanes.
     """
     for lane in range(WIDTH):
-        if waits[lane] == FRESH or waits[lane] == SLIPPING:
+        if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
@@ -67,8 +79,8 @@ def step_under(address: int, table: Integers, waits: Integers, jets: Integers, b
     column, rows, taking = floats(block), lanes_at(block), 0
     for lane in range(WIDTH):
         if waits[lane] < 0 and jets[piece_of(table, lane)] == address:
-            put_in(borrow(ahead(table, lane * PLACES)), ahead(column, lane), waits[lane] == -FRESH)
-            waits[lane], taking = SLIPPING, taking | 1 << lane
+            put_in(borrow(ahead(table, lane * PLACES)), ahead(column, lane), -waits[lane] == Waits.FRESH)
+            waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
     call_jet(address, floats(block + 64 * CONSTANTS), column, floats(block + 64 * SEEN), floats(block + 64 * JET))
     rows[LENGTH] = length_at(ahead(rows, JET), rows[TOLERANCE], 0.5)
     for lane in range(WIDTH):
@@ -109,7 +121,7 @@ def take_length(run: Run, own: Floats) -> None:
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
         usable = usable_length(run.jet, run.par.tolerance)
-    if run.guard_count[run.counts.piece] > 0:
+    if run.law[run.counts.piece].guard_count > 0:
         for k in range(TERMS):
             run.reach[k] = own[WIDTH * (REACH + k)]
     own[WIDTH * LAST_STEP] = run.state.last_step
@@ -138,11 +150,10 @@ def take_out(run: Run, own: Floats) -> int:
     """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
 
     A step is simple if the rate stays positive, the contact equation is obeyed and no knot is met. Otherwise the step is dropped
-    and ALONE is returned.
+    and Waits.ALONE is returned.
     """
     length, target = own[WIDTH * LENGTH], run.state.target
-    rate = ahead(run.stored_rate, TERMS * run.counts.length)
-    load = ahead(run.stored_load, TERMS * run.counts.length)
+    rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
     for k in range(TERMS):
         rate[k] = own[WIDTH * (RATE + k)]
     if run.counts.degree == 1:
@@ -159,7 +170,7 @@ def take_out(run: Run, own: Floats) -> int:
         simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state.last_step = own[WIDTH * LAST_STEP]
-        return ALONE
+        return Waits.ALONE
     run.jet[0] = own[WIDTH * JET]
     note_shock(run)
     to = target if own[WIDTH * REACHED] == 1.0 else run.state.xi + length * own[WIDTH * GUESS]
@@ -167,4 +178,4 @@ def take_out(run: Run, own: Floats) -> int:
     if run.counts.has_inertia == 1:
         judge_stiffness(run)
     goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0
-    return SLIPPING if goes_on and run.counts.length + ROOM <= run.capacity else AWAY
+    return Waits.SLIPPING if goes_on and run.counts.length + ROOM <= run.capacity else Waits.NONE

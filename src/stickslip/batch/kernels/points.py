@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.engine.state.layout import Floats, Integers
 from stickslip.trajectory.slip_events import NOT_YET, count_pulses, highest, turning_points
 
 POINTS_PER_PIECE = 8
@@ -63,12 +63,12 @@ def move(points: Points, source: int, target: int) -> None:
 
 
 @kernel
-def find_events(store: Store, length: int, threshold: float, points: Points) -> int:
-    """Find slip events, which are faster than `threshold` (m/s), in the first `length` pieces; return their number.
+def find_events(table: Integers, length: int, threshold: float, points: Points) -> int:
+    """Find slip events, which are faster than `threshold` (m/s), in a history's table of `length` pieces; return their number.
 
     The points of each event are written into `points`. Returns NOT_YET if there is no room for all turning points.
     """
-    found = turning_points(store, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
+    found = turning_points(table, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
     if found < 0:
         return NOT_YET
     put_in_order(points, found)

@@ -1,160 +1,146 @@
 """Reduce the history of a run to the numbers that a batch keeps, which equal those in the tables of a `Solution`.
 
 The kernels of `trajectory.slip_events` find the slip events. The functions here do in compiled code, for one event or run, what
-`trajectory.tables` does for all. Functions on a history take the pieces as pointers (`Pieces`), and the number of pieces as
-`length`. A place in it is a pair of a piece and xi from 0 to 1; `row_time` is the length of a round trip (of a block: of a period),
-in s.
+`trajectory.tables` does for all. Functions on a history take its first piece, and the number of pieces as `length`. A place in it
+is a pair of a piece and xi from 0 to 1; `row_time` is the length of a round trip (of a block: of a period), in s.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from stickslip.batch.kernels.pieces import Pieces, load_of, pieces_of, rate_of, real_of, whole_of
 from stickslip.batch.kernels.points import Points
-from stickslip.engine.codegen.compiler import floats, kernel
-from stickslip.engine.contact_step.contact_equation import friction_of
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.records import Record, numbers_of, record_at
+from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.series.polynomial import evaluate, integral
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Stop, Store
-from stickslip.engine.state.workspace import Run
+from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
+from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import ROUNDING
 from stickslip.trajectory.slip_events import rises_over
 
-COLUMNS = (
-    "events",
-    "pulses",
-    "shocks",
-    "slip",
-    "peak_rate",
-    "peak_time",
-    "first_start",
-    "first_end",
-    "first_duration",
-    "first_slip",
-    "first_traction_drop",
-    "first_static_drop",
-    "recurrence",
-    "recurrence_cv",
-    "end_time",
-    "arrested",
-    "irregular",
-    "branches",
-)
-"""Names of the numbers that are kept of each run, in SI units, in the order of their columns."""
-(
-    EVENTS,
-    PULSES,
-    SHOCKS,
-    SLIP,
-    PEAK_RATE,
-    PEAK_TIME,
-    FIRST_START,
-    FIRST_END,
-    FIRST_DURATION,
-    FIRST_SLIP,
-    FIRST_TRACTION_DROP,
-    FIRST_STATIC_DROP,
-    RECURRENCE,
-    RECURRENCE_CV,
-    END_TIME,
-    ARRESTED,
-    IRREGULAR,
-    BRANCHES,
-) = range(len(COLUMNS))
-OF_EVENTS = frozenset(COLUMNS[n] for n in (EVENTS, PULSES, *range(PEAK_RATE, RECURRENCE_CV + 1)))
+
+class Reduced(Record):
+    """Hold the numbers that are kept of each run, in SI units; NaN where a run has none."""
+
+    events: float
+    pulses: float
+    shocks: float
+    slip: float
+    peak_rate: float
+    peak_time: float
+    first_start: float
+    first_end: float
+    first_duration: float
+    first_slip: float
+    first_traction_drop: float
+    first_static_drop: float
+    recurrence: float
+    recurrence_cv: float
+    end_time: float
+    arrested: float
+    irregular: float
+    branches: float
+
+
+reduced_at: Any = record_at(Reduced)
+"""Function for compiled code that returns the record at a pointer or in an array."""
+COLUMNS = tuple(Reduced.places)
+"""Names of these numbers, in the order of their columns in a table of results."""
+FIRST_OF_EVENTS, LAST_OF_EVENTS = COLUMNS.index("peak_rate"), COLUMNS.index("recurrence_cv")
+"""The columns from the first to the second of these describe slip events, and so do the numbers of events and pulses."""
+OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EVENTS + 1]})
 """Columns for which slip events must be found."""
 
 # ---- places in a history ----------------------------------------------------------------------------------------------------
 
 
 @kernel
-def offset_at(store: Pieces, piece: int, xi: float) -> float:
+def offset_at(history: HistoryPiece, piece: int, xi: float) -> float:
     """Return the offset (s) of a place in its round trip, as in `History.placed`."""
-    real = real_of(store, piece)
-    if xi == 1.0:
-        return real[at.S_THETA_TO]
-    return real[at.S_THETA_FROM] + xi * (real[at.S_SPEED] + xi * real[at.S_BEND])
+    kept = history[piece]
+    return kept.theta_to if xi == 1.0 else kept.theta_from + xi * (kept.speed + xi * kept.bend)
 
 
 @kernel
-def time_between(store: Pieces, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
+def time_between(history: HistoryPiece, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
     """Return the time (s) from one place to a later one."""
-    rows = whole_of(store, later)[at.S_ROW] - whole_of(store, piece)[at.S_ROW]
-    return rows * row_time + (offset_at(store, later, later_xi) - offset_at(store, piece, xi))
+    rows = history[later].row - history[piece].row
+    return rows * row_time + (offset_at(history, later, later_xi) - offset_at(history, piece, xi))
 
 
 @kernel
-def time_at(store: Pieces, row_time: float, piece: int, xi: float) -> float:
+def time_at(history: HistoryPiece, row_time: float, piece: int, xi: float) -> float:
     """Return the time (s) of a place since the start of the run."""
-    return whole_of(store, piece)[at.S_ROW] * row_time + offset_at(store, piece, xi)
+    return history[piece].row * row_time + offset_at(history, piece, xi)
 
 
 @kernel
-def place_of(store: Pieces, piece: int, local: float) -> float:
+def place_of(history: HistoryPiece, piece: int, local: float) -> float:
     """Return the place xi in [0, 1] of a time `local` s after the start of a piece, as in `History.xi`."""
-    speed, bend = real_of(store, piece)[at.S_SPEED], real_of(store, piece)[at.S_BEND]
+    speed, bend = history[piece].speed, history[piece].bend
     pace = speed + math.sqrt(max(speed * speed + 4.0 * bend * local, 0.0))
     return min(max(2.0 * local / (pace if pace > 0.0 else 1.0), 0.0), 1.0)
 
 
 @kernel
-def grown(store: Pieces, piece: int, xi: float) -> float:
+def grown(history: HistoryPiece, piece: int, xi: float) -> float:
     """Return the slip (m) since the start of the piece, as in `History.grown`."""
-    rate, bend = rate_of(store, piece), real_of(store, piece)[at.S_BEND]
-    straight = real_of(store, piece)[at.S_SPEED] * integral(rate, xi, 1)
+    rate, bend = history[piece].rate, history[piece].bend
+    straight = history[piece].speed * integral(rate, xi, 1)
     return straight if bend == 0.0 else straight + 2.0 * bend * integral(rate, xi, 2)
 
 
 @kernel
-def reached(run_end: float, code: int, row_time: float, store: Pieces, length: int) -> float:
+def reached(run_end: float, code: int, row_time: float, history: HistoryPiece, length: int) -> float:
     """Return the time (s) that a run has reached: `run_end` if it is finished or locked, otherwise the end of its history."""
-    return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(store, row_time, length - 1, 1.0)
+    return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(history, row_time, length - 1, 1.0)
 
 
 @kernel
-def rests_at(store: Pieces, length: int, row_time: float, end: float) -> bool:
+def rests_at(history: HistoryPiece, length: int, row_time: float, end: float) -> bool:
     """Return True if the contact is at rest at the end of the run (s), in the last piece or after it, where nothing is recorded."""
-    recorded = time_at(store, row_time, length - 1, 1.0)
-    return whole_of(store, length - 1)[at.S_MODE] == 0 or end - recorded > ROUNDING * recorded
+    recorded = time_at(history, row_time, length - 1, 1.0)
+    return history[length - 1].mode == 0 or end - recorded > ROUNDING * recorded
 
 
 @kernel
-def slipped(store: Pieces, length: int, row_time: float, end: float) -> float:
+def slipped(history: HistoryPiece, length: int, row_time: float, end: float) -> float:
     """Return the slip (m) from the start of the run to its end (s)."""
     last = length - 1
-    while last > 0 and time_at(store, row_time, last, 0.0) > end:
+    while last > 0 and time_at(history, row_time, last, 0.0) > end:
         last -= 1
-    return real_of(store, last)[at.S_SLIP] + grown(store, last, place_of(store, last, end - time_at(store, row_time, last, 0.0)))
+    return history[last].slip + grown(history, last, place_of(history, last, end - time_at(history, row_time, last, 0.0)))
 
 
 @kernel
-def slipped_between(store: Pieces, piece: int, xi: float, later: int, later_xi: float) -> float:
+def slipped_between(history: HistoryPiece, piece: int, xi: float, later: int, later_xi: float) -> float:
     """Return the slip (m) from one place to a later one, as in `History.slipped_within`."""
     whole = 0.0
     for n in range(piece, later):
-        whole += grown(store, n, 1.0)
-    return whole + (grown(store, later, later_xi) - grown(store, piece, xi))
+        whole += grown(history, n, 1.0)
+    return whole + (grown(history, later, later_xi) - grown(history, piece, xi))
 
 
 # ---- friction ---------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def friction_in(run: Run, store: Pieces, piece: int, xi: float) -> float:
+def friction_in(run: Run, history: HistoryPiece, piece: int, xi: float) -> float:
     """Return friction minus the reference strength (Pa or N) at a place, in slip or at rest, as in `History.friction`."""
-    excess, rate, mode = evaluate(load_of(store, piece), xi), evaluate(rate_of(store, piece), xi), whole_of(store, piece)[at.S_MODE]
+    excess, rate, mode = evaluate(history[piece].load, xi), evaluate(history[piece].rate, xi), history[piece].mode
     if run.counts.has_inertia == 0:
         return excess - run.par.impedance * rate
     if mode == 0:
         return excess
-    walked = grown(store, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
-    friction_of(run, whole_of(store, piece)[at.S_PIECE], real_of(store, piece)[at.S_LAW_SLIP] + walked, abs(rate), run.value)
-    return run.value[0] if mode > 0 else -run.value[0] - 2.0 * run.par.reference
+    walked = grown(history, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
+    friction_of(run, history[piece].law_piece, history[piece].law_slip + walked, abs(rate))
+    return run.friction.stress if mode > 0 else -run.friction.stress - 2.0 * run.par.reference
 
 
 @kernel
-def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float:
+def friction_before(run: Run, history: HistoryPiece, piece: int, excess: float) -> float:
     """Return friction minus the reference strength (Pa or N) just before a piece starts.
 
     Before the first piece the contact is at rest under the initial `excess`. After round trips at rest that were not recorded, the
@@ -163,63 +149,63 @@ def friction_before(run: Run, store: Pieces, piece: int, excess: float) -> float
     if piece == 0:
         return excess
     row_time, last = run.par.row_time, piece - 1
-    if not time_between(store, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
-        return friction_in(run, store, last, 1.0)
-    row, phase = whole_of(store, piece)[at.S_ROW], real_of(store, piece)[at.S_THETA_FROM]
+    if not time_between(history, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
+        return friction_in(run, history, last, 1.0)
+    row, phase = history[piece].row, history[piece].theta_from
     if phase == 0.0:
         row, phase = row - 1, row_time
-    while last >= 0 and not (real_of(store, last)[at.S_THETA_FROM] < phase <= real_of(store, last)[at.S_THETA_TO]):
+    while last >= 0 and not (history[last].theta_from < phase <= history[last].theta_to):
         last -= 1
     if last < 0:
-        return friction_in(run, store, piece - 1, 1.0)
-    xi, trips = place_of(store, last, phase - real_of(store, last)[at.S_THETA_FROM]), row - whole_of(store, last)[at.S_ROW]
+        return friction_in(run, history, piece - 1, 1.0)
+    xi, trips = place_of(history, last, phase - history[last].theta_from), row - history[last].row
     if trips == 0:
-        return friction_in(run, store, last, xi)
-    load = evaluate(load_of(store, last), xi) + trips * run.par.ramp
-    return load if run.counts.is_block == 1 else load - 2.0 * run.par.impedance * evaluate(rate_of(store, last), xi)
+        return friction_in(run, history, last, xi)
+    load = evaluate(history[last].load, xi) + trips * run.par.ramp
+    return load if run.counts.is_block == 1 else load - 2.0 * run.par.impedance * evaluate(history[last].rate, xi)
 
 
 @kernel
-def friction_after(run: Run, store: Pieces, length: int, piece: int, xi: float) -> float:
+def friction_after(run: Run, history: HistoryPiece, length: int, piece: int, xi: float) -> float:
     """Return friction minus the reference strength (Pa or N) after an event that ends at a place, as in `tables.friction_after`.
 
     If the slip rate falls from there to zero, this is the friction at rest.
     """
-    mode, rate = whole_of(store, piece)[at.S_MODE], abs(evaluate(rate_of(store, piece), xi))
+    mode, rate = history[piece].mode, abs(evaluate(history[piece].rate, xi))
     for n in range(piece + 1, length):
-        if whole_of(store, n)[at.S_MODE] != mode:
-            return friction_in(run, store, n, 0.0)
-        if rises_over(rate_of(store, n), rate):
+        if history[n].mode != mode:
+            return friction_in(run, history, n, 0.0)
+        if rises_over(history[n].rate, rate):
             break
     if xi == 1.0 and piece + 1 < length:
-        return friction_in(run, store, piece + 1, 0.0)
-    return friction_in(run, store, piece, xi)
+        return friction_in(run, history, piece + 1, 0.0)
+    return friction_in(run, history, piece, xi)
 
 
 # ---- events -----------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def fold_events(run: Run, store: Pieces, points: Points, events: int, out: Floats) -> None:
+def fold_events(run: Run, history: HistoryPiece, points: Points, events: int, out: Reduced) -> None:
     """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
-    out[EVENTS], out[PULSES] = events, 0.0
-    for column in range(PEAK_RATE, RECURRENCE_CV + 1):
-        out[column] = math.nan
+    out.events, out.pulses = events, 0.0
+    for column in range(FIRST_OF_EVENTS, LAST_OF_EVENTS + 1):
+        numbers_of(out)[column] = math.nan
     if events == 0:
         return
     row_time, fastest = run.par.row_time, points.top[0]
     for n in range(events):
-        out[PULSES] += points.pulses[n]
+        out.pulses += points.pulses[n]
         if points.rate[points.top[n]] > points.rate[fastest]:
             fastest = points.top[n]
-    out[PEAK_RATE] = points.rate[fastest]
-    out[PEAK_TIME] = time_at(store, row_time, points.piece[fastest], points.xi[fastest])
+    out.peak_rate = points.rate[fastest]
+    out.peak_time = time_at(history, row_time, points.piece[fastest], points.xi[fastest])
     if events > 1:
-        fold_recurrence(store, row_time, points, events, out)
+        fold_recurrence(history, row_time, points, events, out)
 
 
 @kernel
-def fold_recurrence(store: Pieces, row_time: float, points: Points, events: int, out: Floats) -> None:
+def fold_recurrence(history: HistoryPiece, row_time: float, points: Points, events: int, out: Reduced) -> None:
     """Write the mean (s) and the coefficient of variation of the times between starts of events into `out`.
 
     The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
@@ -227,17 +213,17 @@ def fold_recurrence(store: Pieces, row_time: float, points: Points, events: int,
     mean = spread = 0.0
     for n in range(1, events):
         a, b = points.begin[n - 1], points.begin[n]
-        since = time_between(store, row_time, points.piece[a], points.xi[a], points.piece[b], points.xi[b])
+        since = time_between(history, row_time, points.piece[a], points.xi[a], points.piece[b], points.xi[b])
         change = since - mean
         mean += change / n
         spread += change * (since - mean)
-    out[RECURRENCE] = mean
+    out.recurrence = mean
     if events > 2:
-        out[RECURRENCE_CV] = math.sqrt(spread / (events - 2)) / mean
+        out.recurrence_cv = math.sqrt(spread / (events - 2)) / mean
 
 
 @kernel
-def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: float, stiffness: float, out: Floats) -> None:
+def fold_first(run: Run, history: HistoryPiece, length: int, points: Points, excess: float, stiffness: float, out: Reduced) -> None:
     """Write the numbers that describe the first event into `out`, as in `tables.event_rows`.
 
     excess is the initial load minus the static strength (Pa or N), stiffness that of the body (Pa/m or N/m).
@@ -245,31 +231,32 @@ def fold_first(run: Run, store: Pieces, length: int, points: Points, excess: flo
     a, b = points.begin[0], points.past[0] - 1
     piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
     row_time = run.par.row_time
-    out[FIRST_START] = time_at(store, row_time, piece, xi)
+    out.first_start = time_at(history, row_time, piece, xi)
     if points.kind[b] == -1:
-        out[FIRST_END] = time_at(store, row_time, last, last_xi)
-        out[FIRST_DURATION] = time_between(store, row_time, piece, xi, last, last_xi)
-    out[FIRST_SLIP] = abs(slipped_between(store, piece, xi, last, last_xi))
-    out[FIRST_STATIC_DROP] = stiffness * out[FIRST_SLIP]
-    before = friction_before(run, store, piece, excess) if xi == 0.0 else friction_in(run, store, piece, xi)
-    out[FIRST_TRACTION_DROP] = before - friction_after(run, store, length, last, last_xi)
+        out.first_end = time_at(history, row_time, last, last_xi)
+        out.first_duration = time_between(history, row_time, piece, xi, last, last_xi)
+    out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
+    out.first_static_drop = stiffness * out.first_slip
+    before = friction_before(run, history, piece, excess) if xi == 0.0 else friction_in(run, history, piece, xi)
+    out.first_traction_drop = before - friction_after(run, history, length, last, last_xi)
 
 
 @kernel
-def fold_whole(store: Pieces, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
+def fold_whole(history: HistoryPiece, length: int, row_time: float, duration: float, code: int, out: Reduced) -> None:
     """Write the numbers that describe the whole run into `out`; the run was to last `duration` s and ended with a `Stop` code."""
-    end = reached(duration, code, row_time, store, length)
+    end = reached(duration, code, row_time, history, length)
     shocks = 0
     for n in range(length):
-        shocks += 1 if whole_of(store, n)[at.S_CAUSE] > 0 else 0
-    out[SHOCKS], out[END_TIME] = shocks, end
-    out[ARRESTED] = 1.0 if rests_at(store, length, row_time, end) else 0.0
-    out[SLIP] = slipped(store, length, row_time, end)
+        shocks += 1 if history[n].cause > 0 else 0
+    out.shocks, out.end_time = shocks, end
+    out.arrested = 1.0 if rests_at(history, length, row_time, end) else 0.0
+    out.slip = slipped(history, length, row_time, end)
 
 
 @kernel
-def fold_end(store: Store, length: int, row_time: float, duration: float, code: int, out: Floats) -> None:
+def fold_end(table: Integers, length: int, row_time: float, duration: float, code: int, numbers: Floats) -> None:
     """Do the same as `fold_whole` for the last pieces of a history, but keep the number of shocks, which are not all among them."""
-    shocks = out[SHOCKS]
-    fold_whole(pieces_of(store), length, row_time, duration, code, floats(out.ctypes.data))
-    out[SHOCKS] = shocks
+    out = reduced_at(numbers)
+    shocks = out.shocks
+    fold_whole(pieces_in(table), length, row_time, duration, code, out)
+    out.shocks = shocks

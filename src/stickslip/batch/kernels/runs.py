@@ -8,21 +8,20 @@ arrays are counted only when a run has ended.
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from numba import carray
 
-from stickslip.batch.kernels.engine import advance_at
-from stickslip.batch.kernels.lanes import ALONE, AWAY, FRESH, step_side_by_side
-from stickslip.batch.kernels.pieces import Pieces
+from stickslip.batch.kernels.engine import run_until_at
+from stickslip.batch.kernels.lanes import Waits, step_side_by_side
 from stickslip.batch.kernels.points import find_events
-from stickslip.batch.kernels.reduction import COLUMNS, fold_events, fold_first, fold_whole
+from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reduced_at
 from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.state.layout import Floats, Integers, Stop, Store
+from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
-from stickslip.engine_input.branch_table import OUT_OF_BUDGET
 from stickslip.trajectory.slip_events import NOT_YET
 from stickslip.trajectory.status import BAD_PARAMETERS
 
@@ -32,8 +31,17 @@ if TYPE_CHECKING:
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
-FREE, UNDER_WAY, AT_END = range(3)
-"""State of a lane: it has no member; its member is running; the run of its member has ended and is not reduced yet."""
+
+
+class Stage(IntEnum):
+    """Say what a lane is doing."""
+
+    FREE = 0
+    """It has no member."""
+    UNDER_WAY = 1
+    """Its member is running."""
+    AT_END = 2
+    """The run of its member has ended and is not reduced yet."""
 
 
 class Lane(NamedTuple):
@@ -42,7 +50,7 @@ class Lane(NamedTuple):
     table: Integers  # memory of the run in the lane, see `engine.state.workspace.Run`
     base: Integers  # addresses of the tables that the first member uses in this lane
     stride: Integers  # bytes from a member's tables to those of the next; 0 for a table that all share
-    stage: Integers  # FREE, UNDER_WAY or AT_END
+    stage: Integers  # Stage.FREE, Stage.UNDER_WAY or Stage.AT_END
     waits: Integers  # what the lane waits for, see `kernels.lanes`
     member: Integers  # index of the member in the lane
     code: Integers  # what the engine returned last
@@ -69,17 +77,19 @@ def run_group(
     first = first_lane(work, base, stride)
     jets, block = integers(setups.jets.ctypes.data), work.block[0]
     for n in range(WIDTH):
-        if nth(first, n).stage[0] != FREE:
+        if nth(first, n).stage[0] != Stage.FREE:
             point_at(nth(first, n), setups, first.member[n])
     while True:
         waiting = 0
         for n in range(WIDTH):
-            if first.waits[n] == AWAY or first.waits[n] == ALONE:
-                if first.stage[n] == UNDER_WAY:
+            if first.waits[n] == Waits.NONE or first.waits[n] == Waits.ALONE:
+                if first.stage[n] == Stage.UNDER_WAY:
                     advance_member(engine, nth(first, n), setups, stop)
-                if first.waits[n] == AWAY and not bring_on(engine, nth(first, n), setups, work, n, wants_events, stop, codes, out):
+                if first.waits[n] == Waits.NONE and not bring_on(
+                    engine, nth(first, n), setups, work, n, wants_events, stop, codes, out
+                ):
                     return n
-            waiting += first.waits[n] != AWAY
+            waiting += first.waits[n] != Waits.NONE
         if waiting == 0 or stop[0] != 0:
             return WIDTH
         step_side_by_side(first.table, first.waits, jets, block)
@@ -109,9 +119,6 @@ def point_at(lane: Lane, setups: Setups, n: int) -> None:
         lane.table[k] = lane.base[k] + n * lane.stride[k]
     run = borrow(lane.table)
     run.branches = setups.branches[n]
-    run.rate_to, run.keep_from = ahead(run.rate_from, run.branches), ahead(run.rate_from, 2 * run.branches)
-    run.keep_to, run.excess_from = ahead(run.rate_from, 3 * run.branches), ahead(run.rate_from, 4 * run.branches)
-    run.excess_to = ahead(run.rate_from, 5 * run.branches)
 
 
 @kernel
@@ -133,18 +140,18 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 @kernel
 def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
-    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), OUT_OF_BUDGET
-    if lane.waits[0] == ALONE:
+    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
+    if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
+        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
         counts.waits = 1
-    while code == OUT_OF_BUDGET and stop[0] == 0:
-        code = advance_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
+    while code == Stop.NONE and stop[0] == 0:
+        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
     lane.code[0] = code
-    lane.waits[0] = FRESH if code == Stop.SLIPS else AWAY
-    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != OUT_OF_BUDGET:
-        lane.stage[0] = AT_END
+    lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
+    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
+        lane.stage[0] = Stage.AT_END
 
 
 @kernel
@@ -164,15 +171,15 @@ def bring_on(
     place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
     """
     numbers = floats(out.ctypes.data)
-    while lane.stage[0] != UNDER_WAY:
+    while lane.stage[0] != Stage.UNDER_WAY:
         n = lane.member[0]
-        if lane.stage[0] == AT_END:
+        if lane.stage[0] == Stage.AT_END:
             run = borrow(lane.table)
             codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
-            member = ahead(numbers, n * len(COLUMNS))
+            member = reduced_at(ahead(numbers, n * len(COLUMNS)))
             if run.counts.length > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
                 return False
-            lane.stage[0] = FREE
+            lane.stage[0] = Stage.FREE
         n = work.upcoming[0]
         if n == len(codes):
             return True
@@ -182,17 +189,17 @@ def bring_on(
             continue
         point_at(lane, setups, n)
         start_member(borrow(lane.table), setups, n)
-        lane.stage[0], lane.member[0] = UNDER_WAY, n
+        lane.stage[0], lane.member[0] = Stage.UNDER_WAY, n
         advance_member(engine, lane, setups, stop)
     return lane.code[0] == Stop.SLIPS
 
 
 @kernel
-def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Floats) -> bool:
+def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Reduced) -> bool:
     """Reduce the run of member n, which has ended with a code, to the numbers in `out`; return False if points lack room."""
-    pieces, length = Pieces(run.whole, run.real, run.stored_load, run.stored_rate), run.counts.length
+    pieces, length = run.history, run.counts.length
     if wants_events:
-        events = find_events(store_of(work, lane), length, setups.threshold[n], work.points)
+        events = find_events(work.store.pieces[lane], length, setups.threshold[n], work.points)
         if events == NOT_YET:
             return False
         fold_events(run, pieces, work.points, events, out)
@@ -200,10 +207,3 @@ def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wa
             fold_first(run, pieces, length, work.points, setups.excess[n], setups.stiffness[n], out)
     fold_whole(pieces, length, run.par.row_time, setups.duration[n], code, out)
     return True
-
-
-@kernel
-def store_of(work: Workspace, lane: int) -> Store:
-    """Return the tables of the history in a lane."""
-    store = work.store
-    return Store(store.whole[lane], store.real[lane], store.load[lane], store.rate[lane], store.state[lane])

@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.bodies import ElasticSlab
 from stickslip.cli.output.files import check_target
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
@@ -59,7 +58,7 @@ class Pictures:
     def check_problem(self, problem: Problem) -> None:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
-        if inside and not isinstance(problem.body, ElasticSlab):
+        if inside and not problem.body.has_waves:
             raise InputError(f"run: {inside[0]} needs a slab: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact.uniqueness import uniqueness

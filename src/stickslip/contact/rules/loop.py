@@ -12,7 +12,6 @@ from typing import Literal
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.rules.maxwell import area
@@ -102,8 +101,7 @@ def first_rate(problem: Problem) -> float:
 
     The result is 0 for a contact that is stuck, has inertia, or whose law has a state.
     """
-    body = problem.body
-    if not isinstance(body, ElasticSlab) or body.contact_mass > 0.0 or problem.friction.state is not None:
+    if problem.body.has_inertia or problem.friction.state is not None:
         return 0.0
     stable, table = selection_table(problem)
     grows = problem.excess == 0.0 and problem.first_pull_rate > 0.0

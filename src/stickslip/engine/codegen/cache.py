@@ -208,7 +208,8 @@ class SealedCache(FunctionCache):
 
 
 SLOW = {
-    "advance": "compiling the engine for this machine: about 15 s, once",
+    "run_until": "compiling the engine for this machine: about 10 s, once",
+    "implicit_steps": "compiling implicit steps, for stiff contacts and laws with a state: about 5 s, once",
     "run_group": "compiling what batches add to the engine: a few seconds, once",
 }
 """Messages to show before the compilation of those functions for which a user has to wait."""

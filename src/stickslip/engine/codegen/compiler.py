@@ -143,8 +143,8 @@ def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return context.get_dummy_value()
 
 
-STEP = (types.int64, types.float64)
-"""Arguments of a step of the engine that is compiled apart: the address of the run's memory, and xi_to."""
+PART = (types.int64, types.int64, types.float64)
+"""Arguments of a part of the engine that is compiled apart: the address of the run's memory, a code of `Task`, and a number."""
 
 
 def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
@@ -155,17 +155,17 @@ def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
 
 
 @intrinsic
-def call_step(typingctx: Any, address: Any, run: Any, xi_to: Any) -> Any:
-    """Call a step of the engine that is compiled apart, at an address: step(memory of the run, xi_to)."""
+def call_part(typingctx: Any, address: Any, run: Any, task: Any, number: Any) -> Any:
+    """Call the part of the engine at an address, which is compiled apart: part(memory of the run, task, number) -> float."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         convention = context.call_conv
-        function = builder.inttoptr(args[0], convention.get_function_type(types.none, STEP).as_pointer())
+        function = builder.inttoptr(args[0], convention.get_function_type(types.float64, PART).as_pointer())
         memory = builder.ptrtoint(args[1], ir.IntType(64))
-        convention.call_function(builder, function, types.none, STEP, [memory, args[2]])
-        return context.get_dummy_value()
+        _, result = convention.call_function(builder, function, types.float64, PART, [memory, args[2], args[3]])
+        return result
 
-    return types.void(types.int64, run, types.float64), codegen
+    return types.float64(types.int64, run, types.int64, types.float64), codegen
 
 
 @intrinsic
@@ -226,7 +226,7 @@ def float_of(typingctx: Any, bits: Any) -> Any:
 
 
 if UNCOMPILED:
-    call_prepare = call_value = call_state_value = call_guards = call_jet = call_step = call
+    call_prepare = call_value = call_state_value = call_guards = call_jet = call_part = call
 
     def floats(address: int) -> Pointer:
         """Return the pointer to floats at an address."""

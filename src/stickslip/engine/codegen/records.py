@@ -11,6 +11,7 @@ wraps the same memory as an object: `State(numbers).xi`.
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self, get_type_hints
 
@@ -18,10 +19,11 @@ import llvmlite.ir as ir
 import numpy as np
 from numba import types
 from numba.core import datamodel
-from numba.core.typing.templates import AttributeTemplate
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global, signature
 from numba.extending import (
     infer_getattr,
     intrinsic,
+    lower_builtin,
     lower_getattr_generic,
     lower_setattr_generic,
     models,
@@ -65,9 +67,14 @@ def integers_at() -> Any:
     return _Wanted(INTEGERS, 1, False)
 
 
-def row(size: int) -> Any:
+def floats_inside(size: int) -> Any:
     """Declare a row of `size` floats that lie in the record itself."""
     return _Wanted(FLOATS, size, True)
+
+
+def records_at(record: type[Record]) -> Any:
+    """Declare a field that holds the address of records, one after the other: `run.history[n].theta_from`."""
+    return _Wanted(record, 1, False)
 
 
 def inside(record: type[Record], size: int | None = None) -> Any:
@@ -76,26 +83,52 @@ def inside(record: type[Record], size: int | None = None) -> Any:
 
 
 class Record:
-    """The base class of all records. Fields are annotations; a float or an integer needs nothing else."""
+    """The base class of all records. Fields are annotations; a float or an integer needs nothing else.
+
+    The memory of a record that has only floats is an array of floats. Any other record lies in an array of 64-bit integers, which
+    holds the bits of its floats.
+    """
 
     places: ClassVar[dict[str, Place]] = {}
     """The place of each field, by name."""
     total: ClassVar[int] = 0
     """Number of 8-byte places of a record."""
+    memory_type: ClassVar[type] = np.float64
+    """Type of the numbers in the array that holds a record."""
 
     def __init_subclass__(cls) -> None:
         first, cls.places = 0, {}
         for name, kind in get_type_hints(cls).items():
-            if name in ("places", "total"):
+            if name in ("places", "total", "memory_type"):
                 continue
             wanted = cls.__dict__.get(name, _Wanted(kind, 1, False))
             cls.places[name] = Place(first, wanted.size, wanted.kind, wanted.inside)
             first += wanted.size
-            setattr(cls, name, _descriptor(cls.places[name], name))
         cls.total = first
+        has_only_floats = all(place.kind is float or (place.inside and place.kind is FLOATS) for place in cls.places.values())
+        cls.memory_type = np.float64 if has_only_floats else np.int64
+        for name, place in cls.places.items():
+            setattr(cls, name, _descriptor(place, name, cls.memory_type))
 
-    def __init__(self, numbers: NDArray[Any]) -> None:
+    def __init__(self, numbers: Any) -> None:
         self.numbers = numbers
+
+    @classmethod
+    def table(cls, *shape: int) -> NDArray[Any]:
+        """Return memory filled with zeros for an array of records; its last axis is that of their places."""
+        return np.zeros((*shape, cls.total), cls.memory_type)
+
+    @classmethod
+    def of(cls, table: NDArray[Any]) -> Any:  # the fields are arrays and not the numbers that their annotations say
+        """Return the records in a table as one object, each field of which is an array with one entry for each record.
+
+        The arrays share the table's memory. A row of floats in the record becomes the last axis of its array.
+        """
+        return cls(np.moveaxis(table, -1, 0))
+
+    def __getitem__(self, n: int) -> Self:
+        """Return the record that lies n records after this one, in plain Python as in compiled code."""
+        return type(self)(self.numbers.ahead(n * self.total))  # a `Pointer` of uncompiled code
 
     def copy(self) -> Self:
         """Return a copy with its own memory."""
@@ -115,6 +148,16 @@ class _Number:
         record.numbers[self.place] = value
 
 
+class _FloatAmongIntegers(_Number):
+    """Python's access to a float in a record whose memory is an array of integers."""
+
+    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+        return self if record is None else record.numbers[self.place].view(np.float64)
+
+    def __set__(self, record: Record, value: Any) -> None:
+        record.numbers[self.place] = np.asarray(value, np.float64).view(np.int64)[()]
+
+
 class _Inside:
     """Python's access to a row of floats or a record that lies inside another record; the view is made once and kept."""
 
@@ -125,11 +168,15 @@ class _Inside:
         if record is None:
             return self
         begin, end = self.place.first, self.place.first + self.place.size
-        if self.place.kind is FLOATS:  # up to the end of the record, because some functions write beyond a row into the next one
-            found: Any = Pointer(record.numbers.view(np.float64), begin)
+        found: Any
+        if self.place.kind is FLOATS and isinstance(record.numbers, Pointer):
+            found = record.numbers.ahead(begin).as_floats()
+        elif self.place.kind is FLOATS and record.numbers.ndim > 1:
+            found = np.moveaxis(record.numbers[begin:end], 0, -1).view(np.float64)
+        elif self.place.kind is FLOATS:  # up to the end of the record: some functions write beyond a row into the next one
+            found = Pointer(record.numbers.view(np.float64), begin)
         else:
-            kind = np.int64 if int in get_type_hints(self.place.kind).values() else np.float64
-            found = self.place.kind(record.numbers[begin:end].view(kind))
+            found = self.place.kind(record.numbers[begin:end].view(self.place.kind.memory_type))
         record.__dict__[self.name] = found
         return found
 
@@ -138,17 +185,24 @@ class _Address:
     """Python's access to an address in a record: a pointer into the array that was lent (see `uncompiled.lend_memory`)."""
 
     def __init__(self, place: Place) -> None:
-        self.place, self.kind = place.first, np.float64 if place.kind is FLOATS else np.int64
+        self.place = place.first
+        self.record: type[Record] | None = place.kind if isinstance(place.kind, type) else None
+        self.kind = self.record.memory_type if self.record else np.float64 if place.kind is FLOATS else np.int64
 
     def __get__(self, record: Record | None, owner: type[Record]) -> Any:
-        return self if record is None else pointer_at(record.numbers[self.place], self.kind)
+        if record is None:
+            return self
+        pointer = pointer_at(record.numbers[self.place], self.kind)
+        return self.record(pointer) if self.record else pointer
 
     def __set__(self, record: Record, pointer: Pointer) -> None:
         record.numbers[self.place] = pointer.address
 
 
-def _descriptor(place: Place, name: str) -> Any:
+def _descriptor(place: Place, name: str, memory_type: type) -> Any:
     """Return the object through which Python reads and writes a field."""
+    if place.kind is float and memory_type is np.int64:
+        return _FloatAmongIntegers(place.first)
     if place.kind in (float, int):
         return _Number(place.first)
     return _Inside(place, name) if place.inside else _Address(place)
@@ -208,18 +262,36 @@ def _get(context: Any, builder: Any, kind: RecordPointer, pointer: Any, name: st
 
 
 @lower_setattr_generic(RecordPointer)
-def _set(context: Any, builder: Any, signature: Any, arguments: Any, name: str) -> None:
+def _set(context: Any, builder: Any, called: Any, arguments: Any, name: str) -> None:
     """Write the assignment of a number or an address to a field."""
     pointer, value = arguments
-    place = signature.args[0].record.places[name]
+    place = called.args[0].record.places[name]
     builder.store(value, builder.bitcast(_address(builder, pointer, place), value.type.as_pointer()))
+
+
+@infer_global(operator.getitem)
+class _Nth(AbstractTemplate):  # type: ignore[misc]
+    """Tells numba that a record pointer can be indexed: `pointer[n]` is the record n records later."""
+
+    def generic(self, arguments: Any, keywords: Any) -> Any:
+        """Return the signature of the indexing, or None if the arguments are something else."""
+        if isinstance(arguments[0], RecordPointer) and isinstance(arguments[1], types.Integer):
+            return signature(arguments[0], arguments[0], types.int64)
+        return None
+
+
+@lower_builtin(operator.getitem, RecordPointer, types.Integer)
+def _nth(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
+    """Write the calculation of the address of a record in a row of records."""
+    size = ir.Constant(ir.IntType(64), called.args[0].record.total)
+    return builder.gep(arguments[0], [builder.mul(arguments[1], size)])
 
 
 @intrinsic
 def numbers_of(typingctx: Any, record: Any) -> Any:
     """Return a pointer to the numbers of a record that has only floats."""
 
-    def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], context.get_value_type(FLOATS))
 
     return FLOATS(record), codegen
@@ -229,22 +301,22 @@ def numbers_of(typingctx: Any, record: Any) -> Any:
 def whole_numbers_of(typingctx: Any, record: Any) -> Any:
     """Return a pointer to the numbers of a record that has only 64-bit integers."""
 
-    def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
         return builder.bitcast(arguments[0], context.get_value_type(INTEGERS))
 
     return INTEGERS(record), codegen
 
 
 def record_at(record: type[Record]) -> Any:
-    """Return a function with which kernels turn memory (an array of 64-bit integers, or a pointer to it) into the record there."""
+    """Return a function with which kernels turn memory (an array or a pointer to it) into the first record there."""
     if UNCOMPILED:
-        return record
+        return lambda memory: record(Pointer(memory.reshape(-1)) if getattr(memory, "ndim", 1) > 1 else memory)
     kind, pointer = RecordPointer(record), ir.IntType(64).as_pointer()
 
     @intrinsic
     def at(typingctx: Any, memory: Any) -> Any:
-        def codegen(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            given = signature.args[0]
+        def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
+            given = called.args[0]
             if isinstance(given, types.Array):
                 return builder.bitcast(context.make_array(given)(context, builder, arguments[0]).data, pointer)
             if isinstance(given, types.Integer):

@@ -58,6 +58,10 @@ class Pointer:
         """Return the pointer to the number n places after this one."""
         return type(self)(self.memory, self.first + int(n))
 
+    def as_floats(self) -> Self:
+        """Return the pointer to the same place, whose 64 bits are read and written as a float."""
+        return type(self)(self.memory.view(np.float64), self.first)
+
 
 _lent: list[weakref.ref[Array]] = []
 """Weak references to the arrays whose addresses have been handed to the engine."""
@@ -81,19 +85,19 @@ def pointer_at(address: int, kind: type) -> Pointer:
     raise IndexError(f"{address} is no address in an array that was lent")
 
 
-_formulas: list[Callable[..., None]] = []
-"""Functions of formulas; the handle of a function is its index here plus 1."""
+_functions: list[Callable[..., Any]] = []
+"""Functions of formulas and of parts of the engine; the handle of a function is its index here plus 1."""
 
 
-def handle_of(function: Callable[..., None]) -> int:
-    """Register a formula's function and return its handle, which takes the place of the address in compiled code."""
-    _formulas.append(function)
-    return len(_formulas)
+def handle_of(function: Callable[..., Any]) -> int:
+    """Register a function and return its handle, which takes the place of the address in compiled code."""
+    _functions.append(function)
+    return len(_functions)
 
 
-def call(handle: int, *arguments: Any) -> None:
-    """Call the formula's function with the given handle."""
-    _formulas[int(handle) - 1](*arguments)
+def call(handle: int, *arguments: Any) -> Any:
+    """Call the function with the given handle."""
+    return _functions[int(handle) - 1](*arguments)
 
 
 MATHS = SimpleNamespace(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_step, kernel
-from stickslip.engine.contact_step.append_segment import note_jump, record
-from stickslip.engine.contact_step.contact_equation import (
+from stickslip.engine.codegen.compiler import ahead, call_part, kernel
+from stickslip.engine.contact.append_segment import note_jump, record
+from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
     TIE,
     choose_branch,
@@ -16,10 +16,10 @@ from stickslip.engine.contact_step.contact_equation import (
     rest_limit,
     towards,
 )
-from stickslip.engine.contact_step.radau_step import forgotten
+from stickslip.engine.contact.stiffness import forgotten
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats
+from stickslip.engine.state.layout import Cause, Floats, Task
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
@@ -40,11 +40,11 @@ def arrive(run: Run) -> None:
         pass  # The load continues without a jump, and so does the slip rate.
     elif mode != 0 and run.counts.is_algebraic == 1:
         seen, branch = towards(run, load, mode), run.counts.branch
-        if not run.keep_from[branch] <= seen <= run.keep_to[branch]:
+        if not run.branch_table[branch].keep_from <= seen <= run.branch_table[branch].keep_to:
             leave_branch(run, seen)
     elif mode != 0 and run.counts.has_inertia == 0:
-        friction_at(run, run.state.law_slip, 0.0, run.value)
-        if towards(run, load, mode) < run.value[0]:
+        friction_at(run, run.state.law_slip, 0.0)
+        if towards(run, load, mode) < run.friction.stress:
             run.counts.mode = 0
     if run.counts.mode == 0 and run.counts.edge == 0:
         for direction in (1, -1):
@@ -103,9 +103,9 @@ def heal(run: Run, load: float) -> None:
 def stick(run: Run, xi_to: float) -> None:
     """Stay at rest up to the place xi_to, or until the load exceeds what friction can hold."""
     if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
-        call_step(run.implicit_rest, run, xi_to)
+        call_part(run.implicit_steps, run, Task.STICK, xi_to)
         return
-    width, load = xi_to - run.state.xi, ahead(run.stored_load, at.TERMS * run.counts.length)
+    width, load = xi_to - run.state.xi, run.history[run.counts.length].load
     restrict(run.load, run.state.xi, width, load)
     onset, direction = end_of_rest(run, load)
     if run.par.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
@@ -117,9 +117,9 @@ def stick(run: Run, xi_to: float) -> None:
     slips = onset <= 1.0 - TIE
     if slips:
         scale(load, onset)
-    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
+    fill(run.history[run.counts.length].rate, 0.0)
     if run.counts.has_state == 1:
-        fill(ahead(run.stored_state, at.TERMS * run.counts.length), 0.0)
+        fill(ahead(run.history_state, at.TERMS * run.counts.length), 0.0)
     record(run, run.state.xi + onset * width if slips else xi_to)
     run.counts.edge = 0
     if slips:

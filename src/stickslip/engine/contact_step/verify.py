@@ -9,7 +9,8 @@ than the tolerance or rounding allows, or the step is shortened.
 from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import call_value, inlined, kernel
-from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import moment, multiply, powers_of, total
 from stickslip.engine.state.layout import TERMS, Floats, Stop
 from stickslip.engine.state.workspace import Run
@@ -116,7 +117,7 @@ def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end:
 @inlined
 def is_negative(run: Run) -> bool:
     """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
-    friction = run.value[0] + run.offset[run.counts.piece]
+    friction = run.value.mu + run.law[run.counts.piece].offset
     return run.par.reference + run.par.normal * friction < -NEGLIGIBLE * run.par.normal
 
 
@@ -130,13 +131,13 @@ def defect(run: Run, lasting: float, grown: float, rate: float, slope: float) ->
     """
     par, value, piece = run.par, run.value, run.counts.piece
     dx, load = run.k.slip + run.k.chi * grown, load_at_end(run)
-    call_value(run.value_at[piece], constants_of(run, piece), dx, rate, value)
-    friction, impedance, normal = value[0] + run.offset[piece], par.impedance, par.normal
+    call_value(run.law[piece].value_at, constants_of(run, piece), dx, rate, numbers_of(value))
+    friction, impedance, normal = value.mu + run.law[piece].offset, par.impedance, par.normal
     missing = load - impedance * rate - normal * friction - run.state.unbalanced
-    # value[1] and value[2] are the slopes of the coefficient with slip rate and slip, whose values are rounded too.
-    terms = par.reference + abs(load) + normal * (abs(friction) + abs(value[1] * rate) + abs(value[2] * dx))
+    # Slip rate and slip are rounded too, and the law turns that into an error of friction.
+    terms = par.reference + abs(load) + normal * (abs(friction) + abs(value.by_rate * rate) + abs(value.by_slip * dx))
     if run.counts.has_inertia == 0:
-        resistance = impedance + normal * max(value[1], 0.0)
+        resistance = impedance + normal * max(value.by_rate, 0.0)
         return abs(missing) / resistance, ROUNDING * terms / resistance
     missing -= par.stiffness * grown
     pace = (run.k.speed + run.k.bend * lasting) * lasting / par.inertia
@@ -181,8 +182,8 @@ def begin_verification(run: Run) -> None:
 def note_unbalanced(run: Run) -> None:
     """Note the force (Pa or N) that a step ignores at its start, because it leaves rest without a net force by definition."""
     piece = run.counts.piece
-    call_value(run.value_at[piece], constants_of(run, piece), run.k.slip, 0.0, run.value)
-    balance = run.seen[0] - run.par.normal * (run.value[0] + run.offset[piece])
+    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip, 0.0, numbers_of(run.value))
+    balance = run.seen[0] - run.par.normal * (run.value.mu + run.law[piece].offset)
     run.state.unbalanced = balance - run.k.force
     if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.par.tolerance) * run.par.normal:
         run.counts.breach = Stop.OFF_THE_LAW  # A massless contact must balance: no solution begins here.

@@ -9,12 +9,12 @@ a pure number.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.records import Record
+from stickslip.engine.codegen.records import Record, floats_inside
 from stickslip.engine.codegen.taylor_series import ORDER
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,7 @@ class Counts(Record):
     echo_of: int  # piece of the history whose echo the present piece of load is; -1 if it is none
     stuck_rows: int  # number of round trips at rest that were closed since the last slip; -1 after a break of the loading
     stalled: int  # number of steps in a row that took no time, with changes of branch
-    at_fold: int  # APPROACHING, DEPARTING or PASSING on a side piece next to a fold (`contact_step.fold`), else 0
+    at_fold: int  # kind of side piece next to a fold, as a code of `NearFold`
     is_block: int  # 1 for a block, 0 for a slab
     has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
     is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
@@ -192,9 +192,73 @@ class Cause(IntEnum):
     """Rest gives the contact its initial strength back."""
 
 
+class NearFold(IntEnum):
+    """Say on what kind of side piece next to a fold the contact slips (`folds.fold`)."""
+
+    NONE = 0
+    APPROACHING = 1
+    """The side piece ends at the fold."""
+    DEPARTING = 2
+    """It starts at the fold."""
+    PASSING = 3
+    """The branch has ended before the side piece did; its rest is walked like any other piece."""
+
+
+class StepEvent(IntEnum):
+    """Say what ends a step of slip early. Of two events at one place the lower one counts."""
+
+    NONE = 0
+    ARREST = 1
+    """The slip rate reaches zero."""
+    KNOT = 2
+    """Slip, or the slip rate, reaches a knot of the law."""
+
+
+class Rule(IntEnum):
+    """Name the selection rules whose levels are calculated in compiled code."""
+
+    PERFECT_DELAY = 0
+    MINIMAL = 1
+    MAXIMAL = 2
+    MAXWELL = 3
+
+
+class Part(IntEnum):
+    """Name the parts of the engine that are compiled apart (`on_demand`)."""
+
+    NONE = 0
+    IMPLICIT_STEPS = 1
+    LOADING_HISTORY = 2
+    ECHO_QUEUE = 3
+    MOVING_FOLDS = 4
+
+
+class Task(IntEnum):
+    """Name what a part of the engine that is compiled apart (`on_demand`) is asked to do."""
+
+    SLIP = 0
+    """Take an implicit step of slip."""
+    STICK = 1
+    """Take a step at rest in which the state of the law evolves."""
+    TAKE_LOADING = 2
+    """Cut the piece of load where the loading breaks, and add the loading to it."""
+    COUNT_ROWS_AT_REST = 3
+    """Find for how many rows a contact at rest withstands the loading."""
+    NEXT_ECHO = 4
+    """Find the next echo that must be met."""
+    END_TRIP = 5
+    """Close a round trip in which only such echoes are met."""
+    BUILD_QUEUE = 6
+    """Build the queue of echoes."""
+    LOOK_FOR_FOLD = 7
+    """Find the way to the moving fold into which the series runs."""
+
+
 class Stop(IntEnum):
     """Say why the engine returned."""
 
+    NONE = -1
+    """Nothing: it has made as many passes of the loop as it was asked for."""
     FULL = 0
     """The history has no room for another step."""
     FINISHED = 1
@@ -214,127 +278,175 @@ class Stop(IntEnum):
     """An explicit step of slip is left to the caller, who takes it beside those of other runs."""
     OFF_THE_LAW = 9
     """No step from here obeys the contact equation."""
-    NEED_IMPLICIT_STEPS = 11
-    """The caller must lend the implicit steps, which are compiled when they are first needed."""
+    NEED_PART = 11
+    """The caller must lend the part of the engine that `Run.missing` names (`on_demand.lend_part`)."""
     NEGATIVE_FRICTION = 10
     """Friction is below zero from here on."""
 
 
-# ---- rows of Setup's tables -------------------------------------------------------------------------------------------------
-VALUE_AT, JET_AT, STATE_AT, GUARDS_AT, GUARD_COUNT = range(5)
-SLIP_SHIFT, OFFSET, KNOT = range(3)
-RATE_FROM, RATE_TO, KEEP_FROM, KEEP_TO, EXCESS_FROM, EXCESS_TO = range(6)
-FIRST_THETA, FIRST_LOAD, FIRST_SLOPE, FIRST_JUMP = range(4)
-FROM_ROW, FROM_OFFSET, FROM_VALUE, FROM_SLOPE, FROM_JUMP = range(5)
+# ---- records in tables ------------------------------------------------------------------------------------------------------
 
-# ---- columns of Store's tables ----------------------------------------------------------------------------------------------
-S_ROW, S_MODE, S_PIECE, S_JUMP, S_CAUSE, S_ECHO_OF = range(6)
-S_THETA_FROM, S_THETA_TO, S_SPEED, S_BEND, S_SLIP, S_LAW_SLIP, S_AMPLIFIED, S_GAIN = range(8)
+
+class LawPiece(Record):
+    """Hold one piece of the friction law: the functions of its formula, its reference slip, and the knot at its end."""
+
+    value_at: int  # address of `value`; 0 for a law with a state, which has the next but one instead
+    jet_at: int  # address of `rate_jet` or `motion_jet`; 0 for a law with a state
+    state_at: int  # address of `state_value`; 0 for a law without a state
+    guards_at: int  # address of `guards`, for implicit steps; 0 if they are not needed
+    guard_count: int  # number of guards of the formula
+    slip_shift: float  # m: initial slip of the law minus the reference slip of the piece
+    offset: float  # 1: sliding friction coefficient at that reference, minus the static coefficient at the start of the run
+    knot: float  # m (minus the initial slip of the law) or m/s: end of the piece; inf for the last one
+
+
+class Branch(Record):
+    """Hold one branch of the contact equation: slip rates between which g(v) = Z v + S mu rises, and the loads that keep it.
+
+    Loads are in Pa, minus the reference strength. The rule never takes a branch with keep_from > keep_to.
+    """
+
+    rate_from: float  # m/s
+    rate_to: float  # m/s; inf for the fastest branch
+    keep_from: float  # Pa: the selection rule keeps the branch from this load on
+    keep_to: float  # Pa: and up to this load
+    excess_from: float  # Pa: g at rate_from
+    excess_to: float  # Pa: g at rate_to
+
+
+class FirstLoad(Record):
+    """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `theta`."""
+
+    theta: float  # s: phase at which the piece begins
+    load: float  # Pa or N, minus the reference strength
+    slope: float  # Pa/s or N/s
+    jump: float  # 1 if the load jumps there, else 0
+
+
+class LoadingSegment(Record):
+    """Hold one straight segment of a loading that varies: the inflow of a slab (Pa), the growth of a block's load (N/s)."""
+
+    row: float  # round trip in which the segment arrives at the contact
+    offset: float  # s: phase at which it arrives
+    value: float  # inflow there
+    slope: float  # its growth per second
+    jump: float  # 1 if the inflow jumps there, else 0
+
+
+class HistoryPiece(Record):
+    """Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1]."""
+
+    row: int  # whole round trips before the piece
+    mode: int  # 0 at rest, +1 in forward slip, -1 in backward slip
+    law_piece: int  # piece of the law that holds
+    jump: int  # 1 if load or slip rate jumps where the piece begins
+    cause: int  # cause of the shock there, as a code of `Cause`; 0 if there is none
+    echo_of: int  # piece whose echo is the load; -1 in the first round trip and on a block
+    theta_from: float  # s: phase at which it begins; theta = theta_from + speed xi + bend xi^2
+    theta_to: float  # s: phase at which it ends
+    speed: float  # s
+    bend: float  # s: zero except next to folds
+    slip: float  # m: slip where it begins, minus the initial slip
+    law_slip: float  # m: slip that the law counts there, minus its initial value
+    amplified: float  # 1: size in this piece of an error of 1 in the load at the start of the run; NaN if not known (see `gain`)
+    gain: float  # 1: factor from an error in its load to its echo; NaN if it depends on more than the phase
+    load: Floats = floats_inside(TERMS)  # Pa or N, minus the reference strength
+    rate: Floats = floats_inside(TERMS)  # m/s, with its sign
+
+
+class EchoNode(Record):
+    """Hold a node of the trees of echoes (`waves.echo_queue`): node n belongs to piece n of the history."""
+
+    left: int  # child whose pieces begin before this one, or -1
+    right: int  # child whose pieces begin after it, or -1
+    first_up: int  # piece of the subtree that breaks first in forward slip
+    first_down: int  # piece of the subtree that breaks first in backward slip
+    trip: int  # round trip in which the piece was recorded
+    rank: int  # priority in the tree
+    phase: float  # s: phase at which the piece begins
+    high: float  # Pa: largest value of its echo, minus the reference strength, without the ramp
+    low: float  # Pa: largest value of minus its echo
+
+
+# ---- scratch space ----------------------------------------------------------------------------------------------------------
+
+
+class LawValue(Record):
+    """Hold what a law's formula returns: the friction coefficient and, for a law with a state w, its rate of change."""
+
+    mu: float  # 1: friction coefficient minus that at the reference of the piece of the law
+    by_rate: float  # s/m: its derivative with respect to slip rate
+    by_slip: float  # 1/m: with respect to slip
+    by_state: float  # with respect to w; this and all that follows only for a law with a state
+    change: float  # dw/dt, in 1/s times the unit of w
+    change_by_rate: float
+    change_by_slip: float
+    change_by_state: float
+
+
+class Friction(Record):
+    """Hold friction at the contact, as `contact_equation.friction_at` writes it."""
+
+    stress: float  # Pa or N: S times `coefficient`
+    by_rate: float  # Pa s/m or N s/m: its derivative with respect to slip rate
+    by_slip: float  # Pa/m or N/m: its derivative with respect to slip
+    coefficient: float  # 1: friction coefficient minus the static one at the start of the run
+
+
+class Between(Record):
+    """Hold the polynomials of an implicit step at one place between its points; derivatives are with respect to that place."""
+
+    rate: float  # m/s
+    acceleration: float  # m/s: derivative of the slip rate
+    walked: float  # m/s: integral of the slip rate
+    state: float  # unit of the law's state
+    evolved: float  # unit of the law's state: derivative of the state
+
+
+# ---- a problem and its history ----------------------------------------------------------------------------------------------
 
 
 class Setup(NamedTuple):
     """Hold a problem as the engine sees it. It is constant during a run, except the branches of a law of slip and slip rate."""
 
     par: Params
-    address: Integers  # (5, pieces of the law): addresses of `value`, jet, `state_value` and `guards`; number of guards
+    law: Integers  # table of LawPiece
     constants: Floats  # (pieces of the law, size): constants that the formula's `prepare` has filled in
-    law: Floats  # (3, pieces of the law): shift of slip (m) and offset of mu to the piece's reference; knot at its end (m or m/s)
-    branch: Floats  # (6, branches): slip rates at the ends, loads between which the rule keeps it, loads (g) at the ends
-    first: Floats  # (4, pieces of load + 1): phase, load, its slope in time and a flag for a jump, in the first round trip
-    loading: Floats  # (5, segments of the inflow): row and phase at which it arrives, value there, slope, flag for a jump
+    branches: Floats  # table of Branch
+    first_load: Floats  # table of FirstLoad
+    loading: Floats  # table of LoadingSegment
 
 
 class Store(NamedTuple):
-    """Hold the history, one line of each table per piece: load, slip rate and state of the law as polynomials in xi on [0, 1].
+    """Hold a history. Each field of `HistoryPiece` is an attribute too: a view of the table, with one entry for each piece."""
 
-    The properties name columns of `whole` and `real`.
-    """
+    pieces: Integers  # table of HistoryPiece
+    state: Floats  # (n, TERMS): state of the law, as its formulas see it; (0, TERMS) for a law without a state
 
-    whole: Integers  # (n, 6), columns S_ROW to S_ECHO_OF
-    real: Floats  # (n, 8), columns S_THETA_FROM to S_GAIN
-    load: Floats  # (n, TERMS), Pa or N, minus the reference strength
-    rate: Floats  # (n, TERMS), m/s, with its sign
-    state: Floats  # (n, TERMS), as the law's formulas see it; (0, TERMS) for a law without a state
-
-    @property
-    def row(self) -> Integers:
-        """Return the number of whole round trips before each piece."""
-        return self.whole[:, S_ROW]
-
-    @property
-    def mode(self) -> Integers:
-        """Return 0 for a piece at rest, +1 for forward slip, -1 for backward slip."""
-        return self.whole[:, S_MODE]
-
-    @property
-    def cause(self) -> Integers:
-        """Return the cause of the shock where each piece begins, as a code of `Cause`; 0 if there is none."""
-        return self.whole[:, S_CAUSE]
-
-    @property
-    def echo_of(self) -> Integers:
-        """Return the piece whose echo is the load of each piece; -1 in the first round trip and on a block."""
-        return self.whole[:, S_ECHO_OF]
-
-    @property
-    def theta_from(self) -> Floats:
-        """Return the phase (s) at which each piece begins."""
-        return self.real[:, S_THETA_FROM]
-
-    @property
-    def theta_to(self) -> Floats:
-        """Return the phase (s) at which each piece ends."""
-        return self.real[:, S_THETA_TO]
-
-    @property
-    def speed(self) -> Floats:
-        """Return `speed` (s) in theta = theta_from + speed xi + bend xi^2."""
-        return self.real[:, S_SPEED]
-
-    @property
-    def bend(self) -> Floats:
-        """Return `bend` (s) in the same relation; it is zero except next to folds."""
-        return self.real[:, S_BEND]
-
-    @property
-    def slip(self) -> Floats:
-        """Return the slip (m) where each piece begins, minus the initial slip."""
-        return self.real[:, S_SLIP]
-
-    @property
-    def law_slip(self) -> Floats:
-        """Return the slip that the law counts (m) where each piece begins, minus its initial value."""
-        return self.real[:, S_LAW_SLIP]
-
-    @property
-    def amplified(self) -> Floats:
-        """Return the size in each piece of an error of 1 in the load at the start of the run; NaN if not known (see `gain`)."""
-        return self.real[:, S_AMPLIFIED]
-
-    @property
-    def gain(self) -> Floats:
-        """Return the factor from an error in the load of each piece to its echo; NaN if it depends on more than the phase."""
-        return self.real[:, S_GAIN]
+    def __getattr__(self, field: str) -> Any:
+        return getattr(HistoryPiece.of(self.pieces), field)
 
 
 def new_store(capacity: int, has_state: bool = False) -> Store:
     """Return an empty history with room for `capacity` pieces."""
-    load, rate, state = (np.empty((rows, TERMS)) for rows in (capacity, capacity, capacity if has_state else 0))
-    return Store(np.empty((capacity, 6), np.int64), np.empty((capacity, 8)), load, rate, state)
+    return Store(HistoryPiece.table(capacity), np.zeros((capacity if has_state else 0, TERMS)))
 
 
-def resized(store: Store, length: int, capacity: int) -> Store:
-    """Return the first `length` pieces in a new history with room for `capacity`."""
-    larger = new_store(capacity, len(store.state) > 0)
-    for old, new in zip(store, larger, strict=True):
-        new[:length] = old[:length]
+def resized(table: NDArray[Any], length: int, capacity: int) -> NDArray[Any]:
+    """Return the first `length` rows of a table in a new one with room for `capacity`; a table without rows stays so."""
+    larger = np.zeros((capacity if len(table) else 0, *table.shape[1:]), table.dtype)
+    larger[:length] = table[:length]
     return larger
+
+
+def resized_store(store: Store, length: int, capacity: int) -> Store:
+    """Return the first `length` pieces in a new history with room for `capacity`."""
+    return Store(resized(store.pieces, length, capacity), resized(store.state, length, capacity))
 
 
 def trimmed(store: Store, length: int, first: int = 0) -> Store:
     """Return the pieces from `first` to `length` - 1 of a history without its spare room, as views."""
-    kept = slice(first, length)
-    return Store(store.whole[kept], store.real[kept], store.load[kept], store.rate[kept], store.state[kept])
+    return Store(store.pieces[first:length], store.state[first:length])
 
 
 def keep_only(store: Store, length: int, kept: Integers) -> Integers:

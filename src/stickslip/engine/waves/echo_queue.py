@@ -13,24 +13,14 @@ has passed (`counts.behind`), and pieces that it has yet to meet (`counts.ahead`
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from stickslip.engine.codegen.compiler import ahead, bits_of, kernel
-from stickslip.engine.contact_step.contact_equation import rest_limit
+from stickslip.engine.codegen.compiler import bits_of, kernel
+from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Floats, Integers
-from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+from stickslip.engine.state.layout import TERMS, EchoNode, HistoryPiece, Integers
+from stickslip.engine.state.workspace import Run, borrow
 
-LEFT, RIGHT, FIRST_UP, FIRST_DOWN, TRIP, RANK = range(6)
-NODE = 6
-"""Length of a node (1): its children, the pieces in its subtree that break first forwards and backwards, round trip, rank."""
-PHASE, HIGH, LOW = range(3)
-HEIGHTS = 3
-"""Length of the heights of a node (1): the phase (s) at which its piece begins, and the largest values of its echo and of minus its
-echo (Pa, minus the reference strength), without the ramp."""
 NOTHING = -1
 """Index of no piece and of an empty tree."""
 FOREVER = 2**62
@@ -41,96 +31,76 @@ MANY = 16
 """Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `MANY // 4` of them may slip."""
 
 
-class Echoes(NamedTuple):
-    """Hold the trees of echoes: node n is piece n of the history."""
-
-    node: Integers  # (capacity, NODE)
-    heights: Floats  # (capacity, HEIGHTS)
-
-
-def new_echoes(capacity: int) -> Echoes:
-    """Return empty trees with room for `capacity` pieces, which is that of the history."""
-    return Echoes(np.empty((capacity, NODE), np.int64), np.empty((capacity, HEIGHTS)))
-
-
-def resized(echoes: Echoes, length: int, capacity: int) -> Echoes:
-    """Return the trees of the first `length` pieces, with room for `capacity`."""
-    larger = new_echoes(capacity)
-    for old, new in zip(echoes, larger, strict=True):
-        new[:length] = old[:length]
-    return larger
-
-
 # ---- trees ------------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def sooner(node: Integers, heights: Floats, ramp: float, a: int, b: int, way: int) -> bool:
+def sooner(nodes: EchoNode, ramp: float, a: int, b: int, way: int) -> bool:
     """Return True if piece a breaks before piece b, forwards (way 1) or backwards (-1), under a ramp (Pa per round trip)."""
-    column = HIGH if way > 0 else LOW
-    higher = heights[HEIGHTS * a + column] - heights[HEIGHTS * b + column]
-    return higher > way * ramp * (node[NODE * a + TRIP] - node[NODE * b + TRIP])
+    higher = nodes[a].high - nodes[b].high if way > 0 else nodes[a].low - nodes[b].low
+    return higher > way * ramp * (nodes[a].trip - nodes[b].trip)
 
 
 @kernel
-def settle(node: Integers, heights: Floats, ramp: float, n: int) -> None:
+def settle(nodes: EchoNode, ramp: float, n: int) -> None:
     """Set the pieces that break first in the subtree of node n, from those of its children."""
-    for way, column in ((1, FIRST_UP), (-1, FIRST_DOWN)):
-        first = n
-        for side in (LEFT, RIGHT):
-            child = node[NODE * n + side]
-            if child != NOTHING and sooner(node, heights, ramp, node[NODE * child + column], first, way):
-                first = node[NODE * child + column]
-        node[NODE * n + column] = first
+    up, down = n, n
+    for child in (nodes[n].left, nodes[n].right):
+        if child != NOTHING:
+            if sooner(nodes, ramp, nodes[child].first_up, up, 1):
+                up = nodes[child].first_up
+            if sooner(nodes, ramp, nodes[child].first_down, down, -1):
+                down = nodes[child].first_down
+    nodes[n].first_up, nodes[n].first_down = up, down
 
 
 @kernel
-def join(node: Integers, heights: Floats, ramp: float, a: int, b: int) -> int:
+def join(nodes: EchoNode, ramp: float, a: int, b: int) -> int:
     """Join two trees and return the root; all phases of tree a must lie before those of tree b."""
     if a == NOTHING:
         return b
     if b == NOTHING:
         return a
-    if node[NODE * a + RANK] > node[NODE * b + RANK]:
-        node[NODE * a + RIGHT] = join(node, heights, ramp, node[NODE * a + RIGHT], b)
-        settle(node, heights, ramp, a)
+    if nodes[a].rank > nodes[b].rank:
+        nodes[a].right = join(nodes, ramp, nodes[a].right, b)
+        settle(nodes, ramp, a)
         return a
-    node[NODE * b + LEFT] = join(node, heights, ramp, a, node[NODE * b + LEFT])
-    settle(node, heights, ramp, b)
+    nodes[b].left = join(nodes, ramp, a, nodes[b].left)
+    settle(nodes, ramp, b)
     return b
 
 
 @kernel
-def part(node: Integers, heights: Floats, ramp: float, n: int, phase: float) -> tuple[int, int]:
+def part(nodes: EchoNode, ramp: float, n: int, phase: float) -> tuple[int, int]:
     """Split tree n and return the roots of two: the pieces that begin before a phase (s), and the others."""
     if n == NOTHING:
         return NOTHING, NOTHING
-    if heights[HEIGHTS * n + PHASE] < phase:
-        before, behind = part(node, heights, ramp, node[NODE * n + RIGHT], phase)
-        node[NODE * n + RIGHT] = before
-        settle(node, heights, ramp, n)
+    if nodes[n].phase < phase:
+        before, behind = part(nodes, ramp, nodes[n].right, phase)
+        nodes[n].right = before
+        settle(nodes, ramp, n)
         return n, behind
-    before, behind = part(node, heights, ramp, node[NODE * n + LEFT], phase)
-    node[NODE * n + LEFT] = behind
-    settle(node, heights, ramp, n)
+    before, behind = part(nodes, ramp, nodes[n].left, phase)
+    nodes[n].left = behind
+    settle(nodes, ramp, n)
     return before, n
 
 
 @kernel
-def without_first(node: Integers, heights: Floats, ramp: float, n: int) -> int:
+def without_first(nodes: EchoNode, ramp: float, n: int) -> int:
     """Remove the first piece from tree n and return the root."""
-    if node[NODE * n + LEFT] == NOTHING:
-        return node[NODE * n + RIGHT]
-    node[NODE * n + LEFT] = without_first(node, heights, ramp, node[NODE * n + LEFT])
-    settle(node, heights, ramp, n)
+    if nodes[n].left == NOTHING:
+        return nodes[n].right
+    nodes[n].left = without_first(nodes, ramp, nodes[n].left)
+    settle(nodes, ramp, n)
     return n
 
 
 @kernel
 def first_of(run: Run, n: int) -> int:
     """Return the first piece in tree n, in order of phase, or NOTHING."""
-    while n != NOTHING and run.node[NODE * n + LEFT] != NOTHING:
-        n = run.node[NODE * n + LEFT]
+    while n != NOTHING and run.echoes[n].left != NOTHING:
+        n = run.echoes[n].left
     return n
 
 
@@ -152,21 +122,21 @@ def room(run: Run, n: int, way: int, limit: float) -> float:
 
     `way` is 1 for slip forwards, -1 for slip backwards; `limit` (Pa) is measured from the reference strength.
     """
-    top = run.heights[HEIGHTS * n + HIGH] if way > 0 else run.heights[HEIGHTS * n + LOW] - 2.0 * run.par.reference
+    top = run.echoes[n].high if way > 0 else run.echoes[n].low - 2.0 * run.par.reference
     return limit - NEARLY * abs(run.par.reference) - top
 
 
 @kernel
 def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
     """Return True if the contact may slip in a direction under the echo of piece n in round trip `trip`."""
-    return way * run.par.ramp * (trip - run.node[NODE * n + TRIP]) > room(run, n, way, limit)
+    return way * run.par.ramp * (trip - run.echoes[n].trip) > room(run, n, way, limit)
 
 
 @kernel
 def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
     """Return True if the contact may slip under any piece of tree n in round trip `trip`, in either direction."""
-    forwards = breaks(run, run.node[NODE * n + FIRST_UP], 1, limit, trip)
-    return forwards or breaks(run, run.node[NODE * n + FIRST_DOWN], -1, limit, trip)
+    forwards = breaks(run, run.echoes[n].first_up, 1, limit, trip)
+    return forwards or breaks(run, run.echoes[n].first_down, -1, limit, trip)
 
 
 @kernel
@@ -175,13 +145,13 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
     if n == NOTHING or not any_breaks(run, n, limit, trip):
         return NOTHING
     while True:
-        left = run.node[NODE * n + LEFT]
+        left = run.echoes[n].left
         if left != NOTHING and any_breaks(run, left, limit, trip):
             n = left
         elif breaks(run, n, 1, limit, trip) or breaks(run, n, -1, limit, trip):
             return n
         else:
-            n = run.node[NODE * n + RIGHT]
+            n = run.echoes[n].right
 
 
 @kernel
@@ -191,11 +161,11 @@ def next_trip(run: Run, n: int, limit: float) -> int:
     if any_breaks(run, n, limit, coming):
         return coming
     way = 1 if run.par.ramp > 0.0 else -1
-    growth, first = abs(run.par.ramp), run.node[NODE * n + (FIRST_UP if way > 0 else FIRST_DOWN)]
+    growth, first = abs(run.par.ramp), run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
         return FOREVER
-    trip = max(run.node[NODE * first + TRIP] + int(trips), coming)
+    trip = max(run.echoes[first].trip + int(trips), coming)
     while not breaks(run, first, way, limit, trip):
         trip += 1
     return trip
@@ -205,15 +175,15 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 
 
 @kernel
-def leave_out_ends(run: Run, real: Floats) -> None:
-    """Restrict run.part, the load along a piece, to places further than `shortest` from its ends if short pieces are lumped.
+def leave_out_ends(run: Run, piece: HistoryPiece) -> None:
+    """Restrict run.part, the echo of a piece, to places further than `shortest` from its ends if short pieces are lumped.
 
     Slip near an end alone would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
     """
-    width = real[at.S_THETA_TO] - real[at.S_THETA_FROM]
+    width = piece.theta_to - piece.theta_from
     share = run.par.shortest / width if run.counts.lumps == 1 else 0.0
     if share >= 0.5:
-        mean = mean_of(run.part, real[at.S_SPEED], real[at.S_BEND], width)
+        mean = mean_of(run.part, piece.speed, piece.bend, width)
         fill(run.part, 0.0)
         run.part[0] = mean
     elif share > 0.0:
@@ -224,18 +194,17 @@ def leave_out_ends(run: Run, real: Floats) -> None:
 @kernel
 def add(run: Run, n: int) -> None:
     """Add piece n to the tree of pieces that the round trip has passed, after all pieces in it."""
-    node, heights = ahead(run.node, NODE * n), ahead(run.heights, HEIGHTS * n)
-    load, rate = ahead(run.stored_load, TERMS * n), ahead(run.stored_rate, TERMS * n)
+    node, piece = run.echoes[n], run.history[n]
+    load, rate = piece.load, piece.rate
     for k in range(TERMS):
         run.part[k] = load[k] - 2.0 * run.par.impedance * rate[k]
-    real = ahead(run.real, REAL * n)
-    leave_out_ends(run, real)
-    heights[PHASE], heights[HIGH], heights[LOW] = real[at.S_THETA_FROM], maximum(run.part), maximum(run.part, -1.0)
-    node[LEFT] = node[RIGHT] = NOTHING
-    node[FIRST_UP] = node[FIRST_DOWN] = n
-    node[TRIP] = run.whole[WHOLE * n + at.S_ROW]
-    node[RANK] = rank(heights[PHASE], node[TRIP])
-    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, n)
+    leave_out_ends(run, piece)
+    node.phase, node.high, node.low = piece.theta_from, maximum(run.part), maximum(run.part, -1.0)
+    node.left = node.right = NOTHING
+    node.first_up = node.first_down = n
+    node.trip = piece.row
+    node.rank = rank(node.phase, node.trip)
+    run.counts.behind = join(run.echoes, run.par.ramp, run.counts.behind, n)
 
 
 @kernel
@@ -249,19 +218,19 @@ def add_new(run: Run) -> None:
 @kernel
 def pass_to(run: Run, n: int) -> None:
     """Move the pieces before piece n to the tree of those that have been passed, and take piece n out of the tree ahead."""
-    phase = run.heights[HEIGHTS * n + PHASE]
-    before, rest = part(run.node, run.heights, run.par.ramp, run.counts.ahead, phase)
-    run.counts.behind = join(run.node, run.heights, run.par.ramp, run.counts.behind, before)
-    run.counts.ahead = without_first(run.node, run.heights, run.par.ramp, rest)
+    phase = run.echoes[n].phase
+    before, rest = part(run.echoes, run.par.ramp, run.counts.ahead, phase)
+    run.counts.behind = join(run.echoes, run.par.ramp, run.counts.behind, before)
+    run.counts.ahead = without_first(run.echoes, run.par.ramp, rest)
     if run.counts.new_from == run.counts.length:
         run.state.new_since = phase
-    run.state.taken_to = run.real[REAL * n + at.S_THETA_TO]
+    run.state.taken_to = run.history[n].theta_to
 
 
 @kernel
 def goes_on(run: Run) -> bool:
     """Return True if the very next piece must be met: the contact slips, or came to rest exactly where the last piece ended."""
-    return run.counts.mode != 0 or run.whole[WHOLE * (run.counts.length - 1) + at.S_MODE] != 0
+    return run.counts.mode != 0 or run.history[run.counts.length - 1].mode != 0
 
 
 @kernel
@@ -281,7 +250,7 @@ def next_echo(run: Run) -> int:
 def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one in which the contact may slip; set `is_locked` if there is none."""
     add_new(run)
-    whole = join(run.node, run.heights, run.par.ramp, run.counts.behind, run.counts.ahead)
+    whole = join(run.echoes, run.par.ramp, run.counts.behind, run.counts.ahead)
     trip = run.counts.row + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
     settled = run.par.ramp == 0.0 and run.counts.moved == 0
     run.counts.is_locked = 1 if trip == FOREVER or settled else 0
@@ -292,7 +261,7 @@ def end_trip(run: Run) -> None:
 
 
 @kernel
-def pays(run: Run) -> bool:
+def worth_building(run: Run) -> bool:
     """Return True if only echoes that break should be met from here on.
 
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
@@ -304,12 +273,12 @@ def pays(run: Run) -> bool:
         return False
     slipping, pieces = 0, run.counts.length - run.counts.row_from
     for n in range(run.counts.row_from, run.counts.length):
-        slipping += 1 if run.whole[WHOLE * n + at.S_MODE] != 0 else 0
+        slipping += 1 if run.history[n].mode != 0 else 0
     return slipping == 0 or (pieces >= MANY and slipping <= pieces // (MANY // 4))
 
 
 @kernel
-def plant(run: Run) -> None:
+def build_queue(run: Run) -> None:
     """Meet only echoes that break from here on, and build the tree from the pieces of the round trip just past."""
     run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
     run.counts.behind = run.counts.ahead = NOTHING
@@ -317,7 +286,7 @@ def plant(run: Run) -> None:
 
 
 @kernel
-def replant(table: Integers, pieces: Integers, past: int) -> None:
+def rebuild_queue(table: Integers, pieces: Integers, past: int) -> None:
     """Build the trees of a resumed run from the given pieces, which are in order of phase.
 
     The first `past` of them are those that the present round trip has passed. `table` comes from `workspace.lend`.

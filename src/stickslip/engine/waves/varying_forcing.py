@@ -10,20 +10,20 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.contact_step.append_segment import xi_at
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.append_segment import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause
-from stickslip.engine.state.workspace import WHOLE, Run
+from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
 """Distance, as a share of a row (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 
 
 @kernel
-def take_part(run: Run) -> None:
-    """Take the part up to the next break of the loading from the present source of load, and add the loading to it."""
+def take_loading(run: Run) -> None:
+    """Cut the piece of load at the next break of the loading, and add the loading to it."""
     begin = run.state.taken
     if begin > 0.0:
         run.counts.arriving = Cause.NO_CAUSE
@@ -48,7 +48,7 @@ def enter_segment(run: Run, theta: float) -> bool:
     while next_change(run) <= theta + tie:
         run.counts.segment += 1
         run.counts.stuck_rows = -1  # the last round trip at rest does not predict the next one
-        jumps = jumps or run.from_jump[run.counts.segment] == 1.0
+        jumps = jumps or run.loading[run.counts.segment].jump == 1.0
     return jumps
 
 
@@ -56,9 +56,9 @@ def enter_segment(run: Run, theta: float) -> bool:
 def next_change(run: Run) -> float:
     """Return the phase (s) in the present row at which the next segment arrives; inf for a later row, -inf for an earlier one."""
     following = run.counts.segment + 1
-    if following >= run.segments or run.from_row[following] > run.counts.row:
+    if following >= run.segments or run.loading[following].row > run.counts.row:
         return math.inf
-    return run.from_offset[following] if run.from_row[following] == run.counts.row else -math.inf
+    return run.loading[following].offset if run.loading[following].row == run.counts.row else -math.inf
 
 
 @kernel
@@ -81,7 +81,7 @@ def add_loading(run: Run) -> None:
     elif row > 0.0 or run.state.theta_from >= 0.5 * run.par.row_time:
         leaped = 0.0
         if row > 0.0 and run.par.reflection == -1.0:
-            leaped = row - 1.0 - run.whole[WHOLE * run.counts.echo_of + at.S_ROW]
+            leaped = row - 1.0 - run.history[run.counts.echo_of].row
         if leaped > 0.0:
             add_inflow(run, leaped, row - 0.5 * (leaped + 1.0), run.counts.row_segment)
         add_inflow(run, 1.0, row, run.counts.segment)
@@ -90,9 +90,9 @@ def add_loading(run: Run) -> None:
 @kernel
 def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
     """Add to a slab's load the inflow of `rows` round trips, with the mean index `mean_row`, at the phases of the piece of load."""
-    since = (mean_row - run.from_row[segment]) * run.par.row_time + (run.state.theta_from - run.from_offset[segment])
-    slope = rows * run.from_slope[segment]
-    run.load[0] += rows * run.from_value[segment] + slope * since
+    since = (mean_row - run.loading[segment].row) * run.par.row_time + (run.state.theta_from - run.loading[segment].offset)
+    slope = rows * run.loading[segment].slope
+    run.load[0] += rows * run.loading[segment].value + slope * since
     run.load[1] += slope * run.state.speed
     run.load[2] += slope * run.state.bend
     if run.par.tone != 0.0:
@@ -134,15 +134,15 @@ def pull_block(run: Run) -> None:
     """Set a block's load: its value at the end of the history, plus what the pull has added to the spring's force since."""
     n = run.counts.length - 1
     if n >= 0:
-        run.load[0] = total(ahead(run.stored_load, TERMS * n))
-        rows = float(run.counts.row - run.whole[WHOLE * n + at.S_ROW] - 1)
+        run.load[0] = total(run.history[n].load)
+        rows = float(run.counts.row - run.history[n].row - 1)
         if rows > 0.0:
             run.load[0] += pulled_in_rows(run, rows)
     segment, pace = run.counts.segment, run.state.speed
-    since = (run.counts.row - run.from_row[segment]) * run.par.row_time
-    since += run.state.theta_from - run.from_offset[segment]
-    slope = run.from_slope[segment]
-    run.load[1] += pace * (run.from_value[segment] + slope * since)
+    since = (run.counts.row - run.loading[segment].row) * run.par.row_time
+    since += run.state.theta_from - run.loading[segment].offset
+    slope = run.loading[segment].slope
+    run.load[1] += pace * (run.loading[segment].value + slope * since)
     run.load[2] += 0.5 * pace * pace * slope
     if run.par.tone != 0.0:
         tone_series(run, run.par.tone, run.counts.row * run.par.row_time + run.state.theta_from)
@@ -155,8 +155,8 @@ def pulled_in_rows(run: Run, rows: float) -> float:
     """Return the force (N) that the pull adds to a block's spring in the given number of rows at rest before the present one."""
     segment, lasting = run.counts.row_segment, rows * run.par.row_time
     middle = (run.counts.row - 0.5 * rows) * run.par.row_time
-    since = (run.counts.row - 0.5 * rows - run.from_row[segment]) * run.par.row_time - run.from_offset[segment]
-    gained = lasting * (run.from_value[segment] + run.from_slope[segment] * since)
+    since = (run.counts.row - 0.5 * rows - run.loading[segment].row) * run.par.row_time - run.loading[segment].offset
+    gained = lasting * (run.loading[segment].value + run.loading[segment].slope * since)
     if run.par.tone != 0.0:
         frequency = run.par.tone_frequency
         swing = math.sin(frequency * middle + run.par.tone_phase)
@@ -176,11 +176,11 @@ def rows_withstood(run: Run, limit: float) -> int:
     """
     segment = run.counts.segment
     following = segment + 1
-    room = run.from_row[following] - run.counts.row - 1.0 if following < run.segments else float(at.NEVER)
-    is_dead = run.from_slope[segment] == 0.0 and run.par.tone == 0.0
+    room = run.loading[following].row - run.counts.row - 1.0 if following < run.segments else float(at.NEVER)
+    is_dead = run.loading[segment].slope == 0.0 and run.par.tone == 0.0
     if run.counts.is_block == 0 and run.par.reflection != -1.0:
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
-    if is_dead and run.from_value[segment] == 0.0:
+    if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
     top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.par.reference - tops(run, -1.0)
     low, high = 0.0, max(room, 0.0)
@@ -210,7 +210,7 @@ def tops(run: Run, sign: float) -> float:
     """Return the largest value of sign * load (Pa or N, minus the reference strength) in the row just past."""
     top = -math.inf
     for n in range(run.counts.row_from, run.counts.length):
-        top = max(top, maximum(ahead(run.stored_load, TERMS * n), sign))
+        top = max(top, maximum(run.history[n].load, sign))
     return top
 
 
@@ -226,8 +226,8 @@ def growth_bound(run: Run, rows: float, sign: float) -> float:
     segment, period, frequency = run.counts.segment, run.par.row_time, run.par.tone_frequency
     begin = run.counts.row * period
     end = begin + (rows + 2.0) * period
-    since = (run.counts.row - run.from_row[segment]) * period - run.from_offset[segment]
-    value, slope = sign * run.from_value[segment], sign * run.from_slope[segment]
+    since = (run.counts.row - run.loading[segment].row) * period - run.loading[segment].offset
+    value, slope = sign * run.loading[segment].value, sign * run.loading[segment].slope
     largest = max(value + slope * since, value + slope * (since + (rows + 2.0) * period), 0.0)
     is_block = run.counts.is_block == 1
     lasting = rows * period if is_block else rows

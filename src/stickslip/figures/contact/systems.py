@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_slab
 from stickslip.figures.panels import letter, panels
 from stickslip.figures.style import BLUE, GREY, INK, PALE, VERMILLION, quantity, styled
 from stickslip.foundation.quantities import quantities_of
@@ -23,10 +23,9 @@ ARROW: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "linew
 
 def data(block: Problem, slab: Problem) -> xr.Dataset:
     """Return the constants of both systems, and the displacement (m) of the slab at t = 0 across its thickness, all in SI."""
-    assert isinstance(block.body, SpringBlock)
-    assert isinstance(slab.body, ElasticSlab)
-    x = np.linspace(0.0, slab.body.thickness, 21)
-    sheared = slab.initial_slip + slab.load / slab.body.shear_modulus * x
+    inside = as_slab(slab.body)
+    x = np.linspace(0.0, inside.thickness, 21)
+    sheared = slab.initial_slip + slab.load / inside.shear_modulus * x
     contents = {"initial_displacement": quantity("x", sheared, "displacement", "u", "m")}
     for prefix, body in (("block", block.body), ("slab", slab.body)):
         for name, declared in quantities_of(type(body)).items():

@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.bodies import ElasticSlab
 from stickslip.figures.panels import letter, panels, zero_line
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled
 
@@ -34,8 +33,8 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
             time, values = solution.curve(row, 0.0, ends[name])
             contents[f"{name}_{row}"] = curve_quantity(along, values, row, solution.problem.load_unit)
         contents[along] = curve_quantity(along, time, "time")
-        if isinstance(body, ElasticSlab):
-            contents[f"{name}_two_way_time"] = quantity((), body.two_way_time, "two-way travel time 2h/c", "R", "s")
+        if body.has_waves:
+            contents[f"{name}_two_way_time"] = quantity((), body.round_trip_time, "two-way travel time 2h/c", "R", "s")
     shown_as = [(titles or {}).get(name, name) for name in solutions]
     return xr.Dataset(contents, attrs={"title": "Runs side by side", "systems": list(solutions), "system_titles": shown_as})
 

@@ -9,7 +9,6 @@ import xarray as xr
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from stickslip.bodies import ElasticSlab
 from stickslip.figures.panels import letter, sheet
 from stickslip.figures.runs.slab_panels import choose_interval
 from stickslip.figures.style import (
@@ -72,7 +71,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))
-    unit = "J/m²" if isinstance(readings.problem.body, ElasticSlab) else "J"
+    unit = "J/m²" if readings.problem.body.has_waves else "J"
     parts = {name: found[name] - found[name][0] for name in ("radiated", "damped", "heat")}
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     work = found["work"] - found["work"][0]

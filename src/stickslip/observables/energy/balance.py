@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_slab
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.quadrature import Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
@@ -77,7 +77,7 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
     since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
-    unit = "J m-2" if isinstance(history.problem.body, ElasticSlab) else "J"
+    unit = history.problem.body.energy_unit
     variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
     return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
 
@@ -88,15 +88,14 @@ def event_energies(history: History, first: Moments, last: Moments) -> dict[str,
     The keys are the columns of `trajectory.tables.ENERGY_COLUMNS`. The energies are integrated over
     each event alone, so their digits do not depend on the run before it.
     """
-    parts = (_slab_events if isinstance(history.problem.body, ElasticSlab) else _block_events)(history, first, last)
+    parts = (_slab_events if history.problem.body.has_waves else _block_events)(history, first, last)
     parts["heat"] = between(history, first, last, _heating(history))
     parts["balance"] = parts["released"] + parts["work"] - parts["heat"] - parts["damped"]
     return parts
 
 
 def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
-    body = history.problem.body
-    assert isinstance(body, ElasticSlab)
+    body = as_slab(history.problem.body)
     waves = Waves(history, body)
     spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
     moving = 0.5 * body.contact_mass * (history.rate(first) ** 2 - history.rate(last) ** 2)
@@ -111,12 +110,11 @@ def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, F
 def _block_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
-    assert isinstance(body, SpringBlock)
     force, left = history.excess(first), history.excess(last)
     spring = _stretching(history, left, force)
     pulling = between(history, first, last, _pulling(history))
     return {
-        "released": spring + 0.5 * body.mass * (history.rate(first) ** 2 - history.rate(last) ** 2),
+        "released": spring + 0.5 * body.inertia * (history.rate(first) ** 2 - history.rate(last) ** 2),
         "work": pulling,
         "damped": between(history, first, last, _damping(history)),
         "trapped": np.zeros(len(force)),
@@ -126,10 +124,10 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
 def trapped_note(solution: Solution) -> str:
     """Return one line on the waves that travel in the slab at the end of a run; empty for a block, which has none."""
     history, body = solution.history, solution.problem.body
-    if not isinstance(body, ElasticSlab):
+    if not body.has_waves:
         return ""
     end = epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
-    energy = Waves(history, body).trapped(end)
+    energy = Waves(history, as_slab(body)).trapped(end)
     holds = solution.problem.strength**2 / (2.0 * body.stiffness)
     share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
     return f"{energy:.6g} J/m2 in waves at the end{share}"
@@ -146,12 +144,11 @@ def energies(history: History, at: Moments) -> dict[str, Floats]:
     Work, heat, damped and radiated count from the start of the run; stored and elastic are up to a constant; kinetic and trapped
     are absolute. All are taken at exactly the same moments, so that their differences balance late in a run too.
     """
-    return _slab(history, at) if isinstance(history.problem.body, ElasticSlab) else _block(history, at)
+    return _slab(history, at) if history.problem.body.has_waves else _block(history, at)
 
 
 def _slab(history: History, at: Moments) -> dict[str, Floats]:
-    body = history.problem.body
-    assert isinstance(body, ElasticSlab)
+    body = as_slab(history.problem.body)
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
     contact = 0.5 * body.contact_mass * history.rate(at) ** 2
     stored, moving = (np.array([of(epoch) for epoch in now]) + contact for of in (waves.stored, partial(kinetic, waves)))
@@ -170,15 +167,14 @@ def _slab(history: History, at: Moments) -> dict[str, Floats]:
 def _block(history: History, at: Moments) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
-    assert isinstance(body, SpringBlock)
     force, rate = history.excess(at), history.rate(at)
     spring = _stretching(history, np.full(len(force), problem.excess), force)
     slipping = np.flatnonzero(history.store.mode)
     return {
         "work": up_to(history, at, _pulling(history)) + _at_rest(history, at),
-        "stored": spring + 0.5 * body.mass * rate**2,
+        "stored": spring + 0.5 * body.inertia * rate**2,
         "elastic": spring,
-        "kinetic": 0.5 * body.mass * rate**2,
+        "kinetic": 0.5 * body.inertia * rate**2,
         "heat": heat(history, at),
         "damped": up_to(history, at, _damping(history), slipping),
         "radiated": np.zeros(len(force)),
@@ -212,7 +208,6 @@ def _at_rest(history: History, at: Moments) -> Floats:
 def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     """Return the energy (J) that the block's spring gains from one force to another (both minus the reference)."""
     body = history.problem.body
-    assert isinstance(body, SpringBlock)
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
@@ -243,6 +238,5 @@ def _heating(history: History) -> Integrand:
 def _damping(history: History) -> Integrand:
     """Return the power that the block's damping dissipates as a function of moments, W."""
     body = history.problem.body
-    assert isinstance(body, SpringBlock)
     damping = body.damping
     return lambda at: damping * history.rate(at) ** 2

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import as_slab
 from stickslip.observables.energy.balance import epochs, event_energies
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.energy.pulses import Pulses
@@ -78,14 +78,13 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 
 def _energies(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
-    extra = (_of_slab if isinstance(history.problem.body, ElasticSlab) else _of_block)(history, begin, end)
+    extra = (_of_slab if history.problem.body.has_waves else _of_block)(history, begin, end)
     made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
     return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
 
 
 def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
-    body = history.problem.body
-    assert isinstance(body, ElasticSlab)
+    body = as_slab(history.problem.body)
     waves, radiation = Waves(history, body), Radiation(history, body)
     first, last = epochs(history, begin), epochs(history, end)
     before, after = (np.array([kinetic(waves, epoch) for epoch in moments]) for moments in (first, last))
@@ -98,10 +97,8 @@ def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats
 
 
 def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
-    body = history.problem.body
-    assert not isinstance(body, ElasticSlab)
     nothing = np.zeros(len(begin.piece))
-    moving = 0.5 * body.mass * (history.rate(end) ** 2 - history.rate(begin) ** 2)
+    moving = 0.5 * history.problem.body.inertia * (history.rate(end) ** 2 - history.rate(begin) ** 2)
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 

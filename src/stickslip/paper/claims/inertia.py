@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import YEAR
-from stickslip.bodies import ElasticSlab, SpringBlock
+from stickslip.bodies import as_block, as_slab
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
@@ -26,7 +26,7 @@ CONTACT_MASSES = (1e6, 1e5, 1e4)
 def concentrated_mass(runs: Runs) -> Verdict:
     """Measure how without mass the block's rise becomes a jump, and with mass on the slab's contact its jumps vanish."""
     case = problem("fig6-slab")
-    slab = typed(case.body, ElasticSlab)
+    slab = as_slab(case.body)
     jump = runs.case("fig6-slab").shocks.rate_after.iloc[0]
     blocks = {f"block with mass × {factor:g}": runs(*_lightened(factor)) for factor in MASS_FACTORS}
     heavy = {mass: replace(case, body=replace(slab, contact_mass=mass)) for mass in CONTACT_MASSES}
@@ -60,8 +60,8 @@ def _lightened(factor: float) -> tuple[Problem, float]:
 
     The duration is 120 times that in which a small slip rate grows by a factor e without the spring; it ends after the peak.
     """
-    case, slab = problem("fig6-block-reconstructed"), typed(problem("fig6-slab").body, ElasticSlab)
-    body, law = typed(case.body, SpringBlock), typed(case.friction, HyperbolicRate)
+    case, slab = problem("fig6-block-reconstructed"), as_slab(problem("fig6-slab").body)
+    body, law = as_block(case.body), typed(case.friction, HyperbolicRate)
     mass, damping = body.mass * factor, slab.impedance * (body.normal_force / slab.normal_stress)
     growth = (body.normal_force * (law.static - law.dynamic) * law.alpha - damping) / mass
     return replace(case, body=replace(body, mass=mass, damping=damping)), 120.0 / growth
@@ -136,4 +136,4 @@ def reloading_time(solution: Solution, at: float) -> float:
     """
     case = solution.problem
     strength = case.normal * float(case.friction.static_coefficient(float(solution.slip(at))))
-    return float(strength - solution.load(at)) / (typed(case.body, SpringBlock).stiffness * case.first_pull_rate)
+    return float(strength - solution.load(at)) / (case.body.stiffness * case.first_pull_rate)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import as_slab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
@@ -72,7 +72,7 @@ def slab_jumps(runs: Runs) -> Verdict:
 def irregular_regime(runs: Runs) -> Verdict:
     """Measure the share of all change of slip rate that happens in shocks, over alpha, and the shocks of the block."""
     slab, block = problem("fig6-slab"), problem("fig6-block-reconstructed")
-    critical, duration = _critical(slab), 1.5 * typed(slab.body, ElasticSlab).two_way_time
+    critical, duration = _critical(slab), 1.5 * slab.round_trip_time
     shares, block_shocks = {}, 0
     for alpha in (critical + 1e-6, *(factor * critical for factor in SCAN)):
         shares[f"α/αc = {alpha / critical:.6g}"] = shock_share(runs(parameter(slab, "alpha").put(alpha), duration))
@@ -113,7 +113,7 @@ def _critical(case: Problem) -> float:
 def just_above_critical(runs: Runs) -> Verdict:
     """Measure the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
     case = problem("fig7-slab-critical")
-    back = typed(case.body, ElasticSlab).two_way_time
+    back = case.round_trip_time
     event = runs(case, 2.0 * back)
     shocks, later = event.shocks, runs(case, SECOND_EVENT_BY).events
     at_ends = len(shocks) == 2 and shocks.time.iloc[0] == 0.0 and abs(shocks.time.iloc[1] - back) < 1e-9 * back
@@ -139,7 +139,7 @@ def just_above_critical(runs: Runs) -> Verdict:
 def like_coulomb(runs: Runs) -> Verdict:
     """Measure the slip rate divided by that under Coulomb's law, at several alpha."""
     slab = problem("fig6-slab")
-    law, back = typed(slab.friction, HyperbolicRate), typed(slab.body, ElasticSlab).two_way_time
+    law, back = typed(slab.friction, HyperbolicRate), slab.round_trip_time
     coulomb = runs(replace(slab, friction=Coulomb(law.static, law.dynamic)), 2.0 * back)
     rate = coulomb.slip_rate(0.5 * back)
     ratios = {}
@@ -167,7 +167,7 @@ def load_before_the_echo(runs: Runs) -> Verdict:
     worst, beyond = {"to h/c": 0.0, "from h/c to 2h/c": 0.0}, {}
     for name in ("fig5-slab-reconstructed", "fig6-slab", "fig7-slab-critical"):
         solution = runs.case(name)
-        body = typed(solution.problem.body, ElasticSlab)
+        body = as_slab(solution.problem.body)
         middle, back = body.thickness / body.wave_speed, body.two_way_time
         for part, start, end in (("to h/c", 0.0, middle), ("from h/c to 2h/c", middle, back)):
             time = np.linspace(start, end, 400)
@@ -190,4 +190,4 @@ def load_before_the_echo(runs: Runs) -> Verdict:
 
 def _formula(case: Problem, time: np.ndarray) -> np.ndarray:
     """Return the paper's formula for the load (Pa) at times (s): G (V t + D0 - u0) / h."""
-    return case.load + typed(case.body, ElasticSlab).stiffness * case.first_pull_rate * time
+    return case.load + case.body.stiffness * case.first_pull_rate * time

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from stickslip import YEAR
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import as_slab
 from stickslip.contact.roots import sign_change
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.friction import HyperbolicRate
@@ -26,7 +26,7 @@ SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from 
 def critical_value(_: Runs) -> Verdict:
     """Measure the critical alpha of the contact analysis against the formula, and the regime on both sides of it."""
     slab = problem("fig6-slab")
-    law, body = typed(slab.friction, HyperbolicRate), typed(slab.body, ElasticSlab)
+    law, body = typed(slab.friction, HyperbolicRate), as_slab(slab.body)
     found = uniqueness(slab).critical_value or math.nan
     formula = math.sqrt(body.density * body.shear_modulus) / (body.normal_stress * (law.static - law.dynamic))
     below, above = (uniqueness(parameter(slab, "alpha").put(found * factor)) for factor in (1 - 1e-6, 1 + 1e-6))

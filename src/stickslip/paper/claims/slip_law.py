@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab, SpringBlock
 from stickslip.friction import SinusoidalSlip
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
@@ -46,7 +45,7 @@ def block_slips_once(runs: Runs) -> Verdict:
         "; ".join(r for r in solutions if holds[r]),
         why,
         ("steepest weakening S |μ'|, as printed", _steepest(printed), "N/m"),
-        ("stiffness K, as printed", typed(printed.body, SpringBlock).stiffness, "N/m"),
+        ("stiffness K, as printed", printed.body.stiffness, "N/m"),
         *each("events", {r: len(s.events) for r, s in solutions.items()}),
         *each("share of the load released", released),
         *each("slip", {r: s.catalogue(0.0).slip.sum() for r, s in solutions.items()}, "m"),
@@ -97,7 +96,7 @@ def slab_pulses(runs: Runs) -> Verdict:
 def echo_arrests(runs: Runs) -> Verdict:
     """Measure the end of all slip compared with 2h/c, and the rest after it."""
     solutions = {reading: runs.case(name) for reading, name in READINGS.items()}
-    back = typed(solutions["as printed"].problem.body, ElasticSlab).two_way_time
+    back = solutions["as printed"].problem.round_trip_time
     ends = {r: float(s.catalogue(0.0).end.iloc[0]) for r, s in solutions.items()}
     after = {r: _largest_after(s, ends[r]) for r, s in solutions.items()}
     why = (
@@ -125,11 +124,11 @@ def _largest_after(solution: Solution, end: float) -> float:
 def what_sets_the_pulses(runs: Runs) -> Verdict:
     """Measure the number of pulses at the same thickness and wave speed, for other initial loads and other wavenumbers."""
     start = problem("fig5-slab-reconstructed")
-    body, omega = typed(start.body, ElasticSlab), typed(start.friction, SinusoidalSlip).wavenumber
+    body, omega = start.body, typed(start.friction, SinusoidalSlip).wavenumber
     larger = {more: replace(start, initial_excess=start.excess + body.stiffness * more) for more in (0.0, 2e-3, 5e-3, 2e-2)}
     variants = {f"D0 larger by {1e3 * more:g} mm": case for more, case in larger.items()}
     variants |= {f"ω = {omega * factor:g} /m": _with_wavenumber(start, omega * factor) for factor in (0.5, 2.0)}
-    counts = {name: int(runs(case, body.two_way_time).events.pulses.sum()) for name, case in variants.items()}
+    counts = {name: int(runs(case, body.round_trip_time).events.pulses.sum()) for name, case in variants.items()}
     period = pulse_period(start)
     why = (
         "At one thickness and wave speed the number of pulses changes with the initial excess and with the law. Under a "
@@ -142,7 +141,7 @@ def what_sets_the_pulses(runs: Runs) -> Verdict:
         why,
         *each("pulses", counts),
         ("pulse period under the initial load", period, "s"),
-        ("2h/c over that period", body.two_way_time / period, ""),
+        ("2h/c over that period", body.round_trip_time / period, ""),
     )
 
 
@@ -159,7 +158,7 @@ def pulse_period(case: Problem) -> float:
 
     It is 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2)).
     """
-    body, law = typed(case.body, ElasticSlab), typed(case.friction, SinusoidalSlip)
+    body, law = case.body, typed(case.friction, SinusoidalSlip)
     above = (case.load - law.mean * case.normal) ** 2 - (law.amplitude * case.normal) ** 2
     return 2.0 * math.pi * body.impedance / (law.wavenumber * math.sqrt(above))
 
@@ -186,7 +185,7 @@ def well_posed(runs: Runs) -> Verdict:
 
 def _response(runs: Runs, case: Problem, share: float) -> float:
     """Return the change of slip at 2h/c per change of the initial load (m/Pa); the load changes by `share` of its excess."""
-    end = typed(case.body, ElasticSlab).two_way_time
+    end = case.round_trip_time
     changed = replace(case, initial_excess=case.excess * (1.0 + share), initial_load=None)
     step = runs(changed, end).slip(end) - runs(case, end).slip(end)
     return float(step) / (case.excess * share)
@@ -197,7 +196,7 @@ def close_to_instability(_: Runs) -> Verdict:
     """Measure the distance from the initial slip to the slip at which friction weakens as fast as the slab unloads."""
     cases = {reading: problem(name) for reading, name in READINGS.items()}
     missing = {r: unstable_from(case) - case.initial_slip for r, case in cases.items()}
-    ratio = {r: _weakening(case) / typed(case.body, ElasticSlab).stiffness for r, case in cases.items()}
+    ratio = {r: _weakening(case) / case.body.stiffness for r, case in cases.items()}
     printed = missing["as printed"]
     close = abs(printed) < 0.01 * cases["as printed"].initial_slip
     outcome = Outcome.PRINTED if close and printed < 0.0 else Outcome.QUALIFIED if close else Outcome.NOT
@@ -219,7 +218,7 @@ def close_to_instability(_: Runs) -> Verdict:
 
 def unstable_from(case: Problem) -> float:
     """Return the slip (m) after the first peak of friction at which S |mu'| = G/h."""
-    body, law = typed(case.body, ElasticSlab), typed(case.friction, SinusoidalSlip)
+    body, law = case.body, typed(case.friction, SinusoidalSlip)
     return (math.pi / 2.0 + math.asin(body.stiffness / _steepest(case))) / law.wavenumber
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 
-from stickslip.bodies import ElasticSlab
 from stickslip.friction import HyperbolicRate
 from stickslip.problem.problem import Problem
 
@@ -17,9 +16,8 @@ def _coefficients(problem: Problem, excess: float) -> tuple[float, float, float]
     """Return alpha Z, minus the linear coefficient, and the discriminant of the quadratic."""
     law, body = problem.friction, problem.body
     assert isinstance(law, HyperbolicRate)
-    assert isinstance(body, ElasticSlab)
-    square = law.alpha * body.impedance
-    linear = law.alpha * problem.normal * (law.static - law.dynamic) - body.impedance + law.alpha * excess
+    square = law.alpha * body.damping
+    linear = law.alpha * problem.normal * (law.static - law.dynamic) - body.damping + law.alpha * excess
     return square, linear, linear**2 + 4.0 * square * excess
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 
@@ -44,8 +43,7 @@ class Summary:
 
     def unit_for(self, problem: Problem) -> str:
         """Return the unit for the body of a problem."""
-        energy = "J m-2" if isinstance(problem.body, ElasticSlab) else "J"
-        return {"load": problem.load_unit, "energy": energy}.get(self.unit, self.unit)
+        return {"load": problem.load_unit, "energy": problem.body.energy_unit}.get(self.unit, self.unit)
 
     def value(self, solution: Solution) -> float:
         """Return the quantity of a solution."""

@@ -9,11 +9,14 @@ slip rate, w the state, and q the slip since the start of the step. A step lasts
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import ahead, call_guards, call_state_value, call_value, floats_in, kernel
-from stickslip.engine.contact_step.contact_equation import constants_of
+from stickslip.engine.codegen.compiler import ahead, call_guards, floats_in, kernel
+from stickslip.engine.codegen.records import record_at
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.series.polynomial import evaluate
 from stickslip.engine.series.radau_nodes import (
     DERIVATIVE,
@@ -26,15 +29,9 @@ from stickslip.engine.series.radau_nodes import (
     STAGES,
     VALUE_IN_MIDDLE,
 )
-from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.layout import TERMS, Between, Floats
 from stickslip.engine.state.workspace import Run
 
-MU, BY_RATE, BY_SLIP, BY_STATE, CHANGE, CHANGE_BY_RATE, CHANGE_BY_SLIP, CHANGE_BY_STATE = range(8)
-"""Places in run.value after `contact_at`: friction coefficient minus the reference one with its derivatives, and dw/dt (1/s times
-the unit of the state) with its own."""
-RATE, ACCELERATION, WALKED, STATE, EVOLVED = range(5)
-"""Places in a row of run.matrix after `look_between`: slip rate (m/s), its derivative and integral over the step, state and its
-derivative."""
 STRIDE = 1e-4
 """Share of the way between two places (1) over which the slope of a guard's argument is taken."""
 CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
@@ -47,22 +44,8 @@ ITERATIONS = 40
 """Largest number of Newton iterations (1) before the step counts as unsolved."""
 NEWTON_ROUNDING = 1e-15
 """Rounding of the load (1), relative to its terms, as Newton's method meets it."""
-
-
-@kernel
-def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
-    """Write friction and the change of the state, with their derivatives, into run.value (see MU ... CHANGE_BY_STATE)."""
-    piece = run.counts.piece
-    constants, slip = constants_of(run, piece), law_slip + run.slip_shift[piece]
-    if run.counts.has_state == 1:
-        call_state_value(run.state_at[piece], constants, slip, rate, state, run.value)
-    else:
-        below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
-        call_value(run.value_at[piece], constants, slip, rate - below, run.value)
-        run.value[MU] += run.value[BY_RATE] * below
-        for k in range(BY_STATE, CHANGE_BY_STATE + 1):
-            run.value[k] = 0.0
-    run.value[MU] += run.offset[piece]
+between_at: Any = record_at(Between)
+"""Function for compiled code that returns the `Between` at a pointer."""
 
 
 @kernel
@@ -78,12 +61,12 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
     s = guess if low < guess < high else 0.5 * high
     for _ in range(200):
         contact_at(run, run.state.law_slip, s, run.state.state_now)
-        error = impedance * s + normal * run.value[MU] - load
+        error = impedance * s + normal * run.value.mu - load
         if error > 0.0:
             high = s
         else:
             low = s
-        step = s - error / (impedance + normal * run.value[BY_RATE])
+        step = s - error / (impedance + normal * run.value.by_rate)
         if not low < step < high:
             step = math.sqrt(low * high) if low > 0.0 else 1e-3 * high
         if abs(step - s) <= 1e-15 * abs(s) or high <= low:
@@ -111,21 +94,21 @@ def assemble(run: Run, h: float, force: float) -> None:
             evolved += DERIVATIVE[i, j] * w[j]
         contact_at(run, run.state.law_slip + chi * walked, v[i], w[i])
         value = run.value
-        resisted = par.impedance * v[i] + par.normal * value[MU] + par.stiffness * h * walked
-        by_walk = par.stiffness * h + par.normal * value[BY_SLIP] * chi
+        resisted = par.impedance * v[i] + par.normal * value.mu + par.stiffness * h * walked
+        by_walk = par.stiffness * h + par.normal * value.by_slip * chi
         for j in range(1, POINTS):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
-        row[i - 1] += par.impedance + par.normal * value[BY_RATE] if moving else 1.0
+        row[i - 1] += par.impedance + par.normal * value.by_rate if moving else 1.0
         row[size] = evaluate(run.seen, POINT[i]) - force - resisted - mass * change if moving else 0.0
         if remembers:
             for j in range(1, POINTS):
                 row[STAGES + j - 1] = 0.0
-                other[j - 1] = -h * value[CHANGE_BY_SLIP] * chi * INTEGRAL[i, j] if moving else 0.0
+                other[j - 1] = -h * value.change_by_slip * chi * INTEGRAL[i, j] if moving else 0.0
                 other[STAGES + j - 1] = DERIVATIVE[i, j]
-            row[STAGES + i - 1] = par.normal * value[BY_STATE] if moving else 0.0
-            other[i - 1] -= h * value[CHANGE_BY_RATE]
-            other[STAGES + i - 1] -= h * value[CHANGE_BY_STATE]
-            other[size] = h * value[CHANGE] - evolved
+            row[STAGES + i - 1] = par.normal * value.by_state if moving else 0.0
+            other[i - 1] -= h * value.change_by_rate
+            other[STAGES + i - 1] -= h * value.change_by_state
+            other[size] = h * value.change - evolved
 
 
 @kernel
@@ -189,7 +172,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
             return math.inf
     if rounding > 0.0:
         # run.value is still that of the last stage.
-        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value[BY_RATE]), 0.0)
+        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value.by_rate), 0.0)
     return max(moved / fastest, evolved / farthest)
 
 
@@ -224,11 +207,14 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
 
 
 @kernel
-def look_between(run: Run) -> None:
-    """Put slip rate and state halfway between the points, with derivatives and integral, into rows of run.matrix.
+def between(run: Run, i: int) -> Between:
+    """Return the record of the i-th place of `look_between`: it lies in run.matrix, which is free between Newton's iterations."""
+    return between_at(ahead(run.matrix, TERMS * i))
 
-    Derivatives (of rate and state) and integral (of the rate) are with respect to the place in the step, from 0 to 1.
-    """
+
+@kernel
+def look_between(run: Run) -> None:
+    """Put slip rate and state halfway between the points, with derivatives and integral, into the records `between`."""
     v, w, remembers = run.stage_rate, run.stage_state, run.counts.has_state == 1
     for i in range(STAGES):
         rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -240,16 +226,16 @@ def look_between(run: Run) -> None:
             for j in range(POINTS):
                 state += VALUE_IN_MIDDLE[i, j] * w[j]
                 evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
-        row = ahead(run.matrix, TERMS * i)
-        row[RATE], row[ACCELERATION], row[WALKED], row[STATE], row[EVOLVED] = rate, acceleration, walked, state, evolved
+        row = between(run, i)
+        row.rate, row.acceleration, row.walked, row.state, row.evolved = rate, acceleration, walked, state, evolved
 
 
 @kernel
 def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
     """Evaluate the contact at the i-th place of `look_between`, with all arguments larger by a relative nudge (1)."""
-    row = ahead(run.matrix, TERMS * i)
-    slip = run.state.law_slip + run.k.chi * h * row[WALKED]
-    contact_at(run, slip * (1.0 + nudge), row[RATE] * (1.0 + nudge), row[STATE] * (1.0 + nudge))
+    row = between(run, i)
+    slip = run.state.law_slip + run.k.chi * h * row.walked
+    contact_at(run, slip * (1.0 + nudge), row.rate * (1.0 + nudge), row.state * (1.0 + nudge))
 
 
 @kernel
@@ -258,8 +244,8 @@ def yielding(run: Run, h: float) -> tuple[float, float]:
 
     What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
-    resistance = abs(run.par.impedance + run.par.normal * run.value[BY_RATE]) + STAGES * run.par.inertia / h
-    return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value[CHANGE_BY_STATE]))
+    resistance = abs(run.par.impedance + run.par.normal * run.value.by_rate) + STAGES * run.par.inertia / h
+    return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value.change_by_state))
 
 
 @kernel
@@ -271,13 +257,13 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
     par, value = run.par, run.value
     missed, missed_state = 0.0, 0.0
     for i in range(STAGES):
-        middle = ahead(run.matrix, TERMS * i)
+        middle = between(run, i)
         contact_between(run, i, h, 0.0)
         by_load, by_change = yielding(run, h)
-        resisted = par.impedance * middle[RATE] + par.normal * value[MU] + par.stiffness * h * middle[WALKED]
-        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par.inertia / h * middle[ACCELERATION]
+        resisted = par.impedance * middle.rate + par.normal * value.mu + par.stiffness * h * middle.walked
+        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par.inertia / h * middle.acceleration
         missed = larger(missed, abs(missing) * by_load)
-        missed_state = larger(missed_state, abs(value[CHANGE] - middle[EVOLVED] / h) * by_change)
+        missed_state = larger(missed_state, abs(value.change - middle.evolved / h) * by_change)
     return missed, missed_state if run.counts.has_state == 1 else 0.0
 
 
@@ -285,8 +271,8 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
 def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
     """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
     piece = run.counts.piece
-    slip = run.state.law_slip + walked + run.slip_shift[piece]
-    call_guards(run.guards_at[piece], constants_of(run, piece), slip, rate, state, out)
+    slip = run.state.law_slip + walked + run.law[piece].slip_shift
+    call_guards(run.law[piece].guards_at, constants_of(run, piece), slip, rate, state, out)
 
 
 @kernel
@@ -303,9 +289,8 @@ def follow_step(run: Run, h: float, way: Floats) -> None:
         here = ahead(way, 6 * point)
         here[0], here[1], here[2] = chi * walked, run.stage_rate[point], run.stage_state[point]
     for i in range(STAGES):
-        row = ahead(run.matrix, TERMS * i)
-        between = ahead(way, 6 * i + 3)
-        between[0], between[1], between[2] = chi * row[WALKED], row[RATE], row[STATE]
+        row, middle = between(run, i), ahead(way, 6 * i + 3)
+        middle[0], middle[1], middle[2] = chi * row.walked, row.rate, row.state
 
 
 @kernel
@@ -325,7 +310,7 @@ def stays_in_sight(run: Run, h: float) -> float:
     movement in that direction counts. A narrow part may lie between two places: there its argument goes up and down again, which
     its slopes at both of them show.
     """
-    n = run.guard_count[run.counts.piece]
+    n = run.law[run.counts.piece].guard_count
     if n == 0:
         return 0.0
     room, used = np.empty(3 * (2 * POINTS - 1) + 2 * n * PLACES_ON_CHORD), np.zeros(n)
@@ -358,12 +343,12 @@ def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
     lost, lost_state = 0.0, 0.0
     for i in range(STAGES):
         contact_between(run, i, h, 0.0)
-        friction, change = run.value[MU], run.value[CHANGE]
+        friction, change = run.value.mu, run.value.change
         by_load, by_change = yielding(run, h)
         for nudge in (-NUDGE, NUDGE):
             contact_between(run, i, h, nudge)
-            lost = max(lost, abs(run.value[MU] - friction) * run.par.normal * by_load)
-            lost_state = max(lost_state, abs(run.value[CHANGE] - change) * by_change)
+            lost = max(lost, abs(run.value.mu - friction) * run.par.normal * by_load)
+            lost_state = max(lost_state, abs(run.value.change - change) * by_change)
     return lost, lost_state
 
 

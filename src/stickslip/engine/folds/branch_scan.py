@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact_step.contact_equation import friction_of, piece_at
-from stickslip.engine.state.layout import Floats, Integers
-from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.contact.contact_equation import friction_of, piece_at
+from stickslip.engine.state.layout import Branch, Floats, Integers
+from stickslip.engine.state.workspace import Run, borrow, branches_in
 
 FLAT = 1e-11
 """Slope of g, relative to Z (1), up to which g counts as flat and not as rising."""
@@ -22,8 +22,6 @@ BETWEEN = 16
 """Number of parts (1) into which a step of the scan is divided if g' may touch zero near it."""
 FIRST_PANEL = 1e5
 """End of the first panel of an area, in units of the slowest rate scanned: a thousandth of the law's slowest scale."""
-RATE_FROM, RATE_TO, LEVEL_FROM, LEVEL_TO, STEEPNESS = range(5)
-"""Rows of the table that a scan fills: ends of branches (m/s), g there (Pa, minus the reference), and g' along the scan."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """Gauss's rule on [-1, 1] for the panels of an area."""
 
@@ -35,42 +33,57 @@ class Contact(NamedTuple):
     piece: int  # piece of the law that holds there, if its knots are in slip
     law_slip: float  # m, minus its initial value
     scan: Floats  # m/s, ascending
-    table: Floats  # (5, rates of the scan), rows RATE_FROM to STEEPNESS
+    steepness: Floats  # Pa s/m: g' at each slip rate of the scan, minus the slope that counts as flat
+    found: Branch  # the branches that the scan finds, with room for as many as it has slip rates; only their ends are set
 
 
-def new_branches(scan: Floats) -> Floats:
-    """Return an empty table of branches, with a column for each slip rate of a scan."""
-    return np.zeros((5, len(scan)))
+class Scan(NamedTuple):
+    """Hold the memory of a scan, which callers keep between scans."""
+
+    rates: Floats  # m/s, ascending
+    steepness: Floats  # (rates,)
+    found: Floats  # table of Branch, with a row for each rate
+
+
+def new_scan(rates: Floats) -> Scan:
+    """Return the memory of a scan at these slip rates (m/s, ascending)."""
+    return Scan(rates, np.zeros(len(rates)), Branch.table(len(rates)))
+
+
+@kernel
+def contact_of(run: Run, piece: int, law_slip: float, scan: Scan) -> Contact:
+    """Return the contact of a run at a law slip (m, minus its initial value), under a piece of the law."""
+    return Contact(run, piece, law_slip, scan.rates, scan.steepness, branches_in(scan.found))
 
 
 @kernel
 def friction_there(contact: Contact, rate: float) -> None:
-    """Write S (mu - mu_reference) at a slip rate, its derivatives and mu - mu_reference into run.value, as `friction_of` does."""
+    """Write S (mu - mu_reference) at a slip rate, its derivatives and mu - mu_reference into run.friction."""
     run = contact.run
     piece = piece_at(run, rate) if run.counts.knots_in_rate == 1 else contact.piece
-    friction_of(run, piece, contact.law_slip, rate, run.value)
+    friction_of(run, piece, contact.law_slip, rate)
 
 
 @kernel
 def level_at(contact: Contact, rate: float) -> float:
-    """Return g (Pa, minus the reference strength) at a slip rate >= 0, where 0 means 0+, and leave g' in run.value[1]."""
+    """Return g (Pa, minus the reference strength) at a slip rate >= 0, where 0 means 0+, and leave g' in run.friction.by_rate."""
     friction_there(contact, rate)
-    contact.run.value[1] += contact.run.par.impedance
-    return contact.run.par.impedance * rate + contact.run.value[0]
+    contact.run.friction.by_rate += contact.run.par.impedance
+    return contact.run.par.impedance * rate + contact.run.friction.stress
 
 
 @kernel
 def strength_at(contact: Contact) -> float:
     """Return the static strength (Pa), minus the reference strength."""
     friction_there(contact, 0.0)
-    return contact.run.par.normal * (contact.run.value[3] + contact.run.par.static_excess)
+    return contact.run.par.normal * (contact.run.friction.coefficient + contact.run.par.static_excess)
 
 
 @kernel
 def steepness(contact: Contact, rate: float) -> float:
     """Return g' (Pa s/m) at a slip rate, minus the slope that counts as flat: positive on a branch."""
     level_at(contact, rate)
-    return contact.run.value[1] - FLAT * contact.run.par.impedance
+    return contact.run.friction.by_rate - FLAT * contact.run.par.impedance
 
 
 @kernel
@@ -109,12 +122,12 @@ def may_touch(before: float, here: float, after: float) -> bool:
 def note_fold(contact: Contact, rate: float, count: int) -> int:
     """Write the begin (count even) or the end (count odd) of a branch into the table, and return the count of ends so far."""
     branch = count // 2
-    if branch < contact.table.shape[1]:
+    if branch < len(contact.scan):
         level = level_at(contact, rate)
         if count % 2 == 0:
-            contact.table[RATE_FROM, branch], contact.table[LEVEL_FROM, branch] = rate, level
+            contact.found[branch].rate_from, contact.found[branch].excess_from = rate, level
         else:
-            contact.table[RATE_TO, branch], contact.table[LEVEL_TO, branch] = rate, level
+            contact.found[branch].rate_to, contact.found[branch].excess_to = rate, level
     return count + 1
 
 
@@ -133,7 +146,7 @@ def fold_in(contact: Contact, low: float, high: float, count: int) -> int:
 @kernel
 def find_branches(contact: Contact, top: float) -> int:
     """Fill the table with the branches that begin below the slip rate `top` (m/s), and return their number."""
-    slope, length = contact.table[STEEPNESS], 0
+    slope, length = contact.steepness, 0
     while length < len(contact.scan) and (length < 2 or contact.scan[length - 1] <= top):
         slope[length] = steepness(contact, contact.scan[length])
         length += 1
@@ -147,16 +160,16 @@ def find_branches(contact: Contact, top: float) -> int:
             for end in range(max(k, refined + 1), k + 2):
                 count = fold_in(contact, contact.scan[end - 1], contact.scan[end], count)
             refined = k + 1
-    branches = min((count + 1) // 2, contact.table.shape[1])
+    branches = min((count + 1) // 2, len(contact.scan))
     if count % 2 == 1:
-        contact.table[RATE_TO, branches - 1] = contact.table[LEVEL_TO, branches - 1] = math.inf
+        contact.found[branches - 1].rate_to = contact.found[branches - 1].excess_to = math.inf
     return branches
 
 
 @kernel
-def branches_at(places: Integers, law_slip: float, piece: int, scan: Floats, table: Floats) -> int:
-    """Fill the table with all branches at a law slip (m, minus its initial value) and return their number; lend `places` before."""
-    return find_branches(Contact(borrow(places), piece, law_slip, scan, table), math.inf)
+def branches_at(places: Integers, law_slip: float, piece: int, scan: Scan) -> int:
+    """Find all branches at a law slip (m, minus its initial value) and return their number; lend `places` before."""
+    return find_branches(contact_of(borrow(places), piece, law_slip, scan), math.inf)
 
 
 @kernel
@@ -164,7 +177,7 @@ def branch_near(contact: Contact, rate: float, branches: int) -> int:
     """Return the branch nearest to a slip rate: at a fold, rounding may put the rate outside of the branch to which it belongs."""
     nearest, least = 0, math.inf
     for k in range(branches):
-        away = max(contact.table[RATE_FROM, k] - rate, rate - contact.table[RATE_TO, k], 0.0)
+        away = max(contact.found[k].rate_from - rate, rate - contact.found[k].rate_to, 0.0)
         if away < least:
             nearest, least = k, away
     return nearest
@@ -182,7 +195,7 @@ def rate_at(contact: Contact, load: float, low: float, high: float) -> float:
             low = s
         else:
             break
-        step = s - error / contact.run.value[1] if contact.run.value[1] > 0.0 else 0.5 * (low + high)
+        step = s - error / contact.run.friction.by_rate if contact.run.friction.by_rate > 0.0 else 0.5 * (low + high)
         if not low < step < high:
             step = 0.5 * (low + high)
         if abs(step - s) <= 1e-16 * s or step in (low, high):
@@ -199,8 +212,8 @@ def area(contact: Contact, load: float, low: float, high: float) -> float:
         end = min(max(first, 2.0 * start), high)
         if run.counts.knots_in_rate == 1:
             for k in range(run.pieces - 1):
-                if start < run.knot[k] < end:
-                    end = run.knot[k]
+                if start < run.law[k].knot < end:
+                    end = run.law[k].knot
         half = 0.5 * (end - start)
         for k in range(len(NODES)):
             whole += half * WEIGHTS[k] * (level_at(contact, start + half * (1.0 + NODES[k])) - load)

@@ -10,27 +10,23 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.contact_step.contact_equation import towards
-from stickslip.engine.moving_folds.branch_scan import (
-    LEVEL_FROM,
-    LEVEL_TO,
-    RATE_FROM,
-    RATE_TO,
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.contact_equation import towards
+from stickslip.engine.folds.branch_scan import (
     Contact,
+    Scan,
     area,
     branch_near,
+    contact_of,
     find_branches,
     rate_at,
     strength_at,
 )
 from stickslip.engine.series.polynomial import NONE, evaluate, integral
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Floats, Integers
-from stickslip.engine.state.workspace import REAL, WHOLE, Run, borrow
+from stickslip.engine.state.layout import Integers, Rule
+from stickslip.engine.state.workspace import Run, borrow
 
-MINIMAL, MAXIMAL, MAXWELL = range(3)
-COMPILED_RULES = {"minimal": MINIMAL, "maximal": MAXIMAL, "maxwell": MAXWELL}
+COMPILED_RULES = {"minimal": Rule.MINIMAL, "maximal": Rule.MAXIMAL, "maxwell": Rule.MAXWELL}
 """Rules whose levels are calculated here. Perfect delay needs none; others are followed by their tables (`branch_table.Step`)."""
 
 ROUNDING = 1e-11
@@ -49,9 +45,8 @@ class View(NamedTuple):
 
     run: Run
     step: int  # its piece of the history
-    rule: int  # MINIMAL, MAXIMAL or MAXWELL
-    scan: Floats  # m/s, ascending
-    table: Floats  # from `branch_scan.new_branches`
+    rule: int  # a code of `Rule`, not PERFECT_DELAY
+    scan: Scan
 
 
 @kernel
@@ -63,7 +58,7 @@ def fastest(run: Run, load: float) -> float:
 @kernel
 def rate_on(contact: Contact, load: float, branch: int) -> float:
     """Return the slip rate (m/s) on a branch of the table, at a load between the levels of its ends."""
-    low, high = contact.table[RATE_FROM, branch], contact.table[RATE_TO, branch]
+    low, high = contact.found[branch].rate_from, contact.found[branch].rate_to
     return rate_at(contact, load, low, max(low, min(high, fastest(contact.run, load))))
 
 
@@ -80,7 +75,7 @@ def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> f
     if load <= strength_at(contact):
         room = better_by(contact, load, 0.0, rate) if rate > 0.0 else room
     for k in range(branches):
-        if k == own or not contact.table[LEVEL_FROM, k] < load < contact.table[LEVEL_TO, k]:
+        if k == own or not contact.found[k].excess_from < load < contact.found[k].excess_to:
             continue
         other = rate_on(contact, load, k)
         if other < rate:
@@ -93,34 +88,33 @@ def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> f
 @kernel
 def law_slip_in(run: Run, n: int, xi: float) -> float:
     """Return the law slip (m), minus its initial value, at the place `xi` in piece n of the history."""
-    real, rate = ahead(run.real, REAL * n), ahead(run.stored_rate, TERMS * n)
-    grown = real[at.S_SPEED] * integral(rate, xi, 1) + 2.0 * real[at.S_BEND] * integral(rate, xi, 2)
-    mode = run.whole[WHOLE * n + at.S_MODE]
-    return real[at.S_LAW_SLIP] + (grown if run.par.counts_net == 1.0 else mode * grown)
+    piece = run.history[n]
+    grown = piece.speed * integral(piece.rate, xi, 1) + 2.0 * piece.bend * integral(piece.rate, xi, 2)
+    return piece.law_slip + (grown if run.par.counts_net == 1.0 else piece.mode * grown)
 
 
 @kernel
 def room_in(view: View, xi: float) -> float:
     """Return the distance (Pa) of the load from the ends of the interval in which the rule keeps the branch; negative outside."""
     run, n = view.run, view.step
-    mode, law_slip = run.whole[WHOLE * n + at.S_MODE], law_slip_in(run, n, xi)
-    contact = Contact(run, run.whole[WHOLE * n + at.S_PIECE], law_slip, view.scan, view.table)
-    rate = abs(evaluate(ahead(run.stored_rate, TERMS * n), xi))
-    load = towards(run, evaluate(ahead(run.stored_load, TERMS * n), xi), mode)
+    step, law_slip = run.history[n], law_slip_in(run, n, xi)
+    contact = contact_of(run, step.law_piece, law_slip, view.scan)
+    rate = abs(evaluate(step.rate, xi))
+    load = towards(run, evaluate(step.load, xi), step.mode)
     branches = find_branches(contact, max(rate, fastest(run, load)) * (1.0 + 1e-9))
     if branches == 0:
         return math.inf  # the branch is narrower than the spacing of the scan
     own = branch_near(contact, rate, branches)
-    low, high = view.table[LEVEL_FROM, own], view.table[LEVEL_TO, own]
-    if view.rule == MINIMAL:
+    low, high = contact.found[own].excess_from, contact.found[own].excess_to
+    if view.rule == Rule.MINIMAL:
         low = max(low, strength_at(contact))
         for k in range(own):
-            low = max(low, view.table[LEVEL_TO, k])
-    elif view.rule == MAXIMAL:
+            low = max(low, contact.found[k].excess_to)
+    elif view.rule == Rule.MAXIMAL:
         for k in range(own + 1, branches):
-            high = min(high, view.table[LEVEL_FROM, k])
+            high = min(high, contact.found[k].excess_from)
     room = min(load - low, high - load)
-    return min(room, maxwell_room(contact, rate, load, branches)) if view.rule == MAXWELL else room
+    return min(room, maxwell_room(contact, rate, load, branches)) if view.rule == Rule.MAXWELL else room
 
 
 @kernel
@@ -150,12 +144,12 @@ def place_of_crossing(view: View, low: float, high: float) -> float:
 
 
 @kernel
-def crossing_in(places: Integers, step: int, rule: int, scan: Floats, table: Floats) -> float:
+def crossing_in(places: Integers, step: int, rule: int, scan: Scan) -> float:
     """Return the place in a step, on [0, 1], at which the load first leaves the interval in which the rule keeps the branch.
 
     NONE means that it stays inside. `places` comes from `workspace.lend`, `step` is a piece of the history.
     """
-    view = View(borrow(places), step, rule, scan, table)
+    view = View(borrow(places), step, rule, scan)
     before, slack = 0.0, ROUNDING * view.run.par.reference
     for place in (FIRST_PLACE, LAST_PLACE):
         if room_in(view, place) < -slack:
@@ -202,43 +196,44 @@ def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
 
     Loads are in Pa, minus the reference strength. Return the load up to which stick is kept: `stick_to` or a lower one.
     """
-    run, table = contact.run, contact.table
-    low = table[LEVEL_FROM, fast] if slow < 0 else max(table[LEVEL_FROM, slow], table[LEVEL_FROM, fast])
-    ends = strength_at(contact) if slow < 0 else table[LEVEL_TO, slow]
-    high = min(ends, table[LEVEL_TO, fast])
+    run, found = contact.run, contact.found
+    low = found[fast].excess_from if slow < 0 else max(found[slow].excess_from, found[fast].excess_from)
+    ends = strength_at(contact) if slow < 0 else found[slow].excess_to
+    high = min(ends, found[fast].excess_to)
     if not low < high:
         return stick_to
     if gap(contact, slow, fast, low)[0] <= 0.0:
         level = low
     elif gap(contact, slow, fast, high)[0] >= 0.0:
-        run.keep_from[fast] = max(run.keep_from[fast], high)
+        run.branch_table[fast].keep_from = max(run.branch_table[fast].keep_from, high)
         return stick_to
     else:
         level = equal_areas(contact, slow, fast, low, high)
-        run.keep_from[fast] = max(run.keep_from[fast], level)
+        run.branch_table[fast].keep_from = max(run.branch_table[fast].keep_from, level)
     if slow < 0:
         return min(stick_to, level)
-    run.keep_to[slow] = min(run.keep_to[slow], level)
+    run.branch_table[slow].keep_to = min(run.branch_table[slow].keep_to, level)
     return stick_to
 
 
 @kernel
-def set_maxwell_levels(places: Integers, scan: Floats, table: Floats) -> None:
+def set_maxwell_levels(places: Integers, scan: Scan) -> None:
     """Write the levels of Maxwell's rule at the present slip into the setup, in which branches are still kept up to their ends.
 
     `places` is the memory that `workspace.lend` has filled; a branch that is never preferred gets an empty interval.
     """
     run = borrow(places)
-    contact = Contact(run, run.counts.piece, run.state.law_slip, scan, table)
+    contact = contact_of(run, run.counts.piece, run.state.law_slip, scan)
     for k in range(run.branches):
-        table[RATE_FROM, k], table[RATE_TO, k] = run.rate_from[k], run.rate_to[k]
-        table[LEVEL_FROM, k], table[LEVEL_TO, k] = run.excess_from[k], run.excess_to[k]
+        known, found = run.branch_table[k], contact.found[k]
+        found.rate_from, found.rate_to = known.rate_from, known.rate_to
+        found.excess_from, found.excess_to = known.excess_from, known.excess_to
     strength = strength_at(contact)
     stick_to = strength
     for fast in range(run.branches):
         for slow in range(-1, fast):
             stick_to = hand_over(contact, slow, fast, stick_to)
     for k in range(run.branches):
-        if run.keep_from[k] >= run.keep_to[k]:
-            run.keep_from[k], run.keep_to[k] = math.inf, -math.inf
+        if run.branch_table[k].keep_from >= run.branch_table[k].keep_to:
+            run.branch_table[k].keep_from, run.branch_table[k].keep_to = math.inf, -math.inf
     run.par.stick_to = stick_to - strength

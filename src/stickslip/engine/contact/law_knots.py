@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact_step.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
+from stickslip.engine.contact.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
 from stickslip.engine.series.polynomial import NONE, first_descent
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
@@ -18,13 +18,13 @@ def settle_piece(run: Run, rate: float) -> None:
     starts or ends at the knot, it is the piece on which g rises.
     """
     piece = run.counts.piece
-    below = piece > 0 and rate < run.knot[piece - 1] * (1.0 - NEAR_KNOT)
-    if below or rate > run.knot[piece] * (1.0 + NEAR_KNOT):
+    below = piece > 0 and rate < run.law[piece - 1].knot * (1.0 - NEAR_KNOT)
+    if below or rate > run.law[piece].knot * (1.0 + NEAR_KNOT):
         piece = piece_at(run, rate)
     if run.counts.is_algebraic == 1 and is_knot(run, rate):
-        friction_of(run, piece, run.state.law_slip, rate, run.value)
-        if run.par.impedance + run.value[1] <= 0.0:
-            piece += 1 if abs(run.knot[piece] - rate) <= NEAR_KNOT * rate else -1
+        friction_of(run, piece, run.state.law_slip, rate)
+        if run.par.impedance + run.friction.by_rate <= 0.0:
+            piece += 1 if abs(run.law[piece].knot - rate) <= NEAR_KNOT * rate else -1
     run.counts.piece = piece
 
 
@@ -34,7 +34,7 @@ def is_end_of_branch(run: Run, rate: float) -> bool:
     if run.counts.is_algebraic == 0 or run.counts.folds_move == 1:
         return False
     branch, room = run.counts.branch, NEAR_KNOT * rate
-    return abs(run.rate_to[branch] - rate) <= room or abs(run.rate_from[branch] - rate) <= room
+    return abs(run.branch_table[branch].rate_to - rate) <= room or abs(run.branch_table[branch].rate_from - rate) <= room
 
 
 @kernel
@@ -46,12 +46,12 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
     first, turn, part = NONE, 1, run.part
     for way in (1, -1):
         knot = run.counts.piece if way == 1 else run.counts.piece - 1
-        if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.knot[knot]):
+        if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.law[knot].knot):
             continue
         for k in range(at.TERMS):
             part[k] = -way * rate[k]
-        room = way * (run.knot[knot] - rate[0])
-        part[0] = 0.0 if abs(room) <= NEAR_KNOT * run.knot[knot] else room
+        room = way * (run.law[knot].knot - rate[0])
+        part[0] = 0.0 if abs(room) <= NEAR_KNOT * run.law[knot].knot else room
         crossing = first_descent(part, run.spare)
         if crossing < first:
             first, turn = crossing, way
@@ -65,11 +65,11 @@ def pass_rate_knot(run: Run, turn: int) -> bool:
     Return False if folds move and the resistance g falls in that piece: then the branch ends at the knot.
     """
     piece = run.counts.piece
-    knot = run.knot[piece] if turn > 0 else run.knot[piece - 1]
+    knot = run.law[piece].knot if turn > 0 else run.law[piece - 1].knot
     run.state.rate_now = run.counts.mode * knot
     if run.counts.folds_move == 1:
-        friction_of(run, piece + turn, run.state.law_slip, knot, run.value)
-        if run.par.impedance + run.value[1] <= 0.0:
+        friction_of(run, piece + turn, run.state.law_slip, knot)
+        if run.par.impedance + run.friction.by_rate <= 0.0:
             return False
     run.counts.piece = piece + turn
     return True

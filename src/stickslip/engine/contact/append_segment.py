@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.series.polynomial import degree, fill
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.workspace import REAL, WHOLE, Run
+from stickslip.engine.state.workspace import Run
 
 RESOLVED = 1e-12
 """Shortest slip (duration as a share of a round trip, 1) of which double precision tells the ends apart well enough."""
@@ -51,15 +50,15 @@ def record(run: Run, xi_to: float) -> None:
     theta_from, theta_to = theta_at(run, xi), theta_at(run, xi_to)
     if theta_to > theta_from:
         n = run.counts.length
-        whole, real = ahead(run.whole, WHOLE * n), ahead(run.real, REAL * n)
-        whole[at.S_ROW], whole[at.S_MODE], whole[at.S_PIECE] = run.counts.row, run.counts.mode, run.counts.piece
-        whole[at.S_JUMP], whole[at.S_CAUSE], whole[at.S_ECHO_OF] = run.counts.jump, run.counts.cause, run.counts.echo_of
-        real[at.S_THETA_FROM], real[at.S_THETA_TO] = theta_from, theta_to
-        real[at.S_SPEED] = (run.state.speed + 2.0 * run.state.bend * xi) * width
-        real[at.S_BEND] = run.state.bend * width * width
-        real[at.S_SLIP], real[at.S_LAW_SLIP] = run.state.slip_now, run.state.law_slip
-        real[at.S_AMPLIFIED] = run.state.amplified
-        real[at.S_GAIN] = abs(run.par.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
+        kept = run.history[n]
+        kept.row, kept.mode, kept.law_piece = run.counts.row, run.counts.mode, run.counts.piece
+        kept.jump, kept.cause, kept.echo_of = run.counts.jump, run.counts.cause, run.counts.echo_of
+        kept.theta_from, kept.theta_to = theta_from, theta_to
+        kept.speed = (run.state.speed + 2.0 * run.state.bend * xi) * width
+        kept.bend = run.state.bend * width * width
+        kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
+        kept.amplified = run.state.amplified
+        kept.gain = abs(run.par.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
         note_slip(run, n, theta_from)
         run.counts.length = n + 1
         run.counts.jump = run.counts.cause = run.counts.stalled = 0
@@ -74,7 +73,7 @@ def note_slip(run: Run, n: int, theta: float) -> None:
 
     n is the row of the history that is being written, and theta (s) the phase at which it starts.
     """
-    slips, slipped = run.counts.mode != 0, n > 0 and run.whole[WHOLE * (n - 1) + at.S_MODE] != 0
+    slips, slipped = run.counts.mode != 0, n > 0 and run.history[n - 1].mode != 0
     if slips and not slipped:
         run.counts.slip_row, run.state.slip_since = run.counts.row, theta
     elif slipped and not slips:

@@ -6,18 +6,15 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact_step.append_segment import note_degree, theta_at
-from stickslip.engine.contact_step.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
+from stickslip.engine.contact.append_segment import note_degree, theta_at
+from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats
+from stickslip.engine.state.layout import Cause, Floats, NearFold
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference, so that no side piece is made."""
-APPROACHING, DEPARTING, PASSING = 1, 2, 3
-"""Codes of `counts.at_fold`: on a side piece that ends at a fold, on one that starts at a fold, and on the rest of one whose
-branch has ended before."""
 AT_THE_FOLD = 1e-14
 """Share of the reference strength (1) within which the load counts as being at the fold: the rounding of a load."""
 ROUNDING = 1e-14
@@ -36,12 +33,11 @@ def ends_at_fold(run: Run, way: float) -> bool:
 
     The other ends are knots of the law, and loads at which the rule prefers another solution.
     """
-    branch = run.counts.branch
+    branch = run.branch_table[run.counts.branch]
     level = towards(run, evaluate(run.load, run.state.xi + way), run.counts.mode)
-    if abs(level - run.keep_to[branch]) < abs(level - run.keep_from[branch]):
-        return run.keep_to[branch] == run.excess_to[branch] and not is_knot(run, run.rate_to[branch])
-    starts = run.rate_from[branch]
-    return starts > 0.0 and run.keep_from[branch] == run.excess_from[branch] and not is_knot(run, starts)
+    if abs(level - branch.keep_to) < abs(level - branch.keep_from):
+        return branch.keep_to == branch.excess_to and not is_knot(run, branch.rate_to)
+    return branch.rate_from > 0.0 and branch.keep_from == branch.excess_from and not is_knot(run, branch.rate_from)
 
 
 @kernel
@@ -102,7 +98,7 @@ def approach_fold(run: Run, width: float) -> float:
     run.state.speed, run.state.bend, run.state.xi = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
     run.state.exit = math.nan
     note_degree(run)
-    run.counts.at_fold = APPROACHING
+    run.counts.at_fold = NearFold.APPROACHING
     return 0.0
 
 
@@ -110,21 +106,21 @@ def approach_fold(run: Run, width: float) -> float:
 def starts_at_fold(run: Run) -> bool:
     """Return True if slip has just begun on a branch exactly at its fold, as it does by the maximal rule under a smooth load."""
     branch = run.counts.branch
-    fold = run.rate_from[branch]
-    if run.counts.edge == 0 or run.counts.at_fold != 0 or fold == 0.0 or is_knot(run, fold):
+    fold = run.branch_table[branch].rate_from
+    if run.counts.edge == 0 or run.counts.at_fold != NearFold.NONE or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state.xi), run.counts.mode)
-    return level - run.excess_from[branch] <= AT_THE_FOLD * run.par.reference
+    return level - run.branch_table[branch].excess_from <= AT_THE_FOLD * run.par.reference
 
 
 @kernel
 def load_outruns_fold(run: Run) -> bool:
     """Return True if the load grows faster than the friction at the fold does as the contact slips there."""
-    fold, xi, direction = run.rate_from[run.counts.branch], run.state.xi, run.counts.mode
-    friction_at(run, run.state.law_slip, fold, run.value)
+    fold, xi, direction = run.branch_table[run.counts.branch].rate_from, run.state.xi, run.counts.mode
+    friction_at(run, run.state.law_slip, fold)
     restrict(run.load, xi, 1.0, run.part)
     sense = direction if run.par.counts_net == 1.0 else 1
-    return direction * run.part[1] > run.value[2] * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
+    return direction * run.part[1] > run.friction.by_slip * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
 
 
 @kernel
@@ -136,7 +132,7 @@ def depart_from_fold(run: Run, left: float) -> None:
     """
     width, forwards = DEPARTURE * left, run.part
     restrict(run.load, run.state.xi, width, forwards)
-    rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.excess_from[run.counts.branch])
+    rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.branch_table[run.counts.branch].excess_from)
     if 0.0 < rise < seen:  # By rounding, the load at the end of the bit would still be the fold's.
         width = min(width * seen / rise, left)
         restrict(run.load, run.state.xi, width, forwards)
@@ -146,7 +142,7 @@ def depart_from_fold(run: Run, left: float) -> None:
     run.state.theta_from, run.state.theta_to = theta_from, theta_to
     run.state.speed, run.state.bend, run.state.xi = 0.0, theta_to - theta_from, 0.0
     note_degree(run)
-    run.counts.at_fold = DEPARTING
+    run.counts.at_fold = NearFold.DEPARTING
 
 
 @kernel
@@ -167,8 +163,8 @@ def straight_to_fold(run: Run) -> None:
     The series would be all rounding. With e the share that `last_to_fold` returns, the line misses e^2 of the rate's change along
     the piece, during e^2 of its time.
     """
-    branch = run.counts.branch
-    low, high = run.rate_from[branch], run.rate_to[branch]
+    branch = run.branch_table[run.counts.branch]
+    low, high = branch.rate_from, branch.rate_to
     fold = low if run.jet[0] - low < high - run.jet[0] else high
     if run.counts.folds_move == 1:
         fold = run.state.fold_rate
@@ -180,9 +176,9 @@ def straight_to_fold(run: Run) -> None:
 @kernel
 def straight_from_fold(run: Run) -> None:
     """Write the first bit of the way from a fold as a straight line in the root of time: at the fold itself no series exists."""
-    fold = run.rate_from[run.counts.branch]
-    friction_at(run, run.state.law_slip, fold, run.value)
-    weakened = run.value[2] * run.k.chi * fold * (run.state.speed + run.state.bend)
+    fold = run.branch_table[run.counts.branch].rate_from
+    friction_at(run, run.state.law_slip, fold)
+    weakened = run.friction.by_slip * run.k.chi * fold * (run.state.speed + run.state.bend)
     reached = rate_on_branch(run, towards(run, total(run.load), run.counts.mode) - weakened, fold)
     fill(run.jet, 0.0)
     run.jet[0], run.jet[1] = fold, reached - fold
@@ -193,7 +189,7 @@ def leave_fold_piece(run: Run) -> None:
     """Take up the piece of load again after the side piece next to a fold, and end the branch if the fold is reached."""
     state = run.state
     way = theta_at(run, 1.0) - theta_at(run, 0.0)
-    if run.counts.at_fold == DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
+    if run.counts.at_fold == NearFold.DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
         state.last_step = way
     rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
     last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # The side piece was too short to take time.
@@ -201,8 +197,8 @@ def leave_fold_piece(run: Run) -> None:
     state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
     copy(run.kept_load, run.load, at.TERMS)
     note_degree(run)
-    reached = run.counts.at_fold == APPROACHING
-    run.counts.at_fold = 0
+    reached = run.counts.at_fold == NearFold.APPROACHING
+    run.counts.at_fold = NearFold.NONE
     if reached:
         reach_end(run)
 
@@ -226,5 +222,5 @@ def leave_moving_branch(run: Run) -> None:
     run.counts.leaving = 0
     run.counts.stalled += 1
     end_branch(run)
-    if run.counts.at_fold != 0:
-        run.counts.at_fold = PASSING
+    if run.counts.at_fold != NearFold.NONE:
+        run.counts.at_fold = NearFold.PASSING

@@ -98,13 +98,13 @@ def way_to_fold(run: Run, guess: float) -> float:
         return NONE
     piece = run.counts.piece
     if run.counts.knots_in_rate == 1:
-        if rate > run.knot[piece] or (piece > 0 and rate < run.knot[piece - 1]):
+        if rate > run.law[piece].knot or (piece > 0 and rate < run.law[piece - 1].knot):
             return NONE
     elif run.pieces > 1:
         walked = max(rate, run.jet[0]) * (run.k.speed + 0.5 * run.k.bend * eta) * eta
         slip = run.state.law_slip
         knot = piece if run.k.chi > 0.0 else piece - 1
-        if 0 <= knot < run.pieces - 1 and abs(run.knot[knot] - slip) <= abs(walked):
+        if 0 <= knot < run.pieces - 1 and abs(run.law[knot].knot - slip) <= abs(walked):
             return NONE
     run.state.fold_rate = rate
     return eta * guess

@@ -7,16 +7,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.contact_step.append_segment import record
-from stickslip.engine.contact_step.contact_equation import TIE, load_ahead, onset_of_slip
-from stickslip.engine.contact_step.radau_stages import (
-    BY_RATE,
-    BY_STATE,
-    CHANGE_BY_RATE,
-    CHANGE_BY_STATE,
-    MU,
-    contact_at,
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.contact_equation import TIE, load_ahead
+from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.implicit_step.radau_stages import (
     defects,
     larger,
     rate_at_load,
@@ -25,20 +19,14 @@ from stickslip.engine.contact_step.radau_stages import (
     solve_stages,
     stays_in_sight,
 )
-from stickslip.engine.contact_step.verify import NEGLIGIBLE
-from stickslip.engine.series.polynomial import NONE, copy, evaluate, fill, first_descent, restrict, scale, total
+from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats, Stop
+from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
 """Largest number of attempts at an implicit step (1), each shorter, before it fails."""
-STIFF, NOT_STIFF = 4.0, 1.5
-"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
-step so short; and in an implicit step, below which the contact is no longer stiff."""
-CHECKED = 16
-"""Number of explicit steps (1) between two checks of the stiffness."""
 LONGEST_GROWTH = 4.0
 """Largest growth (as an exponent, 1) of a disturbance over a step."""
 ROUNDING = 1e-15
@@ -56,29 +44,6 @@ LAW_ROUNDING = 5.0
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
 """Error, in units of the tolerance (1), above which a step is never kept; and number of attempts in a row, each shorter, whose
 error has not halved, after which the error is taken to be rounding."""
-FORGOTTEN = 1e-18
-"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
-
-
-@kernel
-def is_implicit(run: Run) -> bool:
-    """Return True if the next step must be implicit."""
-    return run.counts.has_state == 1 or run.counts.stiff == 1
-
-
-@kernel
-def settling_rate(run: Run) -> float:
-    """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
-    contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    return (run.par.impedance + run.par.normal * run.value[1]) / run.par.inertia
-
-
-@kernel
-def judge_stiffness(run: Run) -> None:
-    """Check now and then, after an explicit step of a contact with mass, whether the contact has become stiff."""
-    run.counts.steps += 1
-    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
-        run.counts.stiff = 1
 
 
 @kernel
@@ -90,12 +55,12 @@ def growth_rate(run: Run) -> float:
     """
     par, value = run.par, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
-    resistance = par.impedance + par.normal * value[BY_RATE]
+    resistance = par.impedance + par.normal * value.by_rate
     if run.counts.has_inertia == 0:
-        return max(value[CHANGE_BY_STATE] - value[CHANGE_BY_RATE] * par.normal * value[BY_STATE] / resistance, 0.0)
+        return max(value.change_by_state - value.change_by_rate * par.normal * value.by_state / resistance, 0.0)
     mass = par.inertia
-    trace = value[CHANGE_BY_STATE] - resistance / mass
-    product = (par.normal * value[BY_STATE] * value[CHANGE_BY_RATE] - resistance * value[CHANGE_BY_STATE]) / mass
+    trace = value.change_by_state - resistance / mass
+    product = (par.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
@@ -116,7 +81,7 @@ def start_of_step(run: Run) -> float:
         run.stage_rate[0] = 0.0
     elif run.counts.edge != 0:
         contact_at(run, state.law_slip, 0.0, state.state_now)
-        force = run.seen[0] - run.par.normal * run.value[MU]
+        force = run.seen[0] - run.par.normal * run.value.mu
         if run.counts.has_inertia == 0:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
@@ -134,12 +99,12 @@ def strength_ahead(run: Run) -> float:
     largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
     for i in range(POINTS):
         contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
-        run.stage_rate[i] = par.normal * run.value[MU]
+        run.stage_rate[i] = par.normal * run.value.mu
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
         contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
-        missed = larger(missed, abs(par.normal * run.value[MU] - evaluate(run.jet, MIDDLE[i])))
+        missed = larger(missed, abs(par.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
     return max(missed, last_terms(run.jet)) / (par.tolerance * largest)
 
@@ -157,9 +122,9 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
-    resistance = par.impedance + par.normal * value[BY_RATE] + par.inertia / h
+    resistance = par.impedance + par.normal * value.by_rate + par.inertia / h
     noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
-    state_noise = noise * abs(value[CHANGE_BY_RATE] / value[CHANGE_BY_STATE]) if value[CHANGE_BY_STATE] != 0.0 else noise
+    state_noise = noise * abs(value.change_by_rate / value.change_by_state) if value.change_by_state != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
     error = max(last_terms(run.jet), missed) / (par.tolerance * fastest + noise + lost)
@@ -305,64 +270,3 @@ def begin_step(run: Run, guess: float) -> float:
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
     run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
     return start_of_step(run)
-
-
-@kernel
-def keep_state(run: Run, length: float) -> None:
-    """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
-    if run.counts.has_state == 0:
-        return
-    kept = ahead(run.stored_state, at.TERMS * run.counts.length)
-    for k in range(at.TERMS):
-        kept[k] = run.state_jet[k]
-    if length != 1.0:
-        scale(kept, length)
-    run.state.state_now = total(kept)
-
-
-@kernel
-def note_negative_friction(run: Run) -> None:
-    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
-    rate, state = run.state.rate_now, run.state.state_now
-    if not math.isfinite(rate):
-        rate, state = run.stage_rate[0], run.stage_state[0]
-    contact_at(run, run.state.law_slip, abs(rate), state)
-    if run.par.reference + run.par.normal * run.value[MU] < -NEGLIGIBLE * run.par.normal:
-        run.counts.breach = Stop.NEGATIVE_FRICTION
-
-
-@kernel
-def forgotten(run: Run) -> bool:
-    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
-    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    if abs(run.value[BY_STATE] * run.state.state_now) > FORGOTTEN:
-        return False
-    run.state.state_now = 0.0
-    return True
-
-
-@kernel
-def stick_with_state(run: Run, xi_to: float) -> None:
-    """Take one step at rest in which the state, and with it the strength, changes.
-
-    The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
-    """
-    width = collocate(run, xi_to - run.state.xi)
-    if not math.isfinite(run.jet[0]):
-        run.state.rate_now = math.nan
-        note_negative_friction(run)
-        return
-    reached = width >= xi_to - run.state.xi
-    load = ahead(run.stored_load, at.TERMS * run.counts.length)
-    fill(ahead(run.stored_rate, at.TERMS * run.counts.length), 0.0)
-    copy(run.local, load, at.TERMS)
-    onset, direction = onset_of_slip(run, load, run.jet)
-    end = min(onset, 1.0)
-    if end < 1.0:
-        scale(load, end)
-    keep_state(run, end)
-    record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
-    note_negative_friction(run)
-    run.counts.edge, run.counts.moved = 0, 1
-    if onset < NONE:
-        run.counts.mode, run.counts.edge = direction, direction

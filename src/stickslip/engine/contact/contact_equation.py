@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
-from stickslip.engine.contact_step.append_segment import note_jump
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats, Incoming
+from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
@@ -32,7 +33,7 @@ def piece_at(run: Run, rate: float) -> int:
     if run.counts.knots_in_rate == 0:
         return run.counts.piece
     piece = 0
-    while piece < run.pieces - 1 and rate >= run.knot[piece]:
+    while piece < run.pieces - 1 and rate >= run.law[piece].knot:
         piece += 1
     return piece
 
@@ -42,33 +43,30 @@ def is_knot(run: Run, rate: float) -> bool:
     """Return True if the law has a knot at this slip rate (m/s)."""
     if run.counts.knots_in_rate == 1:
         for knot in range(run.pieces - 1):
-            if abs(run.knot[knot] - rate) <= NEAR_KNOT * rate:
+            if abs(run.law[knot].knot - rate) <= NEAR_KNOT * rate:
                 return True
     return False
 
 
 @kernel
-def friction_at(run: Run, law_slip: float, rate: float, out: Floats) -> None:
-    """Write friction at a slip (m, as the law counts it) and a slip rate (m/s, magnitude) into out.
-
-    out[0] is S (mu - mu_reference) in Pa or N, out[1] and out[2] are its derivatives with respect to slip rate and slip, and
-    out[3] is mu - mu_reference.
-    """
-    friction_of(run, piece_at(run, rate), law_slip, rate, out)
+def friction_at(run: Run, law_slip: float, rate: float) -> None:
+    """Write friction at a slip (m, as the law counts it) and a slip rate (m/s, magnitude) into run.friction."""
+    friction_of(run, piece_at(run, rate), law_slip, rate)
 
 
 @kernel
-def friction_of(run: Run, piece: int, law_slip: float, rate: float, out: Floats) -> None:
-    """Write the same numbers as `friction_at` into out, by the formula of the given piece of the law."""
-    slip = law_slip + run.slip_shift[piece]
+def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
+    """Write friction into run.friction as `friction_at` does, by the formula of the given piece of the law."""
+    law, value, friction = run.law[piece], run.value, run.friction
+    slip = law_slip + law.slip_shift
     if run.counts.has_state == 1:
-        call_state_value(run.state_at[piece], constants_of(run, piece), slip, rate, run.state.state_now, out)
+        call_state_value(law.state_at, constants_of(run, piece), slip, rate, run.state.state_now, numbers_of(value))
     else:
-        call_value(run.value_at[piece], constants_of(run, piece), slip, rate, out)
-    out[3] = out[0] + run.offset[piece]
-    out[0] = run.par.normal * out[3]
-    out[1] *= run.par.normal
-    out[2] *= run.par.normal
+        call_value(law.value_at, constants_of(run, piece), slip, rate, numbers_of(value))
+    friction.coefficient = value.mu + law.offset
+    friction.stress = run.par.normal * friction.coefficient
+    friction.by_rate = value.by_rate * run.par.normal
+    friction.by_slip = value.by_slip * run.par.normal
 
 
 @kernel
@@ -77,9 +75,9 @@ def rest_limit(run: Run) -> float:
 
     It is the static strength, or less where the rule lets slip begin below it.
     """
-    friction_at(run, run.state.law_slip, 0.0, run.value)
+    friction_at(run, run.state.law_slip, 0.0)
     # The step to static friction is added to the coefficient before any product: where the two cancel, they must cancel exactly.
-    coefficient = run.value[3] + run.par.static_excess
+    coefficient = run.friction.coefficient + run.par.static_excess
     return run.par.normal * coefficient + run.par.stick_to
 
 
@@ -127,24 +125,24 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
 @kernel
 def rate_on_branch(run: Run, load: float, guess: float) -> float:
     """Return the slip rate (m/s) on the current branch that solves g(s) = load, by Newton's method kept inside the branch."""
-    branch = run.counts.branch
-    low, high = run.rate_from[branch], run.rate_to[branch]
-    if load <= run.excess_from[branch]:
+    branch = run.branch_table[run.counts.branch]
+    low, high = branch.rate_from, branch.rate_to
+    if load <= branch.excess_from:
         return low
-    if load >= run.excess_to[branch]:
+    if load >= branch.excess_to:
         return high
     high = min(high, (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12))
     s = guess if low < guess < high else 0.5 * (low + high)
     for _ in range(200):
-        friction_at(run, run.state.law_slip, s, run.value)
-        error = run.par.impedance * s + run.value[0] - load
+        friction_at(run, run.state.law_slip, s)
+        error = run.par.impedance * s + run.friction.stress - load
         if error > 0.0:
             high = s
         elif error < 0.0:
             low = s
         else:
             return s
-        slope = run.par.impedance + run.value[1]
+        slope = run.par.impedance + run.friction.by_rate
         step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
         if not low < step < high:
             step = 0.5 * (low + high)
@@ -163,9 +161,9 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
     s = best = guess
     least = math.inf
     for _ in range(20):
-        friction_at(run, run.state.law_slip, s, run.value)
-        error = run.par.impedance * s + run.value[0] - load
-        slope = run.par.impedance + run.value[1]
+        friction_at(run, run.state.law_slip, s)
+        error = run.par.impedance * s + run.friction.stress - load
+        slope = run.par.impedance + run.friction.by_rate
         if abs(error) >= least:
             return best
         best, least = s, abs(error)
@@ -184,30 +182,33 @@ def needs_branches(run: Run) -> bool:
 
 
 @kernel
+def is_taken(branch: Branch, load: float) -> bool:
+    """Return True if the rule ever takes the branch, and keeps it at this load (Pa, minus the reference) or at a higher one."""
+    return branch.keep_from <= branch.keep_to and load <= branch.keep_to
+
+
+@kernel
 def choose_branch(run: Run, load: float) -> None:
     """Leave rest for the first branch that the rule allows at this load (minus the reference)."""
     run.state.exit = math.nan
-    for branch in range(run.branches):
-        if run.keep_from[branch] <= run.keep_to[branch] and load <= run.keep_to[branch]:
-            run.counts.branch = branch
+    for n in range(run.branches):
+        if is_taken(run.branch_table[n], load):
+            run.counts.branch = n
             return
 
 
 @kernel
 def leave_branch(run: Run, load: float) -> None:
-    """Leave the branch, which ends at this load, for the nearest allowed one in the direction of the load, or for rest.
-
-    A branch that the rule never takes has keep_from > keep_to.
-    """
+    """Leave the branch, which ends at this load, for the nearest allowed one in the direction of the load, or for rest."""
     branch = run.counts.branch
     run.state.exit = math.nan
-    if load >= run.keep_to[branch]:
+    if load >= run.branch_table[branch].keep_to:
         for other in range(branch + 1, run.branches):
-            if run.keep_from[other] <= run.keep_to[other] and load <= run.keep_to[other]:
+            if is_taken(run.branch_table[other], load):
                 run.counts.branch = other
                 return
     for other in range(branch - 1, -1, -1):
-        if run.keep_from[other] <= min(load, run.keep_to[other]):
+        if run.branch_table[other].keep_from <= min(load, run.branch_table[other].keep_to):
             run.counts.branch = other
             return
     run.counts.mode = 0
@@ -219,10 +220,10 @@ def branch_exit(run: Run) -> float:
 
     The result is inf if this does not happen on the present piece of load.
     """
-    branch, mode, part, xi = run.counts.branch, run.counts.mode, run.part, run.state.xi
+    branch, mode, part, xi = run.branch_table[run.counts.branch], run.counts.mode, run.part, run.state.xi
     first = NONE
     for upper in (0, 1):
-        bound = run.keep_to[branch] if upper == 1 else run.keep_from[branch]
+        bound = branch.keep_to if upper == 1 else branch.keep_from
         if math.isinf(bound):
             continue
         sign = -1.0 if upper == 1 else 1.0
@@ -238,10 +239,10 @@ def branch_exit(run: Run) -> float:
 @kernel
 def end_branch(run: Run) -> None:
     """Leave the branch for another one or for rest, because the load has left the interval in which the rule keeps it."""
-    branch, direction = run.counts.branch, run.counts.mode
+    branch, direction = run.branch_table[run.counts.branch], run.counts.mode
     seen = towards(run, evaluate(run.load, run.state.xi), direction)
-    upper = abs(seen - run.keep_to[branch]) < abs(seen - run.keep_from[branch])
-    level = run.keep_to[branch] if upper else run.keep_from[branch]
+    upper = abs(seen - branch.keep_to) < abs(seen - branch.keep_from)
+    level = branch.keep_to if upper else branch.keep_from
     leave_branch(run, level)
     if run.counts.mode == 0:
         note_jump(run, 0.0, Cause.FOLD)

@@ -1,0 +1,110 @@
+"""Define what the rest of the package asks of a body, so that it need not ask which body it is."""
+
+from __future__ import annotations
+
+from dataclasses import Field
+from typing import Any, ClassVar, Protocol
+
+from stickslip.bodies.elastic_slab import ElasticSlab
+from stickslip.bodies.spring_block import SpringBlock
+from stickslip.foundation.errors import InputError
+
+
+class Body(Protocol):
+    """A body that slides on the contact. Its loads are stresses (Pa) on a slab and forces (N) on a block.
+
+    Units below are those of a slab; for a block read N for Pa, and kg for kg/m^2.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    kind: ClassVar[str]
+    """Name in scenario files."""
+    load_unit: ClassVar[str]
+    """Unit of loads and tractions."""
+    energy_unit: ClassVar[str]
+    """Unit of energies, in the form that files store."""
+    has_waves: ClassVar[bool]
+    """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
+
+    @property
+    def normal_load(self) -> float:
+        """Return the normal load S on the contact (Pa), compression positive."""
+        ...
+
+    @property
+    def stiffness(self) -> float:
+        """Return the decrease of the load per metre of slow slip (Pa/m)."""
+        ...
+
+    @property
+    def impedance(self) -> float:
+        """Return the load per slip rate that is characteristic of the body (Pa s/m): Z of a slab, sqrt(K m) of a block."""
+        ...
+
+    @property
+    def damping(self) -> float:
+        """Return the load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        ...
+
+    @property
+    def inertia(self) -> float:
+        """Return the mass that slips with the contact (kg/m^2): the contact mass of a slab, the whole mass of a block."""
+        ...
+
+    @property
+    def has_inertia(self) -> bool:
+        """Return True if a mass slips with the contact, so that its slip rate cannot jump."""
+        ...
+
+    @property
+    def driver_impedance(self) -> float:
+        """Return the impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
+        ...
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """Return True if the driver gives way by nothing, or by so little that it makes no difference to rounding."""
+        ...
+
+    @property
+    def reflection(self) -> float:
+        """Return the share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
+        ...
+
+    @property
+    def round_trip_time(self) -> float:
+        """Return the time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
+        ...
+
+
+def as_slab(body: Body, refusal: str = "needs an elastic slab") -> ElasticSlab:
+    """Return a body that must be a slab.
+
+    Parameters
+    ----------
+    body
+        Any body.
+    refusal
+        Message of the error for any other body.
+
+    Returns
+    -------
+    ElasticSlab
+        The same body.
+
+    Raises
+    ------
+    InputError
+        If the body is not a slab.
+    """
+    if not isinstance(body, ElasticSlab):
+        raise InputError(refusal)
+    return body
+
+
+def as_block(body: Body) -> SpringBlock:
+    """Return a body that must be a block; raise InputError for any other body."""
+    if not isinstance(body, SpringBlock):
+        raise InputError("needs a spring-block")
+    return body

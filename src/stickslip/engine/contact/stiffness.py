@@ -1,0 +1,71 @@
+"""Judge from friction and its derivatives whether steps must be implicit, and when the state of a law at rest is forgotten."""
+
+from __future__ import annotations
+
+from stickslip.engine.codegen.compiler import call_state_value, call_value, kernel
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.state.workspace import Run
+
+
+@kernel
+def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
+    """Write friction and the change of the state, with their derivatives, into run.value.
+
+    `mu` is then the difference from the static friction coefficient at the start of the run.
+    """
+    piece = run.counts.piece
+    constants, slip = constants_of(run, piece), law_slip + run.law[piece].slip_shift
+    if run.counts.has_state == 1:
+        call_state_value(run.law[piece].state_at, constants, slip, rate, state, numbers_of(run.value))
+    else:
+        below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
+        call_value(run.law[piece].value_at, constants, slip, rate - below, numbers_of(run.value))
+        run.value.mu += run.value.by_rate * below
+        run.value.by_state = run.value.change = 0.0
+        run.value.change_by_rate = run.value.change_by_slip = run.value.change_by_state = 0.0
+    run.value.mu += run.law[piece].offset
+
+
+STIFF, NOT_STIFF = 4.0, 1.5
+"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
+step so short; and in an implicit step, below which the contact is no longer stiff."""
+
+
+CHECKED = 16
+"""Number of explicit steps (1) between two checks of the stiffness."""
+
+
+FORGOTTEN = 1e-18
+"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
+
+
+@kernel
+def is_implicit(run: Run) -> bool:
+    """Return True if the next step must be implicit."""
+    return run.counts.has_state == 1 or run.counts.stiff == 1
+
+
+@kernel
+def settling_rate(run: Run) -> float:
+    """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
+    contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
+    return (run.par.impedance + run.par.normal * run.value.by_rate) / run.par.inertia
+
+
+@kernel
+def judge_stiffness(run: Run) -> None:
+    """Check now and then, after an explicit step of a contact with mass, whether the contact has become stiff."""
+    run.counts.steps += 1
+    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
+        run.counts.stiff = 1
+
+
+@kernel
+def forgotten(run: Run) -> bool:
+    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    if abs(run.value.by_state * run.state.state_now) > FORGOTTEN:
+        return False
+    run.state.state_now = 0.0
+    return True

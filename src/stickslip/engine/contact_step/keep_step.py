@@ -1,0 +1,79 @@
+"""Keep a step of slip: unload the spring, append the step to the history, and move the state to its end."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.append_segment import record
+from stickslip.engine.contact.contact_equation import (
+    friction_at,
+)
+from stickslip.engine.contact_step.step_events import growth
+from stickslip.engine.series.polynomial import (
+    RECIPROCAL,
+    evaluate,
+    multiply,
+    total,
+)
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+
+@kernel
+def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
+    """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
+    multiply(run.local, run.powers, run.history[run.counts.length].load)
+    move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
+
+
+@kernel
+def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
+    """Record the step and move the state to its end, at xi = to.
+
+    Load and rate (m/s, as a magnitude) are in the next free row of the history. `grown` is the slip (m) in the step and
+    `rate_end` the rate at its end (m/s), both unsigned.
+    """
+    direction = run.counts.mode
+    load = run.history[run.counts.length].load
+    speed, bend = run.k.speed * length, run.k.bend * length * length
+    if run.counts.is_block == 1:
+        unload_spring(direction * run.par.stiffness * speed, direction * run.par.stiffness * bend, rate, load)
+        run.load[0] -= run.par.stiffness * direction * grown
+    if direction < 0:
+        for k in range(at.TERMS):
+            rate[k] = -rate[k]
+    note_gain(run, rate)
+    record(run, to)
+    run.counts.moved, run.counts.edge = 1, 0
+    run.state.slip_now += direction * grown
+    run.state.law_slip += run.k.chi * grown
+    run.state.rate_now = direction * max(rate_end, 0.0)
+
+
+@kernel
+def note_gain(run: Run, rate: Floats) -> None:
+    """Note the factor |2 Z / g'(v) - 1| by which slip multiplies an error of the load.
+
+    It follows from Z v + S mu(v) = load, and from 2 Z v - load, which goes back to the driver. The gain is NaN where slip,
+    inertia or a state decide too, because the fate of an error is then not a matter of its phase alone.
+    """
+    if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
+        friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
+        run.state.gain = abs(2.0 * run.par.impedance / (run.par.impedance + run.friction.by_rate) - 1.0)
+    else:
+        run.state.gain = math.nan
+
+
+@kernel
+def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> None:
+    """Take stiffness times slip from the outer load, in place, because a block unloads its spring as it slips.
+
+    `straight` and `bent` are the stiffness times A and times B of dtheta = (A + B eta) d eta (N s/m, signed).
+    """
+    for k in range(1, at.TERMS):
+        load[k] -= straight * RECIPROCAL[k] * rate[k - 1]
+    if bent != 0.0:
+        for k in range(2, at.TERMS):
+            load[k] -= bent * RECIPROCAL[k] * rate[k - 2]

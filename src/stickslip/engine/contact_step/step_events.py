@@ -1,0 +1,119 @@
+"""Find what ends a step of slip early (arrest, a knot of the law, the end of the branch), and do what that event requires."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.contact_equation import (
+    TIE,
+)
+from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
+from stickslip.engine.contact_step.stick import come_to_rest
+from stickslip.engine.folds.fold import (
+    reach_end,
+)
+from stickslip.engine.series.polynomial import (
+    NONE,
+    first_descent,
+    integral,
+    magnitude,
+    multiply,
+    powers_of,
+)
+from stickslip.engine.state.layout import Floats, StepEvent
+from stickslip.engine.state.workspace import Run
+
+
+class Cut(NamedTuple):
+    """Say where a step is cut, and by what."""
+
+    event: int  # as a code of `StepEvent`
+    turn: int  # direction in which a knot is passed: 1 upwards, -1 downwards, 0 where there is none
+    end: float  # share of the step up to the event, 1 without one
+
+
+@kernel
+def stretch(run: Run, length: float, rate: Floats) -> None:
+    """Write the slip rate's magnitude over a step of the given length (in guesses) into `rate`, as a polynomial on [0, 1]."""
+    powers_of(length, run.powers)
+    multiply(run.jet, run.powers, rate)
+
+
+@kernel
+def growth(run: Run, rate: Floats, length: float, end: float) -> float:
+    """Return the slip (m, unsigned) in a step of the given length (in guesses) up to the place `end` on [0, 1].
+
+    It is the integral of the rate over dtheta = (A + B eta) d eta.
+    """
+    straight = run.k.speed * length * integral(rate, end, 1)
+    if run.k.bend == 0.0:
+        return straight
+    return straight + run.k.bend * length * length * integral(rate, end, 2)
+
+
+@kernel
+def knot_crossing(run: Run, rate: Floats, length: float, end: float) -> float:
+    """Return where on [0, end] slip reaches the next knot of the law, or NONE if it does not.
+
+    The rate does not change its sign before `end`, so slip is monotone and bisection finds the place.
+    """
+    grown = run.k.chi * growth(run, rate, length, end)
+    next_knot = run.counts.piece if grown > 0.0 else run.counts.piece - 1
+    if next_knot < 0 or next_knot >= run.pieces - 1:
+        return NONE
+    distance = abs(run.law[next_knot].knot - run.state.law_slip)
+    if distance >= abs(grown):
+        return NONE
+    low, high = 0.0, end
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if abs(growth(run, rate, length, middle)) < distance:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@kernel
+def next_knot(run: Run, rate: Floats, length: float, end: float) -> tuple[float, int]:
+    """Return where on [0, end] the step leaves the present piece of the law, and whether upwards (1) or downwards (-1).
+
+    The place is NONE if the step stays in the piece.
+    """
+    if run.counts.knots_in_rate == 1:
+        return rate_knot_crossing(run, rate)
+    return knot_crossing(run, rate, length, end), 1 if run.k.chi > 0.0 else -1
+
+
+@kernel
+def pass_knot(run: Run, turn: int) -> None:
+    """Enter the next piece of the law, upwards (turn is 1) or downwards (-1), or end the branch where g falls in that piece."""
+    if run.counts.knots_in_rate == 0:
+        run.counts.piece += turn
+    elif not pass_rate_knot(run, turn):
+        reach_end(run)
+
+
+@kernel
+def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
+    """Find what ends a step of the given length (in guesses) early, and cut its slip rate, a polynomial on [0, 1], there."""
+    arrest = NONE
+    if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
+        arrest = first_descent(rate, run.spare)
+    knot, turn = next_knot(run, rate, length, min(arrest, 1.0)) if run.pieces > 1 else (NONE, 0)
+    end = min(arrest, knot)
+    if end > 1.0 - TIE:
+        return Cut(StepEvent.NONE, 0, 1.0)
+    if end < 1.0:
+        stretch(run, length * end, rate)
+    return Cut(StepEvent.ARREST if arrest == end else StepEvent.KNOT, turn, end)
+
+
+@kernel
+def resolve(run: Run, cut: Cut) -> None:
+    """Do what the event that has cut a step requires: come to rest, or pass a knot of the law."""
+    if cut.event == StepEvent.ARREST:
+        come_to_rest(run)
+    elif cut.event == StepEvent.KNOT:
+        pass_knot(run, cut.turn)

@@ -1,0 +1,1 @@
+"""Implicit steps, for laws with a state and for stiff contacts: collocation at Radau's points."""

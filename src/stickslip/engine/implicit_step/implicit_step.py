@@ -1,0 +1,102 @@
+"""Take one implicit step: of slip, or at rest while the state of the law evolves."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.contact.append_segment import record
+from stickslip.engine.contact.contact_equation import (
+    onset_of_slip,
+)
+from stickslip.engine.contact.law_knots import settle_piece
+from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, settling_rate
+from stickslip.engine.contact_step.keep_step import keep_step
+from stickslip.engine.contact_step.step_events import cut_at_first_event, resolve, stretch
+from stickslip.engine.contact_step.taylor_step import (
+    note_shock,
+)
+from stickslip.engine.contact_step.verify import (
+    NEGLIGIBLE,
+)
+from stickslip.engine.implicit_step.radau_step import collocate
+from stickslip.engine.series.polynomial import (
+    NONE,
+    copy,
+    fill,
+    scale,
+    total,
+)
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Stop
+from stickslip.engine.state.workspace import Run
+
+
+@kernel
+def slip_implicitly(run: Run, xi_to: float) -> None:
+    """Slip for one implicit step, or up to what ends it: arrest, a knot of the law, or the place xi_to."""
+    if run.counts.knots_in_rate == 1:
+        settle_piece(run, abs(run.state.rate_now))
+    guess = collocate(run, xi_to - run.state.xi)
+    note_shock(run)
+    rate = run.history[run.counts.length].rate
+    stretch(run, 1.0, rate)
+    reached = guess >= xi_to - run.state.xi
+    if run.counts.has_state == 0 and run.k.speed * settling_rate(run) < NOT_STIFF:
+        run.counts.stiff = 0
+    cut = cut_at_first_event(run, rate, 1.0)
+    keep_state(run, cut.end)
+    keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * guess)
+    note_negative_friction(run)
+    resolve(run, cut)
+
+
+@kernel
+def keep_state(run: Run, length: float) -> None:
+    """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
+    if run.counts.has_state == 0:
+        return
+    kept = ahead(run.history_state, at.TERMS * run.counts.length)
+    for k in range(at.TERMS):
+        kept[k] = run.state_jet[k]
+    if length != 1.0:
+        scale(kept, length)
+    run.state.state_now = total(kept)
+
+
+@kernel
+def note_negative_friction(run: Run) -> None:
+    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
+    rate, state = run.state.rate_now, run.state.state_now
+    if not math.isfinite(rate):
+        rate, state = run.stage_rate[0], run.stage_state[0]
+    contact_at(run, run.state.law_slip, abs(rate), state)
+    if run.par.reference + run.par.normal * run.value.mu < -NEGLIGIBLE * run.par.normal:
+        run.counts.breach = Stop.NEGATIVE_FRICTION
+
+
+@kernel
+def stick_with_state(run: Run, xi_to: float) -> None:
+    """Take one step at rest in which the state, and with it the strength, changes.
+
+    The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
+    """
+    width = collocate(run, xi_to - run.state.xi)
+    if not math.isfinite(run.jet[0]):
+        run.state.rate_now = math.nan
+        note_negative_friction(run)
+        return
+    reached = width >= xi_to - run.state.xi
+    load = run.history[run.counts.length].load
+    fill(run.history[run.counts.length].rate, 0.0)
+    copy(run.local, load, at.TERMS)
+    onset, direction = onset_of_slip(run, load, run.jet)
+    end = min(onset, 1.0)
+    if end < 1.0:
+        scale(load, end)
+    keep_state(run, end)
+    record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
+    note_negative_friction(run)
+    run.counts.edge, run.counts.moved = 0, 1
+    if onset < NONE:
+        run.counts.mode, run.counts.edge = direction, direction

@@ -1,0 +1,88 @@
+"""Parts of the engine that are compiled apart, when a run first needs them, and that the loop calls through their addresses.
+
+Most runs need none of them, and each costs seconds to compile. A part is one function of the run's memory, a task and a number.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from stickslip.engine.codegen.compiler import PART, address_of, kernel
+from stickslip.engine.codegen.uncompiled import UNCOMPILED, handle_of
+from stickslip.engine.folds.fold_ahead import way_to_fold
+from stickslip.engine.implicit_step.implicit_step import slip_implicitly, stick_with_state
+from stickslip.engine.state.layout import Counts, Integers, Params, Part, Task
+from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
+from stickslip.engine.waves.varying_forcing import rows_withstood, take_loading
+
+
+@kernel
+def implicit_steps(memory: int, task: int, xi_to: float) -> float:
+    """Take one implicit step of the run at an address, up to the place xi_to at most."""
+    if task == Task.SLIP:
+        slip_implicitly(borrow(memory), xi_to)
+    else:
+        stick_with_state(borrow(memory), xi_to)
+    return 0.0
+
+
+@kernel
+def loading_history(memory: int, task: int, limit: float) -> float:
+    """Add a loading that varies to the piece of load, or return the number of rows at rest below a limit (Pa or N)."""
+    if task == Task.TAKE_LOADING:
+        take_loading(borrow(memory))
+        return 0.0
+    return float(rows_withstood(borrow(memory), limit))
+
+
+@kernel
+def echo_queue(memory: int, task: int, number: float) -> float:
+    """Return the next piece whose echo must be met, close a round trip, or build the queue."""
+    if task == Task.NEXT_ECHO:
+        return float(next_echo(borrow(memory)))
+    if task == Task.END_TRIP:
+        end_trip(borrow(memory))
+    else:
+        build_queue(borrow(memory))
+    return 0.0
+
+
+@kernel
+def moving_folds(memory: int, task: int, guess: float) -> float:
+    """Return the way (in xi) to the moving fold that the present series, in units of `guess` (in xi), runs into."""
+    return way_to_fold(borrow(memory), guess)
+
+
+@cache
+def part_at(part: Any) -> int:
+    """Return the address of a part. Compiles it, or takes it from the cache on disk."""
+    if not UNCOMPILED:
+        return address_of(part, PART)
+
+    return handle_of(lambda run, task, number: float(part(run.numbers, task, number)))
+
+
+PARTS = {
+    Part.IMPLICIT_STEPS: implicit_steps,
+    Part.LOADING_HISTORY: loading_history,
+    Part.ECHO_QUEUE: echo_queue,
+    Part.MOVING_FOLDS: moving_folds,
+}
+"""The function of each part; its address is the field of the same name in `workspace.Run`."""
+
+
+def lend_part(memory: Integers, part: Part | None = None) -> None:
+    """Write the address of a part into a run's memory, by default of the part for which the engine has asked."""
+    run = Run(memory)
+    part = Part(run.missing) if part is None else part
+    setattr(run, part.name.lower(), part_at(PARTS[part]))
+
+
+def lend_parts_of_batch(memory: Integers, par: Params, counts: Counts) -> None:
+    """Write the addresses of those parts that members with such numbers may ever need; batches have no loading histories."""
+    if counts.has_inertia == 1:
+        lend_part(memory, Part.IMPLICIT_STEPS)
+    if par.reflection == -1.0 and counts.is_block == 0:
+        lend_part(memory, Part.ECHO_QUEUE)

@@ -1,0 +1,108 @@
+"""Bring the load piece by piece: of the first round trip, of a block, or the echo that returns from the driver of a slab."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.contact.append_segment import note_degree
+from stickslip.engine.series.polynomial import fill, mean_of
+from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
+from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.echo_queue import NOTHING
+
+
+@kernel
+def rows_leaped(run: Run, n: int) -> int:
+    """Return the number of round trips that were leaped over between that of piece n of the history and the present one."""
+    return run.counts.row - run.history[n].row - 1
+
+
+@kernel
+def first_piece(run: Run) -> bool:
+    """Bring the next piece of load of the first round trip, or of any period of a block; return False if none is left."""
+    source = run.counts.source
+    if source >= run.loads - 1:
+        return False
+    first = run.first_load[source]
+    run.state.theta_from, run.state.theta_to = first.theta, run.first_load[source + 1].theta
+    run.state.speed, run.state.bend = run.state.theta_to - run.state.theta_from, 0.0
+    fill(run.load, 0.0)
+    run.load[0] = first.load
+    run.load[1] = first.slope * run.state.speed
+    if run.counts.is_block == 1 and run.counts.row > 0:
+        run.load[0] = run.state.load_now + rows_leaped(run, run.counts.length - 1) * run.par.ramp
+    run.counts.echo_of = -1
+    # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
+    run.state.amplified = (
+        math.nan if run.counts.is_block == 1 else 1.0 if run.state.theta_from < 0.5 * run.par.row_time else abs(run.par.reflection)
+    )
+    run.counts.arriving = Cause.NO_CAUSE
+    if run.counts.row == 0 and source == 0:
+        run.counts.arriving = Cause.START
+    elif run.counts.row == 0 and first.jump == 1.0:
+        run.counts.arriving = Cause.LOADING
+    return True
+
+
+@kernel
+def echo_piece(run: Run) -> bool:
+    """Bring the next piece of load that returns from the driver of a slab; return False if the round trip is complete."""
+    if run.counts.sparse == 1:
+        source = int(call_part(run.echo_queue, run, Task.NEXT_ECHO, 0.0))
+        if source == NOTHING:
+            return False
+    else:
+        source = run.counts.previous_from + run.counts.source
+        if source >= run.counts.previous_to:
+            return False
+    run.counts.echo_of = source
+    par, left = run.par, run.history[source]
+    rate, load = left.rate, left.load
+    run.state.theta_from, run.state.theta_to = left.theta_from, left.theta_to
+    run.state.speed, run.state.bend = left.speed, left.bend
+    run.state.amplified = left.amplified * left.gain
+    for k in range(TERMS):
+        run.load[k] = par.reflection * (2.0 * par.impedance * rate[k] - load[k])
+    time = run.counts.row * par.row_time + run.state.theta_from
+    run.load[0] += par.inflow + par.inflow_rate * time - par.reflection * rows_leaped(run, source) * par.ramp
+    run.load[1] += par.inflow_rate * run.state.speed
+    run.load[2] += par.inflow_rate * run.state.bend
+    # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
+    jumps = left.jump == 1 or run.counts.lumped == 1
+    run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
+    if run.counts.lumped == 1:
+        lump(run)
+    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and par.reflection != 0.0 else Cause.NO_CAUSE
+    return True
+
+
+@kernel
+def width_of(run: Run) -> float:
+    """Return the length (s) of the piece of load that has just been brought."""
+    return run.state.theta_to - run.state.theta_from
+
+
+@kernel
+def lump(run: Run) -> None:
+    """Replace the load of a piece that is too short to be resolved by its mean in time: it then slips as a whole or not at all."""
+    mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.theta_to - run.state.theta_from)
+    fill(run.load, 0.0)
+    run.load[0] = mean
+
+
+@kernel
+def next_piece(run: Run) -> bool:
+    """Bring the next piece of load and set `ready` to BROUGHT; return False at the end of the round trip."""
+    first = run.counts.is_block == 1 or run.counts.row == 0
+    if not (first_piece(run) if first else echo_piece(run)):
+        return False
+    if run.counts.varies == 1:
+        call_part(run.loading_history, run, Task.TAKE_LOADING, 0.0)
+    else:
+        run.counts.source += 1
+    run.state.xi, run.state.exit = 0.0, math.nan
+    note_degree(run)
+    run.counts.jump = 1 if run.counts.arriving != Cause.NO_CAUSE else run.counts.jump
+    run.counts.ready = Incoming.BROUGHT
+    return True

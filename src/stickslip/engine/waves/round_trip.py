@@ -1,0 +1,98 @@
+"""Close a round trip, and leap over those that follow at rest."""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.series.polynomial import maximum, total
+from stickslip.engine.state.layout import Part, Stop, Task
+from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.echo_queue import FOREVER, worth_building
+from stickslip.engine.waves.varying_forcing import has_faded
+
+
+@kernel
+def rows_at_rest(run: Run, limit: float) -> int:
+    """Return the number of whole round trips for which a contact at rest is certain to stay there, judged from the one just past.
+
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it never ends.
+    """
+    par = run.par
+    ramp = par.ramp
+    if run.counts.varies == 1:
+        return int(call_part(run.loading_history, run, Task.COUNT_ROWS_AT_REST, limit))
+    if not is_ramp(run):
+        return 0
+    top, bottom = -math.inf, -math.inf
+    for n in range(run.counts.row_from, run.counts.length):
+        load = run.history[n].load
+        top = max(top, maximum(load))
+        bottom = max(bottom, maximum(load, -1.0))
+    if ramp == 0.0:
+        return FOREVER
+    room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * par.reference)
+    rows = math.floor(room / abs(ramp)) - 1.0
+    return min(max(int(rows), 0), FOREVER) if rows < 9e18 else FOREVER
+
+
+@kernel
+def is_ramp(run: Run) -> bool:
+    """Return True if each of the next round trips at rest has the load of the one before it plus the ramp."""
+    if run.counts.is_block == 1:
+        return True
+    if run.par.reflection == -1.0:
+        return True
+    return has_faded(run)
+
+
+@kernel
+def swings_for_ever(run: Run) -> bool:
+    """Return True if a contact at rest has seen every load to come: under a dead load every second round trip is the same."""
+    return run.counts.varies == 0 and run.par.reflection == 1.0 and run.par.ramp == 0.0 and run.counts.stuck_rows >= 2
+
+
+@kernel
+def close_round_trip(run: Run, last_row: int) -> int:
+    """Close a round trip, and leap over the following ones in which nothing can happen.
+
+    `last_row` is the round trip in which the run ends. Return Stop.NONE, or the code of what the caller must do first: the round
+    trip is still open then. It is END_AHEAD if the end of the run would cut the leap and `to_the_end` is not set.
+    """
+    if run.counts.sparse == 1:
+        call_part(run.echo_queue, run, Task.END_TRIP, 0.0)
+        return Stop.NONE
+    if run.counts.lumps == 0 and run.counts.length - run.counts.row_from > run.counts.lump_above:
+        run.counts.lumps, run.counts.lumped_since = 1, run.counts.row + 1
+    if worth_building(run):
+        if run.echo_queue == 0:
+            run.missing = Part.ECHO_QUEUE
+            return Stop.NEED_PART
+        call_part(run.echo_queue, run, Task.BUILD_QUEUE, 0.0)
+        return Stop.NONE
+    leap, locked = 0, False
+    if run.counts.moved == 0:
+        run.counts.stuck_rows += 1
+        leap = rows_at_rest(run, rest_limit(run))
+        locked = leap >= FOREVER or swings_for_ever(run)
+        room = last_row - run.counts.row - 1
+        if leap > room and run.counts.to_the_end == 0:
+            run.counts.stuck_rows -= 1
+            return Stop.END_AHEAD
+        leap = max(min(leap, room), 0)
+    else:
+        run.counts.stuck_rows = 0
+    run.counts.is_locked = 1 if locked else 0
+    if run.counts.is_block == 1:
+        run.state.load_now = total(run.history[run.counts.length - 1].load)
+    run.counts.row += 1 + leap
+    if run.counts.moved == 1:
+        run.counts.creep_in -= 1
+        if run.counts.creep_in == 0:
+            run.counts.pause_at = run.counts.row
+    run.counts.previous_from, run.counts.previous_to = run.counts.row_from, run.counts.length
+    run.counts.row_from = run.counts.length
+    run.counts.source = run.counts.moved = 0
+    run.counts.row_segment = run.counts.segment
+    return Stop.NONE
