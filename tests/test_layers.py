@@ -55,7 +55,7 @@ ROOMS = {
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("style",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
-    "reference": (("bisection", "rate_and_state"), ("block", "slab"), ("method_of_steps",)),
+    "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
 }
 """The same inside some folders."""
@@ -135,20 +135,13 @@ UPWARD_IN_FUNCTIONS: dict[str, set[str]] = {
     "solution/evaluation.py": {"figures", "io"},
     "solution/solution.py": {"figures", "io"},
     "solution/window.py": {"figures", "io"},
-    "studies/analogy.py": {"figures"},
-    "studies/compare.py": {"figures"},
-    "studies/ensemble.py": {"figures"},
-    "studies/regularise.py": {"figures"},
+    "studies/study.py": {"figures"},
     "trajectory/tables.py": {"observables"},
 }
 """Files that still import from above inside functions, and from where."""
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "creep/stepper.py": {"run"},
-    "observables/energy/balance.py": {"solution"},
-    "observables/field.py": {"solution"},
-    "observables/predictability.py": {"solution"},
-    "observables/rule_influence.py": {"solution"},
     "problem/selection_rule.py": {"contact"},
     "scenarios/scenario.py": {"run", "solution"},
     "sweeps/execution/cluster.py": {"sweeps.sweep"},

@@ -17,7 +17,7 @@ from numpy.polynomial import Polynomial
 import stickslip as ss
 from stickslip.engine.series.polynomial import crossings
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import Epoch, History, Moments
+from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
 from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
 from stickslip.trajectory.tables import default_event_rate
@@ -130,7 +130,7 @@ def traction_after(history: History, n: int, xi: float) -> float:
             break
     if xi == 1.0 and n + 1 < len(history):
         return traction(history, place(history, n + 1, 0.0), "right")
-    return history.problem.strength + float(history.friction(Moments.inside(n, xi))[0])
+    return history.problem.strength + float(history.friction(Positions.inside(n, xi))[0])
 
 
 def plain_row(history: History, event: PlainEvent) -> dict[str, float]:

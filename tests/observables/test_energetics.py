@@ -13,7 +13,7 @@ from stickslip.observables.energy.energetics import ENERGETICS_COLUMNS
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.trajectory.history import History
 from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
-from tests.observables.test_event_energy import LOSSY, RUNS
+from tests.observables.runs import LOSSY, RUNS
 
 F = ss.friction
 COULOMB = F.Coulomb(0.8, 0.3)

@@ -20,6 +20,7 @@ from stickslip.observables.field import Field
 from tests.engine import problems
 from tests.engine.test_properties import few, ran
 from tests.engine.test_properties import problems as random_problems
+from tests.observables.runs import slab_of
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13
@@ -77,11 +78,6 @@ def pulled(problem: ss.Problem, time: Floats) -> Floats:
     half, middle = 0.5 * np.diff(edges)[:, None], 0.5 * (edges[:-1] + edges[1:])[:, None]
     parts = half[:, 0] * (problem.pull_rate_at(middle + half * NODES) @ WEIGHTS)
     return np.asarray(np.append(0.0, np.cumsum(parts))[np.searchsorted(edges, time)])
-
-
-def slab_of(run: ss.Solution) -> ss.ElasticSlab:
-    assert isinstance(run.problem.body, ss.ElasticSlab)
-    return run.problem.body
 
 
 def scales(slab: ss.ElasticSlab) -> Field:

@@ -64,7 +64,7 @@ def test_quantities_are_those_of_the_solution(name: str) -> None:
     scenario = load_scenario(name)
     solution = scenario.run()
     events, between = solution.events, np.diff(solution.events.start)
-    parts = energy(solution, scenario.duration)
+    parts = energy(solution.history, scenario.duration)
     of_run = {
         "events": len(events),
         "pulses": events.pulses.sum(),

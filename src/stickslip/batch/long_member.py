@@ -122,5 +122,5 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
     watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
-    fold_end(run.store.pieces, run.length, problem.round_trip_time, scenario.duration, code, out)
+    fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
     return code

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
-from stickslip.batch.kernels.runs import Stage, run_group
+from stickslip.batch.kernels.runs import Group, Stage, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
@@ -171,10 +171,11 @@ class _Batch:
             self.alike[kind] = alike(self.scenario, values)
         setups = set_up(self.scenario, values, self.alike[kind])
         codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
+        members = Group(self.engine, setups, self.wants_events, self.stop, codes, out)
         work = work.ready_for(setups.constants.shape[2])
         while True:
             base, stride = table_of(setups, work)
-            lane = run_group(self.engine, setups, base, stride, work, self.wants_events, self.stop, codes, out)
+            lane = run_group(members, base, stride, work)
             if lane == WIDTH or self.stop[0] != 0:
                 break
             if work.stage[lane] == Stage.AT_END:

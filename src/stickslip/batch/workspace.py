@@ -60,7 +60,7 @@ class Workspace(NamedTuple):
 
     def with_more_points(self) -> Workspace:
         """Return a workspace with twice the room for turning points."""
-        return self._replace(points=new_points(2 * len(self.points.xi)))
+        return self._replace(points=new_points(2 * len(self.points.turns.xi)))
 
 
 def divided(table: Any) -> Any:

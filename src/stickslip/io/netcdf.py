@@ -20,7 +20,6 @@ from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
-from stickslip.observables.rule_influence import choices
 from stickslip.problem.problem import MAY_VARY
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.scenarios import Scenario, read_scenario
@@ -74,9 +73,9 @@ def provenance(solution: Solution) -> dict[str, Any]:
 
     They include what the selection rule decided and, for a slab whose echoes can amplify errors, the predictability of the run.
     """
-    chosen = choices(solution)
+    chosen = solution.rule_influence
     return origin(solution) | {
-        "selection_note": solution.selection_note,
+        "selection_note": chosen.note,
         "selection_regime": chosen.regime,
         "selection_decided_shocks": int(chosen.shocks.sum()),
         **attributes_of(predictability(solution) if is_followed(solution.problem) else None),

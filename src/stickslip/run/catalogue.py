@@ -339,7 +339,7 @@ class CatalogueKeeper(Keeper):
         self.rows.tidy()
         notes = {
             "predictability": prediction.text if prediction else "",
-            "trapped": trapped_note(solution),
+            "trapped": trapped_note(solution.history),
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,

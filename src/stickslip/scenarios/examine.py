@@ -220,8 +220,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     law = problem.friction
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
-    stretches = regimes_along_slip(problem)
-    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in stretches]
+    intervals = regimes_along_slip(problem)
+    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in intervals]
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
 

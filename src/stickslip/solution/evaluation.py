@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Moments, Side
+from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Readings:
         """Return the first and the last time (s) that figures show by default."""
         return self.history.span
 
-    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
+    def _at(self, t: ArrayLike, side: Side) -> tuple[Positions, tuple[int, ...]]:
         try:
             time = np.asarray(t, float)
         except OverflowError:  # a whole number larger than any float
@@ -222,7 +222,7 @@ class Readings:
         """
         from stickslip.observables.field import field
 
-        return field(self, x, t, side)
+        return field(self.history, getattr(self, self.curves[0]), x, t, side)
 
     def plot_field(self, start: float | None = None, end: float | None = None) -> Figure:
         """Plot velocity and stress in the slab over time, with characteristics, above the curves of the contact.
@@ -332,11 +332,10 @@ class Readings:
         """
         return shocks_table(self.history)
 
-    @cached_property
+    @property
     def breaks(self) -> Floats:
         """Return the times (s) at which recorded pieces begin or end, including 0 and the end of the run."""
-        history = self.history
-        return np.append(np.union1d(history.start, history.end[history.rests]), history.span[1])
+        return self.history.breaks
 
     @property
     def curves(self) -> tuple[Curve, ...]:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from stickslip.observables.rule_influence import RuleInfluence
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Readings):
@@ -183,7 +185,7 @@ class Solution(Readings):
         """
         from stickslip.observables.energy.balance import energy
 
-        return energy(self, t)
+        return energy(self.history, t)
 
     def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
         """Return slip, slip rate, traction and load as an xarray Dataset with units and provenance.
@@ -268,7 +270,7 @@ class Solution(Readings):
         """Return one line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
         from stickslip.observables.energy.balance import trapped_note
 
-        return trapped_note(self)
+        return trapped_note(self.history)
 
     @cached_property
     def horizon_note(self) -> str:
@@ -281,11 +283,16 @@ class Solution(Readings):
         return predictability(self).text if is_followed(self.problem) else ""
 
     @cached_property
+    def rule_influence(self) -> RuleInfluence:
+        """Return which shocks the selection rule decided, and when it first had a choice."""
+        from stickslip.observables.rule_influence import rule_influence
+
+        return rule_influence(self.history, lambda: self.curve("load"))
+
+    @property
     def selection_note(self) -> str:
         """Return one line that says whether the result depends on the selection rule."""
-        from stickslip.observables.rule_influence import selection_note
-
-        return selection_note(self)
+        return self.rule_influence.note
 
     def __repr__(self) -> str:
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])

@@ -99,7 +99,7 @@ class Window(Readings):
         """
         from stickslip.observables.energy.balance import energy
 
-        return energy(self, t, origin=0.0)
+        return energy(self.history, t, origin=0.0)
 
     def dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
         """Return slip since the event began, slip rate, traction and load, with units, provenance and the epoch.

@@ -62,12 +62,12 @@ def last_large_event(slips: Floats) -> int:
 
 def about(readings: Readings) -> dict[str, Any]:
     """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
-    return {"title": system_title(readings.problem), "clock": clock(readings), "thickness": slab_of(readings).thickness}
+    return {"title": system_title(readings.problem), "clock": clock(readings), "thickness": slab_of(readings.problem).thickness}
 
 
 def places(readings: Readings, count: int) -> Floats:
     """Return `count` evenly spaced distances from the contact (m), up to the driver."""
-    return np.linspace(0.0, slab_of(readings).thickness, count)
+    return np.linspace(0.0, slab_of(readings.problem).thickness, count)
 
 
 def snapshots(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
@@ -92,7 +92,7 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
     Both come from differences of the displacement, so that no pulse is lost between two times.
     """
     when, where = 0.5 * (time[1:] + time[:-1]), 0.5 * (x[1:] + x[:-1])
-    body, middle = slab_of(readings), readings.field(where, when[:, None])
+    body, middle = slab_of(readings.problem), readings.field(where, when[:, None])
     # Displacements are computed as differences from the slab sheared under its strength, and inherit the rounding of that shear.
     sheared = readings.problem.strength / body.stiffness
     velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)

@@ -33,7 +33,7 @@ def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
         start = max(start, 0.0) if "event_slip" in readings.curves else start
         # 0.35, and not 0.5: fronts on their way back would else lie where others were on their way out.
         shares = (np.arange(COUNT) + 0.35) / COUNT
-        times = start + shares * min(slab_of(readings).two_way_time, end - start)
+        times = start + shares * min(slab_of(readings.problem).two_way_time, end - start)
     moments = np.atleast_1d(np.asarray(times, float))
     return xr.Dataset(snapshots(readings, moments, places(readings, PLACES)), attrs=about(readings))
 

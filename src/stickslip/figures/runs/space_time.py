@@ -34,7 +34,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     Raises InputError for a block, and for times outside the run.
     """
     readings, start, end = choose_interval(readings, start, end)
-    body = slab_of(readings)
+    body = slab_of(readings.problem)
     contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
     lines = [_bounces(time, end, body.two_way_time, body.reflection) for time in _origins(readings, start, end)]
@@ -52,7 +52,7 @@ def _origins(readings: Readings, start: float, end: float) -> Floats:
     One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
     characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
     """
-    history, round_trip = readings.history, slab_of(readings).two_way_time
+    history, round_trip = readings.history, slab_of(readings.problem).two_way_time
     run = readings.solution if isinstance(readings, Window) else readings
     assert isinstance(run, Solution)
     events = run.events

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
+    from stickslip.studies.compare import Comparison
 
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 """Line styles; the next one is taken when all colours are used up."""
@@ -29,13 +29,14 @@ ROWS = ("slip", "slip_rate", "traction")
 """Panels, from above."""
 
 
-def data(runs: Mapping[str, Solution], event: int | None = None) -> xr.Dataset:
+def data(study: Comparison) -> xr.Dataset:
     """Return the runs from their start to shortly after their last slip event, or one event of each in local time, in SI.
 
-    `event` is a row number of `events`. Slip counts from the start of the run or of the event. If slabs (Pa) and blocks (N) are
+    The comparison says which event, if any. Slip counts from the start of the run or of the event. If slabs (Pa) and blocks (N) are
     drawn together, tractions are divided by the normal stress or force. If the durations differ by more than the factor `APART`,
     times are divided by the duration drawn.
     """
+    runs, event = study.runs, study.event
     views: dict[str, Readings] = {name: run if event is None else run.window(event) for name, run in runs.items()}
     spans = {name: _span(run) if event is None else views[name].shown for name, run in runs.items()}
     lengths = [end - start for start, end in spans.values()]

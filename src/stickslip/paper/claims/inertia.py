@@ -8,6 +8,7 @@ import numpy as np
 
 from stickslip import YEAR
 from stickslip.bodies import as_block, as_slab
+from stickslip.contact.roots import sign_change
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
@@ -75,17 +76,12 @@ def rise_time(solution: Solution) -> float:
 
 
 def _reaches(solution: Solution, rate: float, start: float, end: float) -> float:
-    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s).
-
-    The interval is divided into 256 parts again and again, and the first part in which the rate is reached is kept.
-    """
-    for _ in range(12):
-        time = np.linspace(start, end, 257)
-        first = int(np.argmax(solution.slip_rate(time) >= rate))
-        if first == 0:
-            break
-        start, end = float(time[first - 1]), float(time[first])
-    return end
+    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s)."""
+    time = np.linspace(start, end, 257)
+    first = int(np.argmax(solution.slip_rate(time) >= rate))
+    if first == 0:
+        return end
+    return sign_change(lambda t: float(solution.slip_rate(t)) - rate, float(time[first - 1]), float(time[first]))
 
 
 @claim(15, "After its event the block stays put for a long period.")
