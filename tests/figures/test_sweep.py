@@ -217,6 +217,13 @@ def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
     assert [tuple(colour) == yes for colour in known.get_facecolor()] == (middle > 19.6).tolist()
 
 
+def test_the_title_is_that_of_the_scenario(refined: xr.Dataset) -> None:
+    assert ss.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law, alpha = 1"
+    untitled = refined.assign_attrs(scenario="\n".join(refined.attrs["scenario"].splitlines()[2:]))
+    assert not untitled.attrs["scenario"].startswith("title")
+    assert ss.plot_sweep(untitled).axes[0].get_title(loc="left") == "Elastic slab, hyperbolic-rate friction"
+
+
 def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
     points = scattered(ss.plot_sweep(refined, "slip").axes[0])[-1]
     assert len(points.get_offsets()) == refined.sizes["member"]
