@@ -19,7 +19,7 @@ from benchmarks.runner import UnavailableError
 from stickslip.batch import run_members
 from stickslip.batch.batch_support import QUANTITIES
 from stickslip.batch.kernels.engine import engine_address
-from stickslip.batch.kernels.runs import run_group
+from stickslip.batch.kernels.runs import Group, run_group
 from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import member
 from stickslip.batch.workspace import new_workspace, table_of
@@ -73,7 +73,7 @@ def setups_given(task: Task, members: int) -> Run:
 
     def run(threads: int) -> Floats:
         work.upcoming[:] = 0
-        assert run_group(engine_address(), setups, base, stride, work, False, stop, codes, out) == WIDTH
+        assert run_group(Group(engine_address(), setups, False, stop, codes, out), base, stride, work) == WIDTH
         return out[:, QUANTITIES.index("slip")]
 
     return run

@@ -35,11 +35,10 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "parameters"),
+        ("formula", "contract"),
         ("law",),
-        ("memory", "composite", "piecewise", "slopes"),
+        ("families", "composite", "piecewise"),
         ("laws", "custom"),
-        ("registry",),
     ),
     "engine": (
         ("codegen",),
@@ -54,9 +53,9 @@ ROOMS = {
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
-    "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
-    "reference": (("bisection", "rate_and_state"), ("block", "slab"), ("method_of_steps",)),
-    "cli": (("output", "names"), ("long_run",), ("commands",), ("main",)),
+    "figures": (("style",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
+    "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
+    "cli": (("output", "names", "overrides"), ("long_run", "options"), ("commands",), ("main",)),
 }
 """The same inside some folders."""
 LAZY_DOORS = {"solution/accessors.py"}
@@ -132,20 +131,12 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 
 UPWARD_IN_FUNCTIONS: dict[str, set[str]] = {
     "scenarios/scenario.py": {"run"},
-    "studies/analogy.py": {"figures"},
-    "studies/compare.py": {"figures"},
-    "studies/ensemble.py": {"figures"},
-    "studies/regularise.py": {"figures"},
     "trajectory/tables.py": {"observables"},
 }
 """Files that still import from above inside functions, and from where."""
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "creep/stepper.py": {"run"},
-    "observables/energy/balance.py": {"solution"},
-    "observables/field.py": {"solution"},
-    "observables/predictability.py": {"solution"},
-    "observables/rule_influence.py": {"solution"},
     "problem/selection_rule.py": {"contact"},
     "scenarios/scenario.py": {"run", "solution"},
     "sweeps/execution/cluster.py": {"sweeps.sweep"},

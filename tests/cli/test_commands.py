@@ -11,7 +11,15 @@ import pandas
 import pytest
 
 from stickslip import __version__
-from stickslip.cli.names import STARTERS, complete_regularisation, complete_scenario, complete_source
+from stickslip.cli.names import (
+    STARTERS,
+    complete_law,
+    complete_pull,
+    complete_regularisation,
+    complete_rule,
+    complete_scenario,
+    complete_source,
+)
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from stickslip.studies import ensemble as ensembles
@@ -224,6 +232,12 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
 def test_the_shell_completes_regularisations():
     assert complete_regularisation("") == ["contact-mass", "lag", "direct-effect"]
     assert complete_regularisation("l") == ["lag"]
+
+
+def test_the_shell_completes_laws_pulls_and_rules():
+    assert complete_law("hyp") == ["hyperbolic-rate"]
+    assert complete_pull("hold") == ["hold-and-slide"]
+    assert complete_rule("max") == ["maxwell", "maximal"]
 
 
 def test_run_draws_the_catalogue(command, tmp_path: Path):

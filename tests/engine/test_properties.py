@@ -116,7 +116,7 @@ def test_rest_is_that_of_the_closed_form(driver: float, rate: float) -> None:
     slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8, driver)
     problem = ss.Problem(slab, ss.friction.Coulomb(100.0, 0.5), pull_rate=0.1, initial_load=4e7, **far)
     run = ss.simulate(problem, 300.3 * slab.two_way_time)
-    exact = StuckSlab(2800, 3500, 1e4, driver, 4e7, 0.1, far.get("far_stress", 0.0), far.get("far_stress_rate", 0.0))
+    exact = StuckSlab(slab, 4e7, 0.1, far.get("far_stress", 0.0), far.get("far_stress_rate", 0.0))
     times = (
         np.concatenate((np.linspace(0.0, 6.0, 200), np.linspace(6.0, 300.0, 997))) * slab.two_way_time + 1e-3
     )  # off the breaking points

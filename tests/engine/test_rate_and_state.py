@@ -11,10 +11,11 @@ from scipy.optimize import brentq
 from scipy.signal import argrelmax
 
 import stickslip as ss
-from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
+from stickslip.reference.rate_and_state import SteadySliding
 
 NORMAL, SPEED = 1e8, 1e-4
 LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
+SLIDING = SteadySliding(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED)
 CRITICAL = NORMAL * (LAW.b - LAW.a) / LAW.distance
 """Stiffness (Pa/m) below which quasi-static sliding is unstable."""
 EVOLUTIONS = pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
@@ -43,7 +44,7 @@ def growth(solution: ss.Solution, start: float, every: float | None = None) -> f
 
 
 def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
-    return block_growth(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, stiffness, mass, damping)
+    return SLIDING.block_growth(stiffness, mass, damping)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -54,7 +55,7 @@ def test_critical_stiffness_and_growth_rate(damping: float, evolution: str, shar
 
     Measured growth against the linearised system: 2e-6 of the frequency of the swings, whose amplitude is 1e-4.
     """
-    critical = critical_stiffness(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, 0.0, damping)
+    critical = SLIDING.critical_stiffness(0.0, damping)
     assert critical == pytest.approx(CRITICAL - damping * SPEED / LAW.distance, rel=1e-14)
     root = slowest_root(1.0, share * critical, damping)
     assert (root.real > 0.0) == (share < 1.0)
@@ -73,7 +74,7 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
     linearised system says, to 1e-5 of their frequency; at 0.9 k_c, where a block without mass would be stable, they stay large.
     """
     mass = NORMAL * LAW.a * LAW.distance / SPEED**2
-    assert critical_stiffness(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, mass) == pytest.approx(2.0 * CRITICAL, rel=1e-14)
+    assert SLIDING.critical_stiffness(mass) == pytest.approx(2.0 * CRITICAL, rel=1e-14)
     runs = {}
     for share in (0.9, 1.2):
         stiffness = share * 2.0 * CRITICAL
@@ -90,7 +91,7 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
 def test_growth_on_a_slab(share: float) -> None:
     """S (a - b / (1 + s Dc/V)) / V + Z coth(s h/c) = 0: the slab's own equation, waves and all. Tolerance 2e-4 of the frequency."""
     slab = ss.ElasticSlab(2800, 3500, 3.43e10 / (share * CRITICAL), NORMAL)
-    root = slab_growth(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED, slab.impedance, 0.5 * slab.two_way_time)
+    root = SLIDING.slab_growth(slab.impedance, 0.5 * slab.two_way_time)
     assert (root.real > 0.0) == (share < 1.0)
     period = 2.0 * np.pi / abs(root.imag)
     run = ss.simulate(steady(slab, LAW, 1.001), 8.0 * period, rtol=1e-8)

@@ -17,12 +17,13 @@ from numpy.polynomial import Polynomial
 import stickslip as ss
 from stickslip.engine.series.polynomial import crossings
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import Epoch, History, Moments
+from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
 from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
 from stickslip.trajectory.tables import default_event_rate
 from tests.engine.test_verified_numbers import SLAB
 from tests.long_runs.problems import RUNS
+from tests.problems import scaled_rate
 
 F = ss.friction
 SWING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
@@ -130,7 +131,7 @@ def traction_after(history: History, n: int, xi: float) -> float:
             break
     if xi == 1.0 and n + 1 < len(history):
         return traction(history, place(history, n + 1, 0.0), "right")
-    return history.problem.strength + float(history.friction(Moments.inside(n, xi))[0])
+    return history.problem.strength + float(history.friction(Positions.inside(n, xi))[0])
 
 
 def plain_row(history: History, event: PlainEvent) -> dict[str, float]:
@@ -241,7 +242,7 @@ def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: py
 def test_a_wrong_sum_would_be_seen() -> None:
     """The comparison above sees one micrometre in a metre."""
     run = ss.simulate(*CASES["events that heal"])
-    store = run.history.store._replace(rate=run.history.store.rate * (1.0 + 1e-6))
+    store = scaled_rate(run.history.store, 1.0 + 1e-6)
     bent = replace(run, history=replace(run.history, store=store))
     wanted = [slip_of(run.history, event) for event in plain_events(run.history, 0.0)]
     assert run.catalogue(0.0).slip.to_numpy() == pytest.approx(wanted, rel=1e-12, abs=0.0)

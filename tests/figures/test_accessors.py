@@ -39,6 +39,15 @@ def test_only_the_interval_that_is_asked_for_is_drawn() -> None:
     pyplot.close(figure)
 
 
+def test_the_state_of_a_law_is_drawn_in_its_unit() -> None:
+    scenario = ss.load_scenario("rate-and-state-block")
+    law = scenario.problem.friction
+    figure = ss.simulate(scenario.problem, 1e-3 * scenario.duration).plot.state()
+    assert law.state is not None
+    assert figure.axes[0].get_ylabel() == f"state ({law.state.unit})"
+    pyplot.close(figure)
+
+
 def test_a_law_without_a_state_has_none_to_draw() -> None:
     with pytest.raises(ss.InputError, match="curve: unknown quantity 'state'"):
         run().plot.state()

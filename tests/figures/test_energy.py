@@ -9,8 +9,7 @@ import pytest
 import stickslip as ss
 from stickslip.figures.runs import energy
 from tests.figures.test_figures import BLOCK_PROBLEM, SLAB_PROBLEM
-from tests.observables.test_energy import worst
-from tests.observables.test_event_energy import RUNS
+from tests.observables.runs import RUNS, worst_imbalance
 
 mpl.use("Agg")
 
@@ -37,7 +36,7 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert top == pytest.approx(total, rel=0.0, abs=1e-9 * total.max())
     assert [name for name in energy.PARTS if energy.PARTS[name][0] in [area.get_label() for area in axes.collections]] == parts
     assert all((dataset[part] >= -1e-12 * dataset.total.max()).all() for part in parts)
-    assert worst(run) < 1e-9
+    assert worst_imbalance(run) < 1e-9
 
 
 def test_a_part_that_is_left_out_is_missed() -> None:
@@ -57,3 +56,11 @@ def test_labels_and_what_is_shown_of_a_long_run() -> None:
     assert block.get_xlim() == (0.0, 3.0)
     with pytest.raises(ss.InputError, match="must end after"):
         run.plot.energy(3.0, 3.0)
+
+
+def test_a_block_at_rest_can_be_drawn() -> None:
+    """All its energies are zero: there is nothing to stack."""
+    rest = ss.simulate(ss.Problem(BLOCK_PROBLEM.body, BLOCK_PROBLEM.friction, pull_rate=0.0, initial_excess=-1e6), 10.0)
+    (axes,) = energy.draw(energy.data(rest)).axes
+    assert not axes.collections
+    assert not axes.lines[0].get_ydata().any()

@@ -67,6 +67,15 @@ def test_netcdf_speaks_for_itself(tmp_path: Path) -> None:
         assert [file[name].attrs["units"] for name in ("start", "slip", "peak_rate", "traction_drop")] == ["s", "m", "m s-1", "Pa"]
 
 
+@pytest.mark.parametrize(("name", "unit"), [("slab that heals", "J m-2"), ("block that heals", "J")])
+def test_netcdf_names_the_units_of_energies(name: str, unit: str, tmp_path: Path) -> None:
+    problem, duration = RUNS[name]
+    table = ss.catalogue(problem, duration, tmp_path / "events.nc", energies=True)
+    same(table, ss.catalogue(problem, duration, energies=True))
+    with xr.open_dataset(tmp_path / "events.nc", engine="h5netcdf", decode_times=False) as file:
+        assert {file[name].attrs["units"] for name in ENERGY_COLUMNS} == {unit}
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
     """Also where the end of the first run cut an event, whose row is made again."""

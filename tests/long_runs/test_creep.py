@@ -75,9 +75,11 @@ def step(run: Session, last: tuple[int, float]) -> bool:
 def around_leaps(name: str) -> list[int]:
     """Steps just before leaps, at them, and just behind."""
     run, last = begun(name)
-    stops, steps, leaps = {1}, 0, 0
+    stops, steps, leaps = set[int](), 0, 0
     while step(run, last):
         steps += 1
+        if run.length > 0 and not stops:
+            stops.add(steps)  # the first step with a history to store
         if len(run.creep) > leaps:
             leaps = len(run.creep)
             stops |= {steps - 1, steps, steps + 1}

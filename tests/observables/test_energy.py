@@ -22,6 +22,8 @@ from tests.engine.test_verified_numbers import (
     slip_law_block,
     slip_law_slab,
 )
+from tests.observables.runs import worst_imbalance
+from tests.problems import scaled_rate
 
 RUNS = {
     "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
@@ -36,15 +38,9 @@ RUNS = {
 }
 
 
-def worst(run: ss.Solution) -> float:
-    """Largest imbalance as a share of the energy released (heat at the end)."""
-    energy = run.energy(np.linspace(0.0, run.duration, 41))
-    return float(np.abs(energy.balance).max() / energy.heat[-1])
-
-
 @pytest.mark.parametrize("name", RUNS)
 def test_balance_closes(name: str) -> None:
-    assert worst(ss.simulate(*RUNS[name], rtol=1e-12)) < 1e-9
+    assert worst_imbalance(ss.simulate(*RUNS[name], rtol=1e-12)) < 1e-9
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -53,16 +49,16 @@ def test_balance_closes_on_random_problems(kind: str, seed: int) -> None:
     rng = np.random.default_rng([seed, 77, *kind.encode()])
     body, law = KINDS[kind](rng)
     run = ss.simulate(problems.problem(rng, body, law), problems.duration(body, 3.3), rtol=1e-12)
-    assert worst(run) < 1e-9
+    assert worst_imbalance(run) < 1e-9
 
 
 @pytest.mark.parametrize("name", ["slab, slip law", "slab, rate law", "block, slip law"])
 def test_balance_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     store = run.history.store
-    wrong = store._replace(rate=store.rate * 1.001)
+    wrong = scaled_rate(store, 1.001)
     history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.duration)
-    assert worst(replace(run, history=history)) > 1e-6
+    assert worst_imbalance(replace(run, history=history)) > 1e-6
 
 
 def test_energy_against_its_definition() -> None:

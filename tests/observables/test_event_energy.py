@@ -9,24 +9,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.trajectory.history import History
-from tests.engine.test_verified_numbers import CRITICAL, IMPEDANCE, ROUND, SLAB, rate_law_slab, slip_law_slab
-
-F = ss.friction
-HEAVY = replace(SLAB, contact_mass=1e6)
-LOSSY = replace(SLAB, driver_impedance=3.0 * SLAB.impedance)
-MAXIMAL = (rate_law_slab(selection="maximal"), 380 * ss.YEAR)
-RUNS = {
-    "slab, rate law, 468 years": (rate_law_slab(), 480 * ss.YEAR),
-    "slab, rate law, maximal": MAXIMAL,
-    "slab, just above critical": (rate_law_slab(alpha=CRITICAL + 1e-6), 94_300.0),
-    "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
-    "slab, contact mass": (
-        ss.Problem(HEAVY, F.Coulomb(0.8, 0.3), pull_rate=1e-3, initial_excess=0.0),
-        30.0,
-    ),
-    "slab, lossy": (ss.Problem(LOSSY, F.Coulomb(0.8, 0.3), initial_excess=1e5, far_stress=7e7, far_stress_rate=1.0), 60.0),
-    "block, damped": (ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0, damping=1.0), F.Coulomb(0.4, 0.3), 1e-3, initial_excess=0.0), 1e3),
-}
+from tests.engine.test_verified_numbers import IMPEDANCE, ROUND, SLAB, rate_law_slab
+from tests.observables.runs import LOSSY, RUNS, F
+from tests.problems import scaled_rate
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -43,7 +28,7 @@ def test_every_event_balances(name: str) -> None:
 @pytest.mark.parametrize("name", ["slab, rate law, maximal", "slab, slip law", "block, damped"])
 def test_balance_of_an_event_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
-    wrong = run.history.store._replace(rate=run.history.store.rate * 1.001)
+    wrong = scaled_rate(run.history.store, 1.001)
     run = replace(run, history=History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration))
     table = run.catalogue(energies=True)
     assert (table.balance.abs() > 1e-7 * table.released).all()

@@ -20,6 +20,8 @@ from stickslip.observables.field import Field
 from tests.engine import problems
 from tests.engine.test_properties import few, ran
 from tests.engine.test_properties import problems as random_problems
+from tests.observables.runs import slab_of
+from tests.problems import scaled_rate
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13
@@ -79,11 +81,6 @@ def pulled(problem: ss.Problem, time: Floats) -> Floats:
     return np.asarray(np.append(0.0, np.cumsum(parts))[np.searchsorted(edges, time)])
 
 
-def slab_of(run: ss.Solution) -> ss.ElasticSlab:
-    assert isinstance(run.problem.body, ss.ElasticSlab)
-    return run.problem.body
-
-
 def scales(slab: ss.ElasticSlab) -> Field:
     """Displacement, rate and stress that the normal stress makes."""
     stress = slab.normal_stress
@@ -140,7 +137,7 @@ def test_the_contact(run: ss.Solution) -> None:
 def test_the_contact_notices_a_wrong_history(run: ss.Solution) -> None:
     """A slip rate that is a thousandth too large everywhere sends back another load than the contact received."""
     store = run.history.store
-    history = replace(run.history, store=store._replace(rate=store.rate * 1.001))
+    history = replace(run.history, store=scaled_rate(store, 1.001))
     error = float(contact_errors(replace(run, history=history)).stress.max())
     assert error > 1e-7 or slab_of(run).reflection == 0.0  # of a matched driver nothing comes back
 

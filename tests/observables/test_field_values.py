@@ -10,6 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.observables.field import Field
+from stickslip.trajectory.history import Floats
 from tests.engine.test_verified_numbers import (
     IMPEDANCE,
     MODULUS,
@@ -20,7 +21,7 @@ from tests.engine.test_verified_numbers import (
     slip_law_block,
     slip_law_slab,
 )
-from tests.observables.test_field import Floats, slab_of
+from tests.observables.runs import slab_of
 
 F = ss.friction
 

@@ -8,8 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.reference.block.coulomb import CoulombBlock
-from stickslip.reference.block.linear import LinearBlock
+from stickslip.reference.block import CoulombBlock, LinearBlock
 from stickslip.reference.method_of_steps import method_of_steps
 from stickslip.reference.slab.coulomb import CoulombSlab
 from stickslip.reference.slab.pulse_period import PulseTrain
@@ -41,7 +40,7 @@ def stop_of(solution):
 
 @pytest.mark.parametrize("pull", [1e-9, 0.4])
 def test_coulomb_slab(pull):
-    exact = CoulombSlab(2800.0, 3500.0, 1e4, 1e8, 0.8, 0.3, pull)
+    exact = CoulombSlab(SLAB, 0.8, 0.3, pull)
     found = method_of_steps(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), pull_rate=pull, initial_excess=0.0), 9.0)
     t = np.array([0.0, 0.5, 3.0, 5.7, 5.8, 9.0])
     np.testing.assert_allclose(found.slip(t), exact.slip(t), rtol=1e-12, atol=0)
@@ -50,7 +49,7 @@ def test_coulomb_slab(pull):
 
 
 def test_coulomb_block():
-    exact = CoulombBlock(2.8e12, 3.43e13, 1e14, 0.8, 0.3, 0.3)
+    exact = CoulombBlock(SOFT_BLOCK, 0.8, 0.3, 0.3)
     found = method_of_steps(ss.Problem(SOFT_BLOCK, ss.friction.Coulomb(0.8, 0.3), pull_rate=0.3, initial_excess=0.0), 1.2)
     t = np.linspace(0.0, 1.2, 13)
     np.testing.assert_allclose(found.slip(t), exact.slip(t), rtol=1e-9, atol=0)
@@ -59,7 +58,7 @@ def test_coulomb_block():
 
 
 def test_linear_slip_weakening_block_meets_its_knot():
-    exact = LinearBlock(2.8e12, 3.43e13, 1e14, 0.8, 0.3, 0.4, pull_rate=0.1)
+    exact = LinearBlock(SOFT_BLOCK, 0.8, 0.3, 0.4, pull_rate=0.1)
     law = ss.friction.LinearSlipWeakening(0.8, 0.3, 0.4)
     found = method_of_steps(ss.Problem(SOFT_BLOCK, law, pull_rate=0.1, initial_excess=0.0), exact.duration)
     assert exact.knot_time == pytest.approx(found.pieces[0].end, rel=1e-9, abs=0)
@@ -84,7 +83,7 @@ def test_stuck_slab(driver):
     far = {} if math.isinf(driver) else {"far_stress": 5e7, "far_stress_rate": 1e4}
     problem = ss.Problem(slab, ss.friction.Coulomb(0.8, 0.3), pull_rate=0.01, initial_load=6e7, **far)
     found = method_of_steps(problem, 30.0)
-    exact = StuckSlab(2800.0, 3500.0, 1e4, driver, 6e7, 0.01, *far.values())
+    exact = StuckSlab(slab, 6e7, 0.01, *far.values())
     t = np.linspace(0.0, 29.9, 40)
     np.testing.assert_allclose(found.load(t), exact.load(t), rtol=1e-12, atol=0)
     assert np.all(found.slip_rate(t) == 0.0)

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.reference.bisection import bisect
 from stickslip.scenarios.scenario import load_scenario
 
 R = 2e4 / 3500
@@ -126,7 +126,7 @@ def test_holds_heal_friction() -> None:
 
 
 def test_tides_choose_the_hour() -> None:
-    """The strength is reached when the spring's own load, in closed form, gets there first: a bisection says when."""
+    """The strength is reached when the spring's own load, in closed form, gets there first: a root finder says when."""
     run = load_scenario("tides-block").run()
     problem, events = run.problem, run.catalogue(event_rate=0.0)
     pull, stiffness = problem.pull_rate, problem.body.stiffness
@@ -140,7 +140,7 @@ def test_tides_choose_the_hour() -> None:
 
     grid = np.arange(0.0, 1.1 * events.start[0], 60.0)
     first = grid[np.flatnonzero(load(grid) > 1e12)[0]]
-    exact = bisect(lambda time: float(load(np.asarray(time))) - 1e12, first - 60.0, first)
+    exact = brentq(lambda time: float(load(np.asarray(time))) - 1e12, first - 60.0, first)
     assert events.start[0] == pytest.approx(exact, rel=0, abs=1e-3)
 
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.reference.slab.fold_passage import fold_delay
-from stickslip.reference.slab.hyperbolic_folds import HyperbolicFolds
+from stickslip.reference.slab.folds import HyperbolicFolds, fold_delay
 from stickslip.studies.regularisations import KINDS, regularised
 from stickslip.studies.regularise import Regularisation, regularise
 from stickslip.studies.run_distance import passage
@@ -67,7 +66,7 @@ def test_delay_at_a_fold_is_the_zero_of_the_airy_function(by: str) -> None:
     left = []
     for size in (1e-7, 1e-8, 1e-9):
         run = ss.simulate(regularised(LOOP.problem, by, size), LOOP.duration, rtol=1e-12)
-        delay = passage(run, 0.5 * fold.fold_rate, False, at, at - 0.5, float(run.breaks[-1])) - at
+        delay = passage(run, 0.5 * fold.fold_rate, False, at, (at - 0.5, float(run.breaks[-1]))) - at
         left.append((delay / fold_delay(Z * size, curvature, load_rate) - 1.0) / size ** (1 / 3))
     assert abs(left[-1]) * 1e-3 < 0.0035
     assert left[0] - left[1] == pytest.approx(left[1] - left[2], rel=0.01, abs=0.0)

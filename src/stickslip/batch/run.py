@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
-from stickslip.batch.kernels.runs import Stage, run_group
+from stickslip.batch.kernels.runs import Group, Stage, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
@@ -31,7 +31,7 @@ NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or
 NO_START = "the run cannot start"
 
 
-class Members(NamedTuple):
+class BatchResult(NamedTuple):
     """The results of the members of a batch, in the order of the values given.
 
     Attributes
@@ -49,7 +49,7 @@ class Members(NamedTuple):
     reason: dict[int, str]
 
 
-def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> Members:
+def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> BatchResult:
     """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
     Parameters
@@ -65,7 +65,7 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
 
     Returns
     -------
-    Members
+    BatchResult
         Quantities and status of each member. A member whose parameters are invalid gets the status BAD_PARAMETERS and a reason;
         it does not affect the others.
 
@@ -85,7 +85,7 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
     for chunk in chunks(count, threads):
         batch.queue.put(chunk)
     batch.run(threads)
-    return Members(batch.results, batch.status, batch.reason)
+    return BatchResult(batch.results, batch.status, batch.reason)
 
 
 def chunks(count: int, threads: int) -> Iterator[slice]:
@@ -171,10 +171,11 @@ class _Batch:
             self.alike[kind] = alike(self.scenario, values)
         setups = set_up(self.scenario, values, self.alike[kind])
         codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
+        members = Group(self.engine, setups, self.wants_events, self.stop, codes, out)
         work = work.ready_for(setups.constants.shape[2])
         while True:
             base, stride = table_of(setups, work)
-            lane = run_group(self.engine, setups, base, stride, work, self.wants_events, self.stop, codes, out)
+            lane = run_group(members, base, stride, work)
             if lane == WIDTH or self.stop[0] != 0:
                 break
             if work.stage[lane] == Stage.AT_END:

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, branch_tables
+from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
 from stickslip.batch.kernels.constants import fill_constants
-from stickslip.batch.vectorised_problem import Values, many, member, shared
+from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
@@ -85,7 +85,7 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     `group` is what the members share, if that is known already.
     """
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
-    problem = many(scenario, values)
+    problem = vectorised_problem(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
     last_row, last_theta = split_times(duration, spread(par.row_time, count))
     constants, law = formulas(problem, group)
@@ -179,7 +179,7 @@ def jets_of(formula: CompiledFormula, problem: Problem) -> int:
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
 
 
-def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
+def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> Found:
     """Return the branches of each member's resistance g(v) = Z v + S mu(v), and what follows from them.
 
     The results are `Setups.branch_table`, the number of branches, 1 for members for which some load has several solutions,
@@ -187,7 +187,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     """
     branches, one = np.ones(count, np.int64), group.problem
     if group.counts.is_algebraic == 0:
-        return table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count)
+        return Found(table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count))
     law, body = problem.friction, problem.body
     own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
@@ -197,9 +197,11 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     with np.errstate(divide="ignore", invalid="ignore"):
         near = law.rate_at_slope(-impedance / normal)
     near = spread(np.nan if near is None else near, count)
-    contact = (LawPiece(group.functions[0]).value_at, constants, impedance, normal, start, slowest, fastest, near)
-    branch_tables(*contact, *kind, np.empty(4), table, branches, irregular, stick_to)
-    return table, branches, irregular, stick_to
+    address = int(LawPiece(group.functions[0]).value_at)
+    contacts = Resistances(address, constants, impedance, normal, start, slowest, fastest, near)
+    found = Found(table, branches, irregular, stick_to)
+    search_branches(contacts, *kind, np.empty(4), found)
+    return found
 
 
 def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:

@@ -41,7 +41,7 @@ class Workspace(NamedTuple):
 
     @property
     def capacity(self) -> int:
-        """Return the number of pieces of history for which each lane has room."""
+        """The number of pieces of history for which each lane has room."""
         return self.store.pieces.shape[1]
 
     def ready_for(self, constants: int) -> Workspace:
@@ -60,7 +60,7 @@ class Workspace(NamedTuple):
 
     def with_more_points(self) -> Workspace:
         """Return a workspace with twice the room for turning points."""
-        return self._replace(points=new_points(2 * len(self.points.xi)))
+        return self._replace(points=new_points(2 * len(self.points.turns.xi)))
 
 
 def divided(table: Any) -> Any:

@@ -2,37 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import check_target
+from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
+from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
+from stickslip.io.netcdf import is_catalogue
+from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.schema import check_events, read_duration
 
 if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
     from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
     from stickslip.run.progress import Progress
-    from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Request:
-    """The options of `stickslip run` as they were typed."""
+    """The options of `stickslip run` as they were typed.
 
-    name: str | None
-    until: str | None
-    events: int | None
-    rtol: float | None
-    creep_rtol: float | None
-    shortest_event: str | None
-    max_pieces: int | None
-    selection: str | None
+    `overrides` are those that replace numbers of the scenario: until, events, rtol, creep_rtol, shortest_event and selection.
+    """
+
+    scenario: str | None
     resume: Path | None
+    overrides: Mapping[str, Any]
+    max_pieces: int | None
     out: Path | None
     catalog: Path | None
     energies: bool
@@ -40,95 +42,68 @@ class Request:
 
     def check(self) -> None:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
-        if self.out is not None:
-            check_target(self.out, "--out", (".nc",))
+        check_target(self.out, "--out", (".nc",))
         self.pictures.check()
-        if self.name is None and self.resume is None:
+        if self.scenario is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
-        as_begun = (self.rtol, self.creep_rtol, self.shortest_event, self.selection, self.catalog)
+        as_begun = (self.catalog, *(self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")))
         if self.resume is not None and any(option is not None for option in as_begun):
             options = "--rtol, --creep-rtol, --shortest-event, --selection and --catalog"
             raise InputError(f"run: --resume goes on as the run began: leave {options} away")
         if self.keeps_events_only and (self.out or self.pictures.wanted):
-            options = ", ".join(["--out"] * (self.out is not None) + self.pictures.wanted)
+            options = ", ".join([*["--out"] * (self.out is not None), *self.pictures.wanted])
             raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
         if self.energies and self.catalog is None:
             raise InputError("run: --energies belongs to --catalog FILE")
         if self.catalog is not None:
-            from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
-
             check_target(self.catalog, "--catalog", SUFFIXES)
             check_catalogue(self.catalog, "--catalog")
 
     @property
     def keeps_events_only(self) -> bool:
-        """Return True if only slip events are kept, and no history."""
-        if self.resume is None:
-            return self.catalog is not None
-        from stickslip.io.netcdf import is_catalogue
-
-        return is_catalogue(self.resume)
-
-    def writes(self, solution: Solution) -> bool:
-        """Return True if a solution goes into its file: a full history only if --max-pieces was given."""
-        return self.max_pieces is not None or solution.status.name != "too many pieces"
+        """True if only slip events are kept, and no history."""
+        return self.catalog is not None if self.resume is None else is_catalogue(self.resume)
 
     @property
     def duration(self) -> float | None:
-        """Return the duration that was typed, s, or None. Raises InputError."""
-        from stickslip.scenarios.schema import read_duration
-
-        return None if self.until is None else read_duration(self.until, "run", "--until")
+        """The duration that was typed, s, or None."""
+        typed: float | None = read(read_duration, self.overrides["until"], "run", "until")
+        return typed
 
     @property
-    def wanted_events(self) -> int | None:
-        """Return the number of slip events that was typed, or None. Raises InputError."""
-        from stickslip.scenarios.schema import check_events
+    def events(self) -> int | None:
+        """The number of slip events that was typed, or None."""
+        typed: int | None = read(check_events, self.overrides["events"], "run", "events")
+        return typed
 
-        return None if self.events is None else check_events(self.events, "run", "--events")
-
-    def scenario(self) -> Scenario:
+    def load(self) -> Scenario:
         """Return the scenario with the changes that the options ask for. Raises InputError."""
-        from stickslip.engine_input.creep_limits import check_creep_rtol
-        from stickslip.engine_input.lumping_limits import check_shortest_event
-        from stickslip.problem.selection_rule import names, unknown
-        from stickslip.scenarios.scenario import load_scenario
-        from stickslip.scenarios.schema import SHORTEST_EVENT, check_rtol, read_duration
+        assert self.scenario is not None
+        return load_with("run", self.scenario, **self.overrides)
 
-        assert self.name is not None
-        loaded = load_scenario(self.name)
-        changes: dict[str, Any] = {"duration": self.duration, "max_events": self.wanted_events}
-        if self.rtol is not None:
-            changes["rtol"] = check_rtol(self.rtol, "run", "--rtol")
-        if self.creep_rtol is not None:
-            changes["creep_rtol"] = check_creep_rtol(loaded.problem, self.creep_rtol, "run", "--creep-rtol")
-        if self.shortest_event is not None:
-            shortest = read_duration(self.shortest_event, "run", "--shortest-event", SHORTEST_EVENT)
-            changes["shortest_event"] = check_shortest_event(loaded.problem, shortest, "run", "--shortest-event")
-        if self.selection is not None:
-            if self.selection not in names():
-                raise InputError(f"run: --selection '{self.selection}' {unknown(self.selection)}")
-            changes["problem"] = replace(loaded.problem, selection=self.selection)
-        return replace(loaded, **{name: value for name, value in changes.items() if value is not None})
+    def file_of(self, solution: Solution) -> Path | None:
+        """Return the file into which the run wrote its solution: a full history is written only if --max-pieces was given."""
+        writes = self.max_pieces is not None or solution.status.name != "too many pieces"
+        return (self.out or self.resume) if writes else None
 
 
 def solve(request: Request) -> tuple[Scenario, Solution]:
     """Run with the whole history, from the start or from a checkpoint. Raises InputError."""
+    keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
     if request.resume is None:
-        chosen = request.scenario()
-        keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
+        chosen = request.load()
+        request.pictures.check_problem(chosen.problem)
         with progress(chosen.name) as report:
             return chosen, chosen.run(report, **keep)
     from stickslip.io.netcdf import open_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
-    from stickslip.scenarios.scenario import Scenario
 
     stopped = open_solution(request.resume)
     check_same(request, stopped.problem)
     with progress(request.resume.stem) as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
-        options = RunOptions.to_continue(stopped, request.duration, request.wanted_events, **others)
+        options = RunOptions.to_continue(stopped, request.duration, request.events, **others)
         solution = resume_run(stopped, request.resume, options)
     return Scenario.of(solution, request.resume.stem), solution
 
@@ -138,10 +113,9 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     from stickslip.run.catalogue import catalogue_of, check_energies
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import PausedCatalogue
-    from stickslip.scenarios.scenario import Scenario
 
     if request.resume is None:
-        chosen = request.scenario()
+        chosen = request.load()
         check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
         with progress(chosen.name) as report:
             options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
@@ -150,21 +124,20 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:
         others = {"progress": report, "max_pieces": request.max_pieces}
-        options = RunOptions.to_continue(paused.stopped, request.duration, request.wanted_events, **others)
+        options = RunOptions.to_continue(paused.stopped, request.duration, request.events, **others)
         found = paused.resume(options)
     return replace(Scenario.of(paused.stopped, request.resume.stem), duration=options.duration), found
 
 
 def check_same(request: Request, problem: Problem) -> None:
     """Refuse to resume a run whose problem differs from that of the scenario that is named beside it. Raises InputError."""
-    if request.name is None:
+    if request.scenario is None:
         return
-    asked = request.scenario().problem
+    asked = request.load().problem
     if asked != problem:
         differs = next(f.name for f in fields(problem) if getattr(asked, f.name) != getattr(problem, f.name))
-        raise InputError(
-            f"{request.resume}: is a run of another problem than {request.name}: its {differs} is {getattr(problem, differs)!r}"
-        )
+        found = f"its {differs} is {getattr(problem, differs)!r}"
+        raise InputError(f"{request.resume}: is a run of another problem than {request.scenario}: {found}")
 
 
 @contextmanager

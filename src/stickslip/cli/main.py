@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from inspect import cleandoc
 from typing import Annotated
 
 import typer
@@ -49,7 +50,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for command in (run, check, new, compare, sweep, analogy, export, regularise, ensemble, paper):
-    app.command()(command)
+    app.command(help=cleandoc(command.__doc__ or "").replace(r"\b", "\b"))(command)  # \b keeps the line breaks of a paragraph
 
 
 def _print_version(wanted: bool) -> None:
@@ -67,6 +68,7 @@ def start(
         bool, typer.Option("--version", help="Show the version and stop.", callback=_print_version, is_eager=True)
     ] = False,
 ) -> None:
+    """Show the help if no command is given."""
     if context.invoked_subcommand is None:
         context.get_help()
 

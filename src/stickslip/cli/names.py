@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from importlib import import_module
 from pathlib import Path
 
 from typer import Context  # typer evaluates the annotation at run time
 
 STARTERS = ("slab", "block")
 """Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
+
+
+def _completion(module: str, names: str) -> Callable[[str], list[str]]:
+    """Return a function that completes the names in a module's table, which it imports only when the shell asks."""
+
+    def complete(incomplete: str) -> list[str]:
+        found: Iterable[str] = getattr(import_module(f"stickslip.{module}"), names)
+        return [name for name in found if name.startswith(incomplete)]
+
+    return complete
+
+
+complete_law = _completion("friction", "LAWS")
+complete_pull = _completion("loading", "HISTORIES")
+complete_rule = _completion("problem.selection_rule", "SELECTION_RULES")
+complete_regularisation = _completion("studies.regularisations", "KINDS")
+complete_quantity = _completion("sweeps.design.quantities", "QUANTITIES")
+complete_design = _completion("sweeps.design.design", "KINDS")
 
 
 def complete_scenario(incomplete: str) -> list[str]:
@@ -43,56 +63,14 @@ def complete_template(incomplete: str) -> list[str]:
     return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
 
 
-def complete_law(incomplete: str) -> list[str]:
-    """Return the kinds of friction laws that begin with what is typed."""
-    from stickslip.friction import LAWS
-
-    return [kind for kind in LAWS if kind.startswith(incomplete)]
-
-
-def complete_pull(incomplete: str) -> list[str]:
-    """Return the kinds of loading histories that begin with what is typed."""
-    from stickslip.loading import HISTORIES
-
-    return [kind for kind in HISTORIES if kind.startswith(incomplete)]
-
-
-def complete_rule(incomplete: str) -> list[str]:
-    """Return the built-in selection rules that begin with what is typed."""
-    from stickslip.problem.selection_rule import SELECTION_RULES
-
-    return [rule for rule in SELECTION_RULES if rule.startswith(incomplete)]
-
-
-def complete_regularisation(incomplete: str) -> list[str]:
-    """Return the kinds of regularisation that begin with what is typed."""
-    from stickslip.studies.regularisations import KINDS
-
-    return [kind for kind in KINDS if kind.startswith(incomplete)]
-
-
 def complete_vary(context: Context, incomplete: str) -> list[str]:
     """Return the keys that a sweep can vary in the scenario on the command line, as far as they begin with what is typed."""
     from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
-    from stickslip.sweeps.design.parameter_paths import keys_of
+    from stickslip.sweeps.design.parameter_paths import parameter_paths
 
     try:
-        found = keys_of(load_scenario(context.params["scenario"]))
-        return [f"{key.name}=" for key in found if key.name.startswith(incomplete)]
+        found = parameter_paths(load_scenario(context.params["scenario"]))
+        return [f"{one.name}=" for one in found if one.name.startswith(incomplete)]
     except (InputError, KeyError, TypeError):
         return []
-
-
-def complete_quantity(incomplete: str) -> list[str]:
-    """Return the quantities of a sweep that begin with what is typed."""
-    from stickslip.sweeps.design.quantities import QUANTITIES
-
-    return [name for name in QUANTITIES if name.startswith(incomplete)]
-
-
-def complete_design(incomplete: str) -> list[str]:
-    """Return the designs of a sweep that begin with what is typed."""
-    from stickslip.sweeps.design.design import KINDS
-
-    return [kind for kind in KINDS if kind.startswith(incomplete)]

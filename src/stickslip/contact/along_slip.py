@@ -14,9 +14,8 @@ import numpy as np
 
 from stickslip.contact.critical import Regime, margin
 from stickslip.contact.roots import sign_change
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction import FrictionLaw
-from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
 from stickslip.problem.problem import Problem
 
 _POINTS = 65
@@ -26,7 +25,7 @@ _UNKNOWN = 10.0
 
 
 @dataclass(frozen=True)
-class Stretch:
+class RegimeInterval:
     """An interval of law slip (m) on which the regime does not change."""
 
     slip_from: float
@@ -61,7 +60,7 @@ def _length(value: float, unit: str) -> Iterator[float]:
         yield 2.0 * math.pi / abs(value)
 
 
-def regimes_along_slip(problem: Problem) -> tuple[Stretch, ...]:
+def regimes_along_slip(problem: Problem) -> tuple[RegimeInterval, ...]:
     """Return the intervals of law slip with one regime each, from the initial slip over the length `slip_reach`.
 
     Changes of regime are found to rounding, but two changes between neighbouring samples (65 slips and the law's knots) are missed.
@@ -70,7 +69,7 @@ def regimes_along_slip(problem: Problem) -> tuple[Stretch, ...]:
     start = problem.law_slip
     end = start + slip_reach(problem.friction)
     if not (problem.friction.depends_on_slip and problem.friction.depends_on_rate):
-        return (Stretch(start, end, "irregular" if margin(problem) < 0.0 else "regular"),)
+        return (RegimeInterval(start, end, "irregular" if margin(problem) < 0.0 else "regular"),)
     knots = problem.friction.knots if problem.friction.knot_variable == "slip" else ()
     slips = np.unique([*np.linspace(start, end, _POINTS), *(knot for knot in knots if start < knot < end)]).tolist()
     falls = [margin(problem, slip) < 0.0 for slip in slips]
@@ -78,4 +77,4 @@ def regimes_along_slip(problem: Problem) -> tuple[Stretch, ...]:
     changes = [sign_change(lambda slip: margin(problem, slip), *ends) for ends, (one, other) in pairs if one != other]
     edges = [start, *changes, end]
     regimes: tuple[Regime, Regime] = ("irregular", "regular") if falls[0] else ("regular", "irregular")
-    return tuple(Stretch(low, high, regimes[k % 2]) for k, (low, high) in enumerate(pairwise(edges)))
+    return tuple(RegimeInterval(low, high, regimes[k % 2]) for k, (low, high) in enumerate(pairwise(edges)))

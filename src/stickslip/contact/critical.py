@@ -115,6 +115,12 @@ def margin(problem: Problem, law_slip: float | None = None) -> float:
     return -math.inf if g.law.static_excess > 0.0 else steepest_fall(g)[1] / g.impedance
 
 
+def check_no_contact_mass(problem: Problem, where: str) -> None:
+    """Raise InputError, which begins with `where`, for a slab with a contact mass; a block is refused by `margin`."""
+    if problem.body.has_waves and problem.body.has_inertia:
+        raise InputError(f"{where}: the contact mass makes the slip rate a state, the motion is unique whatever the law")
+
+
 def critical_normal_stress(g: Resistance) -> float | None:
     """Return the normal stress (Pa) above which the contact is irregular, Z / max(-dmu/dv), or None if there is none.
 
@@ -157,8 +163,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     """
     check_problem("critical_value", problem)
     found = parameter(problem, name)
-    if problem.body.has_waves and problem.body.has_inertia:
-        raise InputError("critical value: the contact mass makes the slip rate a state, the motion is unique whatever the law")
+    check_no_contact_mass(problem, "critical value")
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")
 

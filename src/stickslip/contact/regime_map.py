@@ -10,10 +10,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.critical import margin
+from stickslip.contact.critical import check_no_contact_mass, margin
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import parameter
+from stickslip.problem.parameters import Parameter, parameter
 from stickslip.problem.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -88,6 +88,25 @@ class RegimeMap:
     present: tuple[float, float]
 
 
+def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Parameter, Parameter]:
+    """Return the parameters of two axes. Raises InputError, which begins with `where`, if both are the same."""
+    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
+    if names[0].name == names[1].name:
+        raise InputError(f"{where}: needs two different parameters, got {names[0].name} twice")
+    return names
+
+
+def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
+    """Return the problem with other values of two parameters, or None if it refuses them."""
+    pairs = list(zip(names, values, strict=True))
+    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be refused although both together are not
+        try:
+            return parameter(first.put(one), second.name).put(other)
+        except InputError:
+            continue
+    return None
+
+
 def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int], None] | None = None) -> RegimeMap:
     """Compute the regime of a problem over two of its parameters, with everything else fixed.
 
@@ -111,21 +130,13 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
         If a name is not that of a parameter, if both axes have the same one, or if the body is a block or has a contact mass, so
         that the motion is unique.
     """
-    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
-    if names[0].name == names[1].name:
-        raise InputError(f"regime map: needs two different parameters, got {names[0].name} twice")
-    if problem.body.has_waves and problem.body.has_inertia:
-        raise InputError("regime map: the contact mass makes the slip rate a state, the motion is unique whatever the law")
+    names = two_parameters(problem, x, y, "regime map")
+    check_no_contact_mass(problem, "regime map")
     margin(problem)  # raises for a block, which `at` would otherwise turn into a map of NaN
 
     def at(x_value: float, y_value: float) -> float:
-        pairs = list(zip(names, (x_value, y_value), strict=True))
-        for (first, one), (second, other) in (pairs, pairs[::-1]):  # one alone may be refused where both together are not
-            try:
-                return margin(parameter(first.put(one), second.name).put(other))
-            except InputError:
-                continue
-        return math.nan
+        point = put_both(names, (x_value, y_value))
+        return math.nan if point is None else margin(point)
 
     values = np.empty((y.points, x.points))
     for row, column in product(range(y.points), range(x.points)):

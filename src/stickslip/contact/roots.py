@@ -56,12 +56,13 @@ def sign_change(function: Callable[[float], float], low: float, high: float) -> 
         a, fa = x, fx
         if fa == 0.0 or abs(b - a) <= 4.0 * math.ulp(abs(a)):
             break
-        t = _next_share(a, b, c, fa, fb, fc)
+        t = _next_share((a, fa), (b, fb), (c, fc))
     return b if fa < 0.0 else a
 
 
-def _next_share(a: float, b: float, c: float, fa: float, fb: float, fc: float) -> float:
-    """Return the next point to examine, as a share of the way from a to b."""
+def _next_share(*points: tuple[float, float]) -> float:
+    """Return the next place to examine, as a share of the way from a to b; `points` are a, b and c with the values there."""
+    (a, fa), (b, fb), (c, fc) = points
     if not (math.isfinite(fa) and math.isfinite(fb) and math.isfinite(fc)) or fc in (fa, fb) or fa == fb:
         return 0.5
     xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)

@@ -16,7 +16,7 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
 from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds.certified import Certificate, Verdict, certificate
-from stickslip.contact.folds.lowest import lowest_slope, normal_stress_between
+from stickslip.contact.folds.lowest import critical_stress_between
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.foundation.errors import InputError
@@ -198,7 +198,7 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
         summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
-        critical_stress_between=_stress_between(g),
+        critical_stress_between=critical_stress_between(g),
         certificate=proof.verdict,
         undecided=proof.undecided,
         folds=folds,
@@ -217,12 +217,6 @@ def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
         return closed
     stress = critical_normal_stress(g)
     return None if stress is None else ("normal_stress", stress)
-
-
-def _stress_between(g: Resistance) -> tuple[float, float] | None:
-    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
-        return None
-    return normal_stress_between(g, lowest_slope(g))
 
 
 def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tuple[Fold, ...]:

@@ -56,13 +56,13 @@ class Strength:
 
     @cached_property
     def piece(self) -> int:
-        """Return the piece of the law that holds at x = 0."""
+        """The piece of the law that holds at x = 0."""
         law = self.problem.friction
         return int(law.piece_at(self.problem.law_slip + self.law_slip)) if law.knot_variable == "slip" else 0
 
     @cached_property
     def sight(self) -> Sight:
-        """Return the guards of the piece of the law that holds at x = 0."""
+        """The guards of the piece of the law that holds at x = 0."""
         law = self.problem.friction
         return Sight.of(law.trees()[self.piece], law.parameters(), law.piece_values(self.piece), self.problem.law_slip)
 
@@ -73,7 +73,7 @@ class Strength:
 
     @cached_property
     def room(self) -> float:
-        """Return how far x may grow within the piece of the law, m."""
+        """How far x may grow within the piece of the law, m."""
         knots = (-np.inf, *self.problem.friction.knots, np.inf)
         here = self.problem.law_slip + self.law_slip
         return float(knots[self.piece + 1] - here if self.sign > 0 else here - knots[self.piece])
@@ -106,7 +106,7 @@ class Creep:
 
     @property
     def seen(self) -> float:
-        """Return the smallest share of an amplitude that the range of slip within two round trips shows.
+        """The smallest share of an amplitude that the range of slip within two round trips shows.
 
         Slip oscillates as sin(2 x t / R) where x / tan(x) = 1 - room: twice in four round trips where room is 1, once where it is
         1/5, more slowly where it is less, and then 1 - cos(2 x) is what shows.
@@ -125,7 +125,7 @@ class AveragedCreep:
 
     @property
     def gain(self) -> float:
-        """Return the load gained in a round trip, Pa."""
+        """The load gained in a round trip, Pa."""
         return 2.0 * self.impedance * self.speed
 
     def at(self, lift: float) -> Creep:

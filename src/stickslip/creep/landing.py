@@ -29,12 +29,12 @@ class Piece:
 
     @property
     def theta_to(self) -> float:
-        """Return the offset at which the piece ends, s."""
+        """The offset at which the piece ends, s."""
         return self.theta_from + self.speed + self.bend
 
     @property
     def grown(self) -> float:
-        """Return the slip over the piece, m."""
+        """The slip over the piece, m."""
         powers = np.arange(1, TERMS + 1)
         return float((self.speed * self.rate / powers).sum() + (2.0 * self.bend * self.rate / (powers + 1)).sum())
 

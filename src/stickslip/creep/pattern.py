@@ -88,18 +88,18 @@ class Pattern:
 
     @cached_property
     def ends(self) -> Floats:
-        """Return the lowest and the highest load of each part, shape (2, parts)."""
+        """The lowest and the highest load of each part, shape (2, parts)."""
         ends = np.stack([self.parts.load[:, 0], self.parts.load.sum(axis=1)])
         return np.stack([ends.min(axis=0), ends.max(axis=0)])
 
     @cached_property
     def whole(self) -> Floats:
-        """Return the integral over theta of each part, Pa s."""
+        """The integral over theta of each part, Pa s."""
         return self.parts.integral(np.arange(len(self.parts.speed)), np.ones(len(self.parts.speed)))
 
     @cached_property
     def width(self) -> Floats:
-        """Return the length of each part, s."""
+        """The length of each part, s."""
         return np.asarray(self.parts.speed + self.parts.bend)
 
     def above(self, lift: float) -> Above:

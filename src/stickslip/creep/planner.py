@@ -42,7 +42,7 @@ class Plan:
 
     @property
     def trips(self) -> int:
-        """Return the number of round trips from the pattern's to that of the landing."""
+        """The number of round trips from the pattern's to that of the landing."""
         return round(self.states[-1].trips)
 
 

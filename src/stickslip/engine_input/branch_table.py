@@ -121,7 +121,7 @@ class Step:
 
     @property
     def direction(self) -> int:
-        """Return +1 for forward slip, -1 for backward slip, 0 at rest."""
+        """+1 for forward slip, -1 for backward slip, 0 at rest."""
         return int(self.store.mode[self.row])
 
     def law_slip(self, xi: float) -> float:
@@ -224,7 +224,7 @@ class RuleFollower:
 
     @cached_property
     def _scan(self) -> Scan:
-        """Return the memory with which compiled code looks for branches."""
+        """The memory with which compiled code looks for branches."""
         return new_scan(scan_rates(resistance(self.problem)))
 
     def _storms(self) -> bool:

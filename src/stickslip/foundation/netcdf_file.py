@@ -104,7 +104,7 @@ def check(path: Path, what: str = "a file") -> None:
             if not (seal.startswith(MARK) and seal.endswith(b"\n")):
                 lacks = "it does not end with its checksum: another program or an older version wrote it, or its end was cut off"
                 raise InputError(f"{path}: not {what} of this version of stickslip ({lacks})")
-            if _digest(file, size - SEAL) != seal[len(MARK) : -1]:
+            if digest_of(file, size - SEAL).encode() != seal[len(MARK) : -1]:
                 raise InputError(f"{path}: damaged: its content does not have its checksum; take a copy of it, or run again")
     except FileNotFoundError:
         raise InputError(f"{path}: no such file") from None
@@ -112,14 +112,14 @@ def check(path: Path, what: str = "a file") -> None:
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
 
 
-def _digest(file: Any, size: int) -> bytes:
+def digest_of(file: Any, size: int) -> str:
+    """Return the SHA-256 of the first `size` bytes of an open file, or of all its bytes if it has fewer."""
     digest = hashlib.sha256()
     file.seek(0)
-    while size > 0:
-        some = file.read(min(size, AT_A_TIME))
+    while size > 0 and (some := file.read(min(size, AT_A_TIME))):
         digest.update(some)
-        size -= len(some) or size
-    return digest.hexdigest().encode()
+        size -= len(some)
+    return digest.hexdigest()
 
 
 def read(path: Path, what: str = "a file") -> xr.Dataset:

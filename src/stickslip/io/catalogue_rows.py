@@ -8,14 +8,14 @@ import importlib.util
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation import netcdf_file
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import sync, write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import cannot_be_written, write_with
+from stickslip.foundation.netcdf_file import cannot_be_written, digest_of, write_with
 from stickslip.io.netcdf import column_unit
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ AT_A_TIME = 50_000
 
 CHUNK = 1024
 """Number of rows in a chunk of a netCDF file, whose dimension has no fixed size."""
-BYTES_AT_A_TIME = 2**20
-"""Number of bytes read at a time for a checksum, which bounds the memory."""
 
 
 def check_catalogue(path: Path, where: str = "catalogue") -> None:
@@ -52,12 +50,12 @@ class Rows:
 
     @property
     def growing(self) -> Path:
-        """Return the path of the growing file, to which rows are appended during the run."""
+        """The growing file, to which rows are appended during the run."""
         return self.path if self.path.suffix.lower() == ".csv" else self.path.with_suffix(".rows.csv")
 
     @property
     def size(self) -> int:
-        """Return the size of the growing file in bytes, 0 if it does not exist."""
+        """Size of the growing file in bytes, 0 if it does not exist."""
         return self.growing.stat().st_size if self.growing.exists() else 0
 
     def append(self, rows: pd.DataFrame) -> None:
@@ -74,18 +72,14 @@ class Rows:
     def sync(self) -> None:
         """Force the rows onto the disk, before a checkpoint that relies on them."""
         if self.growing.exists():
-            with self.growing.open("rb+") as file:
-                os.fsync(file.fileno())
+            sync(self.growing)
 
     def digest(self, size: int) -> str:
         """Return the SHA-256 of the first `size` bytes of the growing file, or of all its bytes if it has fewer."""
-        digest = hashlib.sha256()
-        if self.growing.exists():
-            with self.growing.open("rb") as file:
-                while size > 0 and (some := file.read(min(size, BYTES_AT_A_TIME))):
-                    digest.update(some)
-                    size -= len(some)
-        return digest.hexdigest()
+        if not self.growing.exists():
+            return hashlib.sha256().hexdigest()
+        with self.growing.open("rb") as file:
+            return digest_of(file, size)
 
     def take_up(self, rows: int, size: int, digest: str) -> None:
         """Go back to the first `rows` rows, which filled `size` bytes with this digest.
@@ -93,40 +87,31 @@ class Rows:
         The growing file holds them. If the run had ended, the file is written again from the finished table, atomically: a process
         that dies here leaves either no growing file or a complete one. Raises InputError if rows are missing or differ.
         """
-        if self._has(size, digest):
-            self._cut(size)
-            return
-        if self.growing != self.path and self.path.exists():  # the run had ended, and `tidy` deleted the growing file
-            ended = read_table(self.path).iloc[:rows]
-            text = ",".join(ended.columns) + "\n" + "".join(lines_of(ended))
+        ended = self.growing != self.path and self.path.exists() and not self._has(size, digest)
+        if ended:  # `tidy` deleted the growing file when the run ended
+            table = read_table(self.path).iloc[:rows]
+            text = ",".join(table.columns) + "\n" + "".join(lines_of(table))
             write_atomically(self.growing, lambda draft: draft.write_text(text, encoding="utf-8", newline=""))
-            if self._has(size, digest):
-                self._cut(size)
-                return
-        what = "has lost rows that the checkpoint counts on" if self.size < size else "has other rows than the checkpoint counts on"
-        raise InputError(f"{self.growing}: {what}; run it again from the start")
+        if not self._has(size, digest):
+            lost = self.size < size
+            what = "has lost rows that the checkpoint counts on" if lost else "has other rows than the checkpoint counts on"
+            raise InputError(f"{self.growing}: {what}; run it again from the start")
+        if self.growing.exists():
+            os.truncate(self.growing, size)
 
     def _has(self, size: int, digest: str) -> bool:
         return self.size >= size and self.digest(size) == digest
-
-    def _cut(self, size: int) -> None:
-        if self.growing.exists():
-            os.truncate(self.growing, size)
 
     def clear(self) -> None:
         """Delete the growing file and the table."""
         self.growing.unlink(missing_ok=True)
         self.path.unlink(missing_ok=True)
 
-    def chunks(self) -> Iterator[pd.DataFrame]:
-        """Yield the rows as tables of at most AT_A_TIME rows."""
-        return read_csv(self.growing)
-
     def columns(self, *names: str) -> pd.DataFrame:
         """Return the named columns of all rows so far."""
         import pandas as pd
 
-        return pd.concat([chunk[[*names]] for chunk in self.chunks()], ignore_index=True)
+        return pd.concat([chunk[[*names]] for chunk in read_csv(self.growing)], ignore_index=True)
 
     def read(self) -> pd.DataFrame:
         """Return the finished table."""
@@ -140,11 +125,11 @@ class Rows:
         suffix = self.path.suffix.lower()
         if suffix == ".parquet":
             try:
-                write_atomically(self.path, lambda draft: _to_parquet(self.chunks(), draft, about))
+                write_atomically(self.path, lambda draft: _to_parquet(read_csv(self.growing), draft, about))
             except OSError as error:
                 raise cannot_be_written(self.path, error, f"; its rows are in {self.growing}") from None
         elif suffix == ".nc":
-            write_with(lambda file: _to_netcdf(self.chunks(), file, about, load_unit), self.path)
+            write_with(lambda file: _to_netcdf(read_csv(self.growing), file, about, load_unit), self.path)
 
     def tidy(self) -> None:
         """Delete the growing file, which is not needed once the table is finished."""
@@ -196,7 +181,10 @@ def read_table(path: Path) -> pd.DataFrame:
         return netcdf_file.read(path, "a catalogue").to_dataframe().reset_index(drop=True)
     try:
         if suffix == ".parquet":
-            return _from_parquet(path)
+            import pyarrow.parquet as pq
+
+            table: pd.DataFrame = pq.read_table(path, page_checksum_verification=True).to_pandas()
+            return table
         return pd.concat(list(read_csv(path)), ignore_index=True)
     except FileNotFoundError:
         raise InputError(f"{path}: no such file") from None
@@ -246,19 +234,13 @@ def _to_parquet(chunks: Iterator[pd.DataFrame], path: Path, about: Mapping[str, 
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    writer = None
-    try:
-        for chunk in chunks:
-            table = pa.Table.from_pandas(chunk, preserve_index=False)
-            if writer is None:
-                known = {name: str(value) for name, value in about.items()}
-                writer = pq.ParquetWriter(
-                    path, table.schema.with_metadata(known | (table.schema.metadata or {})), write_page_checksum=True
-                )
-            writer.write_table(table.cast(writer.schema))
-    finally:
-        if writer is not None:
-            writer.close()
+    tables = (pa.Table.from_pandas(chunk, preserve_index=False) for chunk in chunks)
+    first = next(tables)
+    known = {name: str(value) for name, value in about.items()}
+    schema = first.schema.with_metadata(known | (first.schema.metadata or {}))
+    with pq.ParquetWriter(path, schema, write_page_checksum=True) as writer:
+        for table in chain([first], tables):
+            writer.write_table(table.cast(schema))
 
 
 def _to_netcdf(chunks: Iterator[pd.DataFrame], file: Any, about: Mapping[str, Any], load_unit: str) -> None:
@@ -275,10 +257,3 @@ def _to_netcdf(chunks: Iterator[pd.DataFrame], file: Any, about: Mapping[str, An
                 file.resize_dimension("event", done + len(chunk))
             file.variables[name][done : done + len(chunk)] = values
         done += len(chunk)
-
-
-def _from_parquet(path: Path) -> pd.DataFrame:
-    import pyarrow.parquet as pq
-
-    table: pd.DataFrame = pq.read_table(path, page_checksum_verification=True).to_pandas()
-    return table

@@ -21,7 +21,6 @@ from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
-from stickslip.observables.rule_influence import choices
 from stickslip.problem.problem import MAY_VARY
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.scenarios import Scenario, read_scenario
@@ -31,7 +30,7 @@ from stickslip.solution.window import Window
 from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.status import Status
-from stickslip.trajectory.tables import EVENT_COLUMNS
+from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -75,9 +74,9 @@ def provenance(solution: Solution) -> dict[str, Any]:
 
     They include what the selection rule decided and, for a slab whose echoes can amplify errors, the predictability of the run.
     """
-    chosen = choices(solution)
+    chosen = solution.rule_influence
     return origin(solution) | {
-        "selection_note": solution.selection_note,
+        "selection_note": chosen.note,
         "selection_regime": chosen.regime,
         "selection_decided_shocks": int(chosen.shocks.sum()),
         **attributes_of(predictability(solution) if is_followed(solution.problem) else None),
@@ -179,16 +178,16 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
         raise
 
 
-def save_checkpoint(solution: Solution, path: Path) -> Path:
+def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None = None) -> None:
     """Write only what `open_solution` and `resume` need of a run under way, without curves and tables, to save time.
 
-    A full disk does not end the run: the previous checkpoint stays in the file, and a warning says so.
+    `about` holds the attributes of a checkpoint that is not a solution. A full disk does not end the run: the previous checkpoint
+    stays in the file, and a warning says so.
     """
     try:
-        return write(history_dataset(solution).assign_attrs(origin(solution) | {"stickslip_format": FORMAT}), path)
+        write(history_dataset(solution).assign_attrs(origin(solution) | (about or {"stickslip_format": FORMAT})), path)
     except FullDiskError as error:
         warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
-        return path
 
 
 HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name, place in HistoryPiece.places.items()}
@@ -212,27 +211,24 @@ def history_dataset(solution: Solution) -> xr.Dataset:
 
 
 def _history(solution: Solution) -> xr.Dataset:
-    store, history = solution.history.store, solution.history
-    dataset = xr.Dataset(
-        {
-            **{f"history_{name}": (axes, getattr(store, name)) for name, axes in HISTORY_AXES.items()},
-            "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
-            "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
-            "ramp": ((), history.ramp, {"units": solution.problem.load_unit, "long_name": "load gained in a row at rest"}),
-        }
-    )
+    store, history, load = solution.history.store, solution.history, solution.problem.load_unit
+    units, known = HISTORY_UNITS | {"load": load}, {"load": "load minus reference", "rate": "slip rate"}
+    variables: dict[str, Any] = {}
+    for name, axes in HISTORY_AXES.items():
+        meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
+        variables[f"history_{name}"] = (axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+    variables |= {
+        "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
+        "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
+        "ramp": ((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
+    }
     if len(history.creep):
         about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
-        dataset["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
+        variables["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.state is not None:
         about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
-        dataset["history_state"] = (("piece", "term"), store.state, about)
-    units = HISTORY_UNITS | {"load": solution.problem.load_unit}
-    for name in HISTORY_AXES:
-        dataset[f"history_{name}"].attrs = {"units": units.get(name, "1"), "long_name": f"{name} of a piece of the history"}
-    dataset.history_load.attrs["long_name"] = "load minus reference, Taylor coefficients"
-    dataset.history_rate.attrs["long_name"] = "slip rate, Taylor coefficients"
-    return dataset
+        variables["history_state"] = (("piece", "term"), store.state, about)
+    return xr.Dataset(variables)
 
 
 def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
@@ -264,8 +260,8 @@ def _tables(solution: Solution) -> xr.Dataset:
 
 def column_unit(name: str, load_unit: str) -> str:
     """Return the unit of a column of the table of events."""
-    unit, _ = EVENT_COLUMNS[name]
-    return load_unit if unit == "load" else unit
+    unit, _ = (EVENT_COLUMNS | ENERGY_COLUMNS)[name]
+    return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
 
 
 def open_solution(path: str | Path) -> Solution:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,8 +50,16 @@ class Series:
 
     @property
     def time(self) -> Floats:
-        """Return the times of the samples, s: start + k/rate."""
+        """Times of the samples, s: start + k/rate."""
         return self.start + np.arange(len(self.slip)) / self.rate
+
+
+class Sampling(TypedDict, total=False):
+    """The optional arguments of `sample` that functions which write series hand on to it."""
+
+    start: float | None
+    end: float | None
+    antialias: bool
 
 
 def sample(

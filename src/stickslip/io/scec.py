@@ -9,32 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 
 import stickslip
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.io.sampling import Series, sample
+from stickslip.io.sampling import Floats, Sampling, Series, sample
 from stickslip.problem.problem import Problem
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.window import Window
-
-FIELDS = (
-    ("t", "Time (s)"),
-    ("slip", "slip (m)"),
-    ("slip-rate", "slip rate (m/s)"),
-    ("shear-stress", "shear stress (MPa)"),
-)
-"""Name and meaning of each column."""
-VERTICAL = (
-    ("v-slip", "vertical slip (m)"),
-    ("v-slip-rate", "vertical slip rate (m/s)"),
-    ("v-shear-stress", "vertical shear stress (MPa)"),
-)
-"""Columns of the three-dimensional benchmarks that are zero here, because slip has one direction."""
-NORMAL = ("n-stress", "normal stress (MPa)")
-"""Last column of the three-dimensional benchmarks."""
 
 
 def write_scec(
@@ -42,12 +27,10 @@ def write_scec(
     path: str | Path,
     sampling_rate: float,
     *,
-    start: float | None = None,
-    end: float | None = None,
-    antialias: bool = False,
     problem: str = "stickslip",
     station: str = "contact",
     components: bool = False,
+    **sampling: Unpack[Sampling],
 ) -> Path:
     """Write time, slip, slip rate and shear stress of a run, or of a window on it, as text.
 
@@ -59,14 +42,16 @@ def write_scec(
         A solution, or a window on one slip event.
     path : str or Path
         Name of the file.
-    sampling_rate, start, end, antialias
-        See `sample`.
+    sampling_rate : float
+        Number of samples per second, Hz.
     problem, station : str
         Texts of one line for the header.
     components : bool
         Write the eight columns of the three-dimensional benchmarks: those that begin with h- hold the slip of this model, those
         with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to TPV37, so that the
         normal stress is negative.
+    **sampling
+        The arguments `start`, `end` and `antialias` of `sample`.
 
     Returns
     -------
@@ -85,31 +70,35 @@ def write_scec(
     for name, text in (("problem", problem), ("station", station)):
         if not text.isprintable():
             raise InputError(f"{name} must be one line of text, got {text!r}")
-    series = sample(run, sampling_rate, start=start, end=end, antialias=antialias)
+    series = sample(run, sampling_rate, **sampling)
     columns = _columns(series, run.problem, components)
-    fields = _fields(components)
-    header = [f"# {line}" for line in _about(run, series, problem, station, fields)]
-    numbers = np.column_stack(columns)
+    header = [f"# {line}" for line in _about(run, series, problem, station, [meaning for _, meaning, _ in columns])]
+    numbers = np.column_stack([values for _, _, values in columns])
     lines = (" ".join((f"{row[0]: .13E}", *(f"{value: .12E}" for value in row[1:]))) for row in numbers.tolist())
-    text = "\n".join([*header, " ".join(name for name, _ in fields), *lines, ""])
+    text = "\n".join([*header, " ".join(name for name, _, _ in columns), *lines, ""])
     return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def _fields(components: bool) -> tuple[tuple[str, str], ...]:
+def _columns(series: Series, problem: Problem, components: bool) -> list[tuple[str, str, Floats]]:
+    """Return the name, the meaning and the numbers of each column.
+
+    The vertical components of the three-dimensional benchmarks are zero here, because slip has one direction.
+    """
+    time = ("t", "Time (s)", series.time)
+    slip = [
+        ("slip", "slip (m)", series.slip),
+        ("slip-rate", "slip rate (m/s)", series.slip_rate),
+        ("shear-stress", "shear stress (MPa)", 1e-6 * series.traction),
+    ]
     if not components:
-        return FIELDS
-    return FIELDS[0], *((f"h-{name}", f"horizontal {meaning}") for name, meaning in FIELDS[1:]), *VERTICAL, NORMAL
+        return [time, *slip]
+    zero = np.zeros_like(series.slip)
+    along = [(f"h-{name}", f"horizontal {meaning}", values) for name, meaning, values in slip]
+    across = [(f"v-{name}", f"vertical {meaning}", zero) for name, meaning, _ in slip]
+    return [time, *along, *across, ("n-stress", "normal stress (MPa)", np.full_like(zero, -1e-6 * problem.normal))]
 
 
-def _columns(series: Series, problem: Problem, components: bool) -> list[np.ndarray[tuple[int], np.dtype[np.float64]]]:
-    columns = [series.time, series.slip, series.slip_rate, 1e-6 * series.traction]
-    if components:
-        zero = np.zeros_like(series.slip)
-        columns += [zero, zero, zero, np.full_like(zero, -1e-6 * problem.normal)]
-    return columns
-
-
-def _about(run: Readings, series: Series, problem: str, station: str, fields: tuple[tuple[str, str], ...]) -> Iterator[str]:
+def _about(run: Readings, series: Series, problem: str, station: str, meanings: list[str]) -> Iterator[str]:
     solution = run.solution if isinstance(run, Window) else run
     yield f"problem={problem}"
     yield "code=stickslip"
@@ -128,7 +117,7 @@ def _about(run: Readings, series: Series, problem: str, station: str, fields: tu
     yield f"time_step={1.0 / series.rate:.13E} s"
     yield f"num_time_steps={len(series.slip)}"
     yield f"location={station}"
-    yield f"Time series in {len(fields)} columns: E21.13, then E20.12"
-    for number, (_, meaning) in enumerate(fields, 1):
+    yield f"Time series in {len(meanings)} columns: E21.13, then E20.12"
+    for number, meaning in enumerate(meanings, 1):
         yield f"Column #{number} = {meaning}"
     yield "The line below lists the names of the data fields:"

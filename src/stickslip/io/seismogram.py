@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Unpack
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.io.sampling import Series, sample
+from stickslip.io.sampling import Sampling, Series, sample
 from stickslip.solution.evaluation import Readings
 
 Quantity = Literal["slip", "slip_rate", "traction"]
-CODES: dict[Quantity, str] = {"slip": "U", "slip_rate": "V", "traction": "T"}
-"""Last letter of the channel of each quantity."""
+HEADERS: dict[Quantity, tuple[str, int, str]] = {
+    "slip": ("U", 6, "m"),
+    "slip_rate": ("V", 7, "m/s"),
+    "traction": ("T", 5, "Pa"),
+}
+"""Of each quantity the last letter of the channel, SAC's code idep (displacement, velocity, unknown), and the unit."""
 FORMATS = {".mseed": "MSEED", ".sac": "SAC"}
 """ObsPy's name of the format that belongs to each suffix."""
 BANDS = ((1000.0, "F"), (250.0, "C"), (80.0, "H"), (10.0, "B"), (1.5, "M"), (0.5, "L"), (0.05, "V"))
 """Lowest sampling rate (Hz) of each band, and its letter in the SEED manual, appendix A; the letter is U below all of them."""
-KINDS: dict[Quantity, tuple[int, str]] = {"slip": (6, "m"), "slip_rate": (7, "m/s"), "traction": (5, "Pa")}
-"""SAC's code idep (displacement, velocity, unknown) and the unit of each quantity."""
 
 
 def write_seismogram(
@@ -28,13 +30,11 @@ def write_seismogram(
     sampling_rate: float,
     *,
     quantities: Sequence[Quantity] = ("slip_rate", "traction"),
-    start: float | None = None,
-    end: float | None = None,
-    antialias: bool = False,
     x: float = 0.0,
     network: str = "XX",
     station: str = "SLIDE",
     origin: str = "1970-01-01T00:00:00",
+    **sampling: Unpack[Sampling],
 ) -> list[Path]:
     """Write quantities of a run, or of a window on it, in SI as miniSEED or SAC.
 
@@ -48,8 +48,8 @@ def write_seismogram(
     path : str or Path
         NAME.mseed for one file of 64-bit numbers, or NAME.sac for 32-bit numbers in one file for each quantity, NAME.slip_rate.sac
         and so on; a single quantity goes to NAME.sac.
-    sampling_rate, start, end, antialias
-        See `sample`.
+    sampling_rate : float
+        Number of samples per second, Hz.
     quantities : sequence of {"slip", "slip_rate", "traction"}
         Quantities to write. Inside the slab they are displacement, velocity and shear stress.
     x : float
@@ -58,6 +58,8 @@ def write_seismogram(
         Codes for the header.
     origin : str
         Date (ISO 8601, UTC) of t = 0, which in a window is the start of the event.
+    **sampling
+        The arguments `start`, `end` and `antialias` of `sample`.
 
     Returns
     -------
@@ -73,13 +75,13 @@ def write_seismogram(
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"{path}: the name must end in {' or '.join(FORMATS)}")
     for one in quantities:
-        if one not in CODES:
-            raise InputError(f"seismogram: unknown quantity {one!r}; {nearest(str(one), CODES)}")
+        if one not in HEADERS:
+            raise InputError(f"seismogram: unknown quantity {one!r}; {nearest(str(one), HEADERS)}")
     obspy = import_obspy()
     begin = _date(obspy, origin)
-    series = sample(run, sampling_rate, start=start, end=end, antialias=antialias, x=x)
-    codes = {"network": network, "station": station}
-    traces = {one: _trace(obspy, series, one, run.problem.load_unit, begin, codes) for one in quantities}
+    series = sample(run, sampling_rate, x=x, **sampling)
+    header = {"network": network, "station": station, "location": "", "starttime": begin + series.start}
+    traces = {one: _trace(series, one, run.problem.load_unit, header) for one in quantities}
     if path.suffix.lower() == ".mseed":
         return [_write(obspy.Stream(list(traces.values())), path)]
     single = len(traces) == 1
@@ -107,10 +109,10 @@ def band(sampling_rate: float) -> str:
     return next((letter for least, letter in BANDS if sampling_rate >= least), "U")
 
 
-def _trace(obspy: Any, series: Series, one: Quantity, force: str, begin: Any, codes: dict[str, str]) -> Any:
-    kind, unit = KINDS[one]
-    header = codes | {"location": "", "channel": f"{band(series.rate)}X{CODES[one]}", "sampling_rate": series.rate}
-    trace = obspy.Trace(getattr(series, one), header | {"starttime": begin + series.start})
+def _trace(series: Series, one: Quantity, force: str, header: dict[str, Any]) -> Any:
+    letter, kind, unit = HEADERS[one]
+    header = header | {"channel": f"{band(series.rate)}X{letter}", "sampling_rate": series.rate}
+    trace = import_obspy().Trace(getattr(series, one), header)
     trace.stats.sac = {"idep": kind, "kuser0": force if one == "traction" else unit}
     return trace
 

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
@@ -22,13 +21,10 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import Floats, History
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from stickslip.solution.solution import Solution
-
-Floats = NDArray[np.float64]
 
 LOST = 0.1
 """Disturbance, as a share of the waves that slip sends out, that changes an event into another one: it ends the horizon."""
@@ -54,7 +50,7 @@ class Predictability:
 
     @property
     def horizon(self) -> float:
-        """Return the time (s) from which on single events mean nothing; inf if there is none in this run.
+        """The time (s) from which on single events mean nothing; inf if there is none in this run.
 
         It is the first time at which the disturbance exceeds a tenth of the waves that slip sends out.
         """
@@ -63,12 +59,12 @@ class Predictability:
 
     @property
     def largest(self) -> float:
-        """Return the largest amplification in the run."""
+        """The largest amplification in the run."""
         return float(np.nanmax(self.amplification, initial=1.0))
 
     @property
     def exponent(self) -> float:
-        """Return ln(largest) divided by the time (s) at which it was reached: an estimate of the largest Lyapunov exponent, 1/s."""
+        """An estimate of the largest Lyapunov exponent, 1/s: ln(largest) divided by the time at which it was reached."""
         if not self.largest > 1.0:
             return 0.0
         reached = float(self.time[int(np.nanargmax(self.amplification))])
@@ -76,7 +72,7 @@ class Predictability:
 
     @property
     def text(self) -> str:
-        """Return the result as one line of text."""
+        """The result as one line of text."""
         grown = f"echoes multiply an error of the load by up to {self.largest:.3g}"
         if math.isinf(self.horizon):
             return f"{grown}; single events are predictable throughout"
@@ -84,12 +80,26 @@ class Predictability:
         return f"{grown}; predictable up to {when}, beyond it only statistics are"
 
 
-def predictability(solution: Solution) -> Predictability:
+class Run(Protocol):
+    """A run, as far as its predictability is concerned: its history, and the relative tolerance with which it was computed."""
+
+    @property
+    def history(self) -> History:
+        """The history of the run."""
+        ...
+
+    @property
+    def rtol(self) -> float:
+        """The relative tolerance."""
+        ...
+
+
+def predictability(run: Run) -> Predictability:
     """Return how far disturbances have grown along a run.
 
     Parameters
     ----------
-    solution : Solution
+    run : Solution
         Run of a slab without contact mass, under a law of slip rate only.
 
     Returns
@@ -101,16 +111,16 @@ def predictability(solution: Solution) -> Predictability:
     InputError
         For any other problem: there, slip, inertia or a state variable decide how a disturbance grows.
     """
-    if not isinstance(getattr(solution, "problem", None), Problem):
-        raise InputError(f"predictability: needs a Solution, got {shown(solution)}")
-    problem, body, store = solution.problem, solution.problem.body, solution.history.store
+    if not isinstance(getattr(run, "history", None), History):
+        raise InputError(f"predictability: needs a Solution, got {shown(run)}")
+    history, problem, body, store = run.history, run.history.problem, run.history.problem.body, run.history.store
     if not is_followed(problem):
         raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
     # the load is stored as a difference from the strength, so only this difference is rounded
     rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())
-    error = max(solution.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
-    return Predictability(solution.history.start, store.amplified, error)
+    error = max(run.rtol * SAFETY, rounding / waves if waves > 0.0 else 0.0)
+    return Predictability(history.start, store.amplified, error)
 
 
 def predictability_of_events(events: pd.DataFrame, rtol: float) -> Predictability:

@@ -7,10 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.history import Floats, History, Positions
 
-Floats = NDArray[np.float64]
-Integrand = Callable[[Moments], Floats]
+Integrand = Callable[[Positions], Floats]
 
 _GAUSS = np.polynomial.legendre.leggauss(20)
 NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
@@ -24,23 +23,23 @@ BLOCK = 1 << 14
 
 
 def over(
-    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, leaped: Floats | None = None
+    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, *, leaped: Floats | None = None
 ) -> Floats:
     """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
     leaped = np.zeros(len(piece)) if leaped is None else leaped
     if len(piece) > BLOCK:
         cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
-        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped[cut]) for cut in cuts])
+        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut]) for cut in cuts])
     xi = low[:, None] + (high - low)[:, None] * NODES
     nodes = np.repeat(piece, len(NODES))
-    at = Moments(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
+    at = Positions(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
     values = integrand(at).reshape(xi.shape)
     speed, bend = history.store.speed[piece], history.store.bend[piece]
     return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ WEIGHTS * (high - low))
 
 
-def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
-    """Integrate over all pieces, or the given ones, up to each moment; rest that was not recorded is left out."""
+def up_to(history: History, at: Positions, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
+    """Integrate over all pieces, or the given ones, up to each position; rest that was not recorded is left out."""
     at = at.recorded()
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
@@ -53,8 +52,8 @@ def up_to(history: History, at: Moments, integrand: Integrand, pieces: NDArray[n
     return total
 
 
-def between(history: History, first: Moments, last: Moments, integrand: Integrand) -> Floats:
-    """Integrate from each first moment to the last one of the same slip event; nothing outside the event enters."""
+def between(history: History, first: Positions, last: Positions, integrand: Integrand) -> Floats:
+    """Integrate from each first position to the last one of the same slip event; nothing outside the event enters."""
 
     def one(begin: int, end: int, low: float, high: float) -> float:
         pieces = np.arange(begin, end + 1)

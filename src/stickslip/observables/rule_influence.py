@@ -6,8 +6,9 @@ At any other load one slip rate solves it, and every rule takes that one.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,9 @@ from numpy.typing import NDArray
 from stickslip.contact.branches import Branch, branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.foundation.constants import YEAR
+from stickslip.trajectory.history import Floats, History, Side
+from stickslip.trajectory.tables import shocks_table
 
-if TYPE_CHECKING:
-    from stickslip.solution.solution import Solution
-
-Floats = NDArray[np.float64]
-Side = Literal["left", "right"]
 Regime = Literal["regular", "irregular", "continuum"]
 
 _ROUNDING = 1e-12
@@ -34,53 +32,75 @@ _CANDIDATES = 50
 
 
 @dataclass(frozen=True)
-class Choices:
+class RuleInfluence:
     """Decisions of the selection rule in a run.
 
     `regime` is that of the contact. `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was
     between the folds before or after the shock, or the load reached a fold by itself (cause "fold"). `since` is the first time
-    (s) at which the load lay between the folds, or None. For a law whose folds move with slip `shocks` is empty and `since` is
-    None.
+    (s) at which the load lay between the folds, or None. `folds_move` is True for a law whose folds move with slip; then `shocks`
+    is empty and `since` is None.
     """
 
     rule: str
     regime: Regime
     shocks: NDArray[np.bool_]
     since: float | None = None
+    folds_move: bool = False
+
+    @property
+    def note(self) -> str:
+        """One line on whether the result depends on the selection rule, and how much of it."""
+        if self.regime == "regular":
+            return f"{self.rule}: without effect, the solution is unique"
+        depends = f"{self.rule}: the contact equation has several solutions, this run depends on the rule"
+        if self.folds_move:
+            return depends
+        shocks, decided = len(self.shocks), int(self.shocks.sum())
+        if self.since is None and not decided:
+            return f"{depends}; it decided none of the {shocks} shocks: the load was never between the folds"
+        since = "" if self.since is None else f": the load was between the folds first at {_time(self.since)}"
+        return f"{depends}; it decided {decided} of the {shocks} shocks{since}"
 
 
-def choices(solution: Solution) -> Choices:
+def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floats]]) -> RuleInfluence:
     """Return what the selection rule decided in a run.
 
-    The search for `since` uses the 2000 times of `solution.curve` and all breaking points: it overlooks a visit between the folds
-    that begins and ends between two of these times.
+    Parameters
+    ----------
+    history : History
+        History of the run.
+    load_curve : callable
+        Returns times (s) and loads (Pa) along the run, as `Solution.curve("load")`; it is called only if the rule has a choice at
+        some load.
+
+    Returns
+    -------
+    RuleInfluence
+
+    Notes
+    -----
+    The search for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
     """
-    problem = solution.problem
+    problem = history.problem
     contact = uniqueness(problem)
     if contact.resistance is None or not problem.friction.depends_on_rate:
-        return Choices(problem.rule, contact.regime, np.zeros(0, bool))
+        return RuleInfluence(problem.rule, contact.regime, np.zeros(0, bool))
     if problem.friction.depends_on_slip:
-        return Choices(problem.rule, _regime_on_the_way(solution, contact), np.zeros(0, bool))
+        return RuleInfluence(problem.rule, _regime_on_the_way(history, contact), np.zeros(0, bool), folds_move=True)
+    table = shocks_table(history)
     if contact.window is None:
-        return Choices(problem.rule, contact.regime, np.zeros(len(solution.shocks), bool))
-    table = solution.shocks
-    time = table.time.to_numpy(float)
-    between = [_between(contact, solution, time, side) for side in ("left", "right")]
-    starts = (table.cause == "start").to_numpy()
-    decided = (table.cause == "fold").to_numpy() | (between[0] & ~starts) | between[1]
-    return Choices(problem.rule, contact.regime, decided, _first_between(contact, solution))
+        return RuleInfluence(problem.rule, contact.regime, np.zeros(len(table), bool))
+    time, cause = table.time.to_numpy(float), table.cause.to_numpy()
+    before, after = (_side_of_folds(contact, _load(history, time, side)) == 0.0 for side in ("left", "right"))
+    decided = (cause == "fold") | (before & (cause != "start")) | after
+    return RuleInfluence(problem.rule, contact.regime, decided, _first_between(history, contact, *load_curve()))
 
 
-def _between(contact: Uniqueness, solution: Solution, time: Floats, side: Side) -> NDArray[np.bool_]:
-    """Return True where the load, of either sign, is strictly between the folds."""
-    return _inside(contact, solution.load(time, side=side) if len(time) else np.zeros(0))
+def _load(history: History, time: Floats, side: Side = "right") -> Floats:
+    return history.problem.strength + history.excess(history.find(time, side))
 
 
-def _inside(contact: Uniqueness, load: Floats) -> NDArray[np.bool_]:
-    return np.equal(_place(contact, load), 0.0)
-
-
-def _place(contact: Uniqueness, load: Floats) -> Floats:
+def _side_of_folds(contact: Uniqueness, load: Floats) -> Floats:
     """Return -1 below the folds, 0 strictly between them and +1 above, for loads of either sign."""
     assert contact.window is not None
     assert contact.resistance is not None
@@ -89,27 +109,26 @@ def _place(contact: Uniqueness, load: Floats) -> Floats:
     return np.where(excess <= low + rounding, -1.0, np.where(excess >= high - rounding, 1.0, 0.0))
 
 
-def _first_between(contact: Uniqueness, solution: Solution) -> float | None:
+def _first_between(history: History, contact: Uniqueness, time: Floats, load: Floats) -> float | None:
     """Return the first time (s) at which the load is between the folds, or None.
 
-    The time is a sample, or is found between two samples that lie on different sides of the folds.
+    The time is one of the curve, or is found between two of them at which the load lies on different sides of the folds.
     """
-    time, load = solution.curve("load")
-    place = _place(contact, load)
+    place = _side_of_folds(contact, load)
     passed = (place[1:] == 0.0) | ((place[1:] != place[:-1]) & (np.diff(time) > 0.0))
     candidates = np.flatnonzero(np.append(place[0] == 0.0, passed))[:_CANDIDATES]
-    found = (_refined(contact, solution, float(time[max(k - 1, 0)]), float(time[k])) for k in candidates.tolist())
+    found = (_refined(history, contact, float(time[max(k - 1, 0)]), float(time[k])) for k in candidates.tolist())
     return next((at for at in found if at is not None), None)
 
 
-def _refined(contact: Uniqueness, solution: Solution, low: float, high: float) -> float | None:
+def _refined(history: History, contact: Uniqueness, low: float, high: float) -> float | None:
     """Return the first time in an interval with the load between the folds, to the resolution of time.
 
     Returns None if the load only jumps across the folds.
     """
     while True:
         times = np.linspace(low, high, 33)
-        place = _place(contact, solution.load(times))
+        place = _side_of_folds(contact, _load(history, times))
         change = np.flatnonzero((place == 0.0) | (place != place[0]))
         if not change.size:
             return None
@@ -119,38 +138,21 @@ def _refined(contact: Uniqueness, solution: Solution, low: float, high: float) -
         low, high = float(times[first - 1]), float(times[first])
 
 
-def _regime_on_the_way(solution: Solution, contact: Uniqueness) -> Regime:
+def _regime_on_the_way(history: History, contact: Uniqueness) -> Regime:
     """Return "irregular" if the contact is irregular at any of the slips that the run passes."""
     if contact.regime != "regular":
         return contact.regime
-    slips = solution.slip(solution.breaks)
-    problem = solution.problem
+    problem = history.problem
+    slips = problem.initial_slip + history.slipped(history.find(history.breaks, "right"))
     if problem.friction.counts == "path":
         slips = problem.law_slip + np.append(0.0, np.cumsum(np.abs(np.diff(slips))))
-    for slip in np.linspace(slips.min(), slips.max(), _SLIPS).tolist():
-        if several(branches(problem, slip)):
-            return "irregular"
-    return "regular"
+    on_the_way = np.linspace(slips.min(), slips.max(), _SLIPS).tolist()
+    return "irregular" if any(_several(branches(problem, slip)) for slip in on_the_way) else "regular"
 
 
-def several(stable: tuple[Branch, ...]) -> bool:
+def _several(stable: tuple[Branch, ...]) -> bool:
     """Return True if the branches give some load more than one slip rate."""
     return len(stable) > 1 or stable[0].rate_from > 0.0 or stable[0].excess_from < 0.0
-
-
-def selection_note(solution: Solution) -> str:
-    """Return one line on whether the result depends on the selection rule, and how much of it."""
-    found = choices(solution)
-    if found.regime == "regular":
-        return f"{found.rule}: without effect, the solution is unique"
-    rests = f"{found.rule}: the contact equation has several solutions, this run depends on the rule"
-    if solution.problem.friction.depends_on_slip:
-        return rests
-    shocks, decided = len(found.shocks), int(found.shocks.sum())
-    if found.since is None and not decided:
-        return f"{rests}; it decided none of the {shocks} shocks: the load was never between the folds"
-    since = "" if found.since is None else f": the load was between the folds first at {_time(found.since)}"
-    return f"{rests}; it decided {decided} of the {shocks} shocks{since}"
 
 
 def _time(t: float) -> str:

@@ -48,21 +48,18 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     return frame.astype({"count": int})
 
 
-def _describe(column: pd.Series) -> dict[str, float]:
-    values = column.to_numpy(float)
-    values = values[np.isfinite(values)]
-    some, several = len(values) > 0, len(values) > 1
-    mean = float(values.mean()) if some else np.nan
-    deviation = float(values.std(ddof=1)) if several else np.nan
+def _describe(column: pd.Series[float]) -> dict[str, float]:
+    values = column[np.isfinite(column)]
+    mean, deviation = values.mean(), values.std()
     return {
         "count": len(values),
         "mean": mean,
         "deviation": deviation,
         "variation": deviation / mean if mean != 0.0 else np.nan,
-        "smallest": float(values.min()) if some else np.nan,
-        "median": float(np.median(values)) if some else np.nan,
-        "largest": float(values.max()) if some else np.nan,
-        "next": _next(values),
+        "smallest": values.min(),
+        "median": values.median(),
+        "largest": values.max(),
+        "next": _next(np.asarray(values, float)),
     }
 
 

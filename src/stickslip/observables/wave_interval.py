@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.errors import InputError
 from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import Floats, Moments, Side
+from stickslip.trajectory.history import Floats, Positions, Side
 
 POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
 """Points at which the wave of a piece is sampled. Their number makes the interpolation exact for the polynomials of the history
@@ -22,7 +22,7 @@ TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)
 """Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
 
 
-class Stretch:
+class WaveInterval:
     """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 
     The pieces of the history that hold in the interval are looked up once, including those whose echoes arrive in rests that were
@@ -47,7 +47,7 @@ class Stretch:
         store = self.history.store
         self._origin = self.history.seconds(store.row[self._piece] + leaped, store.theta_from[self._piece])
         count = len(POINTS)
-        places = Moments.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
+        places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
         self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
         self._wave = TO_SERIES @ self._values
 
@@ -65,8 +65,7 @@ class Stretch:
         """Return w plus the reference (Pa) at times (s) in the interval."""
         part = self._part(time, side)
         inside = np.maximum(part, 0)
-        since = time - self.first
-        start = -self.waves.slope * since - self.waves.excess
+        start = self.waves.left_before(time - self.first)
         return np.where(part < 0, start, _series(self._wave, inside, self._xi(time, inside)))
 
     def total(self, time: Floats) -> Floats:
@@ -94,7 +93,7 @@ class Stretch:
 
     @cached_property
     def _integral(self) -> Floats:
-        """Return the Chebyshev series of the wave's integral in time from the start of each piece.
+        """The Chebyshev series of the wave's integral in time from the start of each piece.
 
         The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
         """
@@ -104,9 +103,9 @@ class Stretch:
 
     @cached_property
     def _sums(self) -> Floats:
-        """Return what to add to those integrals so that they count from the start of the interval, for each part.
+        """The addends, one for each part, with which those integrals count from the start of the interval.
 
-        It is the integral up to the start of the part, less the value of the part's own series there.
+        Each is the integral up to the start of the part, less the value of the part's own series there.
         """
         parts = np.arange(len(self.start))
         begin, end = (

@@ -18,9 +18,8 @@ from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
-from stickslip.trajectory.history import START, Epoch, History, Moments
+from stickslip.trajectory.history import START, Epoch, Floats, History, Positions
 
-Floats = NDArray[np.float64]
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""
 
@@ -35,7 +34,7 @@ class Waves:
         self.slope = body.impedance * history.problem.first_pull_rate / self.half  # G V / h
         self.inflow = inflow_of(history.problem)
 
-    def leaving(self, at: Moments) -> Floats:
+    def leaving(self, at: Positions) -> Floats:
         """Return w plus the reference, Pa."""
         return 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
 
@@ -46,6 +45,14 @@ class Waves:
         """
         return np.asarray(self.body.reflection * leaving + self.inflow.at(left + self.round))
 
+    def first_load(self, time: Floats) -> Floats:
+        """Return the load minus the reference (Pa) that the initial state brings, at times (s) up to h/c after the start."""
+        return self.excess + self.slope * time
+
+    def left_before(self, time: Floats) -> Floats:
+        """Return w plus the reference (Pa) that left the contact at times (s, negative) before the start of the run."""
+        return -self.slope * time - self.excess
+
     def begun(self, now: Epoch) -> float:
         """Return the time since the start of the run, s; use it only where its rounding does not matter."""
         return now.row * self.round + now.offset
@@ -54,14 +61,9 @@ class Waves:
 
     def stored(self, now: Epoch) -> float:
         """Return the elastic and kinetic energy inside the slab, up to a constant."""
-
-        def down(load: Floats, _: Floats) -> Floats:
-            return load * (2.0 * self.reference + load)
-
-        def up(leaving: Floats, _: Floats) -> Floats:
-            return leaving * (leaving - 2.0 * self.reference)
-
-        return self._inside(now, down, up) / (4.0 * self.body.impedance)
+        doubled = 2.0 * self.reference
+        both = self._inside(now, lambda load, _: load * (doubled + load), lambda leaving, _: leaving * (leaving - doubled))
+        return both / (4.0 * self.body.impedance)
 
     def trapped(self, now: Epoch) -> float:
         """Return the energy of the waves inside the slab: the stored energy beyond that of the same mean stress at rest.
@@ -122,7 +124,7 @@ class Waves:
 
     @cached_property
     def _of_rows(self) -> Floats:
-        """Return the work of all waves that left before the end of each stored row, after a 0 for the start."""
+        """The work of all waves that left before the end of each stored row, after a 0 for the start."""
         rows = np.unique(self.history.store.row)
         own = [self._in_row(int(row), 0.0, self.round, self._of(self.power)) for row in rows]
         rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
@@ -149,7 +151,7 @@ class Waves:
 
     @cached_property
     def _passed(self) -> Floats:
-        """Return the cumulative work, over the pieces in order of time, of all waves that left before their echo was recorded."""
+        """The cumulative work, over the pieces in order of time, of all waves that left before their echo was recorded."""
         store = self.history.store
         echo = np.flatnonzero(store.echo_of >= 0)
         source, work = store.echo_of[echo], np.zeros(len(store.row))
@@ -199,13 +201,13 @@ class Waves:
         total = self._between(now, -self.half, 0.0, lambda leaving, since: up(leaving, -since))
         if begun < self.half:  # part of the load still comes from the initial state, before any wave has come back
             away = (self.half - begun) * NODES
-            total += (self.half - begun) * float(down(self.excess + self.slope * (begun + away), away) @ WEIGHTS)
+            total += (self.half - begun) * float(down(self.first_load(begun + away), away) @ WEIGHTS)
         return total + self._between(now, max(-self.round, -self.half - begun), -self.half, back)
 
-    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Moments], Floats]:
-        """Return the density as a function of moments, with the time counted from an epoch."""
+    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Positions], Floats]:
+        """Return the density as a function of positions, with the time counted from an epoch."""
 
-        def integrand(at: Moments) -> Floats:
+        def integrand(at: Positions) -> Floats:
             store = self.history.store
             theta = store.theta_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
             time = (store.row[at.piece] + at.leaped - since.row) * self.round + (theta - since.offset)
@@ -222,7 +224,7 @@ class Waves:
             return 0.0
         edges = np.concatenate([[start], self.inflow.edges(start + self.round, end + self.round) - self.round, [end]])
         left, lasting = edges[:-1, None] + np.diff(edges)[:, None] * NODES, np.diff(edges)
-        values = density(-self.slope * left.ravel() - self.excess, left.ravel() - begun)
+        values = density(self.left_before(left.ravel()), left.ravel() - begun)
         return float(lasting @ (values.reshape(left.shape) @ WEIGHTS))
 
     def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
@@ -239,7 +241,7 @@ class Waves:
             total += self._in_row(row, begin, end, self._of(density, now))
         return total
 
-    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Moments], Floats]) -> float:
+    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Positions], Floats]) -> float:
         """Integrate over the offsets from low to high (s) of a row."""
         piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)
@@ -247,7 +249,7 @@ class Waves:
         if self.history.problem.varies:
             piece, begin, end = self._cut(piece, begin, end, row)
         leaped = (row - self.history.store.row[piece]).astype(float)
-        return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped).sum())
+        return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped=leaped).sum())
 
     def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Cut pieces (offsets in a row, s) into parts whose echo meets the same segment of the loading throughout."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.bodies import BODIES, Body
 from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, check_quantities, quantities_of, quantity
+from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT
@@ -91,7 +91,7 @@ class Problem:
         check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
         check_type("Problem: friction", self.friction, FrictionLaw, "a friction law")
         self._check_varying()
-        check_quantities(self, but=self._varying)
+        check_fields(self, but=self._varying)
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")

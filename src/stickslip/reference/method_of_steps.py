@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError
+from stickslip.friction import HyperbolicRate
 from stickslip.friction.formula.differences import difference
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
-from stickslip.reference.slab.quadratic import fast_rate, fast_room
 
 Load = Callable[[float, float], float]
 """Load minus initial strength (Pa or N) as a function of time (s) and of slip since the start (m)."""
@@ -158,12 +158,12 @@ class _Stepper:
     def room(self, sense: int, load: float, walked: float) -> float:
         """Return a number that is positive as long as a massless contact can continue to slip."""
         if self.hyperbolic:
-            return fast_room(self.problem, self.pull(sense, load))
+            return _fast_room(self.problem, self.pull(sense, load))
         return self.drive(sense, load, walked, 0.0)
 
     def massless_rate(self, sense: int, load: float, walked: float) -> float:
         if self.hyperbolic:
-            return fast_rate(self.problem, self.pull(sense, load))
+            return _fast_rate(self.problem, self.pull(sense, load))
         return max(self.drive(sense, load, walked, 0.0), 0.0) / self.problem.body.damping
 
     # ---- the load ---------------------------------------------------------------------------------------------------------------
@@ -311,6 +311,34 @@ class _Stepper:
     def _keep(self, piece: Piece) -> None:
         if piece.end > piece.start:
             self.pieces.append(piece)
+
+
+def _coefficients(problem: Problem, excess: float) -> tuple[float, float, float]:
+    """Return alpha Z, minus the linear coefficient, and the discriminant of the quadratic for the slip rate under law (15).
+
+    Let e be the load minus S muS, and drop = S (muS - muD). Then Z v - drop alpha v / (1 + alpha v) = e is equivalent to
+    alpha Z v^2 + (Z - alpha drop - alpha e) v - e = 0.
+    """
+    law, body = problem.friction, problem.body
+    assert isinstance(law, HyperbolicRate)
+    square = law.alpha * body.damping
+    linear = law.alpha * problem.normal * (law.static - law.dynamic) - body.damping + law.alpha * excess
+    return square, linear, linear**2 + 4.0 * square * excess
+
+
+def _fast_rate(problem: Problem, excess: float) -> float:
+    """Return the stable (larger) root (m/s) at an excess (Pa), or the rate of the fold if there is no root, but not below 0."""
+    square, linear, discriminant = _coefficients(problem, excess)
+    root = math.sqrt(max(discriminant, 0.0))
+    if linear <= 0.0:
+        return max(2.0 * excess, 0.0) / (root - linear) if root > linear else 0.0
+    return 0.5 * (linear + root) / square
+
+
+def _fast_room(problem: Problem, excess: float) -> float:
+    """Return a number that is positive while a positive stable root exists, and passes 0 where it ends: at the fold or excess 0."""
+    _, linear, discriminant = _coefficients(problem, excess)
+    return discriminant if linear > 0.0 else excess
 
 
 def _near(history: float | LoadingHistory, time: float) -> Callable[[float], float]:

@@ -12,84 +12,76 @@ The PRZ law, whose steady state is theta = 2 Dc/V, relaxes in the same way.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 
-def critical_stiffness(
-    normal: float, a: float, b: float, distance: float, rate: float, mass: float = 0.0, damping: float = 0.0
-) -> float:
-    """Return the stiffness K below which steady sliding of a block is unstable.
+@dataclass(frozen=True)
+class SteadySliding:
+    """Sliding at a constant rate under a rate-and-state law.
 
     Parameters
     ----------
     normal : float
-        Normal force S (N).
+        Normal load S (slab: Pa, block: N).
     a, b : float
-        Coefficients of the rate-and-state law.
+        Coefficients of the law.
     distance : float
         Characteristic slip distance Dc (m).
     rate : float
         Slip rate V (m/s).
-    mass : float
-        Mass m (kg).
-    damping : float
-        Viscous damping (N s/m).
-
-    Returns
-    -------
-    float
-        Critical stiffness (N/m); negative if sliding is stable at any stiffness.
 
     Notes
     -----
-    Forces, mass, damping and stiffness may also all be per unit area. The result is
-    (S (b - a) / V - damping) (1 / T + m / (A T^2)) with A = damping + S a / V and T = Dc / V: Routh's condition on the cubic of
-    `block_growth`. Without damping it is S (b - a) / Dc (1 + m V^2 / (S a Dc)), without mass S (b - a) / Dc - damping V / Dc,
-    and without both S (b - a) / Dc.
+    Masses, dampings and stiffnesses below are those of a block (kg, N s/m, N/m), or all per unit area like the normal load.
     """
-    time = distance / rate
-    viscous = damping + normal * a / rate
-    return (normal * (b - a) / rate - damping) * (1.0 / time + mass / (viscous * time * time))
 
+    normal: float
+    a: float
+    b: float
+    distance: float
+    rate: float
 
-def block_growth(
-    normal: float, a: float, b: float, distance: float, rate: float, stiffness: float, mass: float, damping: float = 0.0
-) -> complex:
-    """Return the complex growth rate (1/s) of the fastest growing disturbance of a block's steady sliding.
+    @property
+    def time(self) -> float:
+        """Return the time T = Dc / V in which the state follows the slip rate (s)."""
+        return self.distance / self.rate
 
-    Its imaginary part is not negative. The arguments are those of `critical_stiffness`, with the stiffness in N/m.
-    """
-    time = distance / rate
-    viscous = damping + normal * a / rate
-    cubic = [mass * time, mass + viscous * time, viscous - normal * b / rate + stiffness * time, stiffness]
-    root = max(np.roots(cubic), key=lambda root: root.real)
-    return complex(root.real, abs(root.imag))
+    def critical_stiffness(self, mass: float = 0.0, damping: float = 0.0) -> float:
+        """Return the stiffness below which steady sliding of a block is unstable; negative if it is stable at any stiffness.
 
+        The result is (S (b - a) / V - damping) (1 / T + m / (A T^2)) with A = damping + S a / V: Routh's condition on the cubic of
+        `block_growth`. Without damping it is S (b - a) / Dc (1 + m V^2 / (S a Dc)), without mass
+        S (b - a) / Dc - damping V / Dc, and without both S (b - a) / Dc.
+        """
+        viscous = damping + self.normal * self.a / self.rate
+        fall = self.normal * (self.b - self.a) / self.rate
+        return (fall - damping) * (1.0 / self.time + mass / (viscous * self.time * self.time))
 
-def slab_growth(normal: float, a: float, b: float, distance: float, rate: float, impedance: float, half_time: float) -> complex:
-    """Return the complex growth rate (1/s) of a disturbance of the steady sliding of a slab under a rigid driver.
+    def block_growth(self, stiffness: float, mass: float, damping: float = 0.0) -> complex:
+        """Return the complex growth rate (1/s) of the fastest growing disturbance of a block.
 
-    It is the root of S/V (a - b / (1 + s T)) + Z coth(s h/c) = 0 reached from that of the block of stiffness G/h = Z c/h and of a
-    third of the slab's mass. `normal` is the normal stress (Pa), `impedance` is Z (Pa s/m), and `half_time` is h/c (s); the other
-    arguments are those of `critical_stiffness`.
-    """
-    time = distance / rate
+        Its imaginary part is not negative.
+        """
+        time, viscous = self.time, damping + self.normal * self.a / self.rate
+        fall = self.normal * self.b / self.rate
+        cubic = [mass * time, mass + viscous * time, viscous - fall + stiffness * time, stiffness]
+        root = max(np.roots(cubic), key=lambda root: root.real)
+        return complex(root.real, abs(root.imag))
 
-    def miss(s: complex) -> complex:
-        return normal / rate * (a - b / (1.0 + s * time)) + impedance / cmath.tanh(s * half_time)
+    def slab_growth(self, impedance: float, half_time: float) -> complex:
+        """Return the complex growth rate (1/s) of a disturbance of a slab under a rigid driver.
 
-    start = block_growth(normal, a, b, distance, rate, impedance / half_time, impedance * half_time / 3.0)
-    return _root(miss, start)
+        It is the root of S/V (a - b / (1 + s T)) + Z coth(s h/c) = 0 reached from that of the block of stiffness G/h = Z c/h and
+        of a third of the slab's mass. `impedance` is Z (Pa s/m), and `half_time` is h/c (s).
+        """
+        from scipy.optimize import newton  # here, because it takes a quarter of a second to import
 
+        def miss(s: complex) -> complex:
+            friction = self.normal / self.rate * (self.a - self.b / (1.0 + s * self.time))
+            return friction + impedance / cmath.tanh(s * half_time)
 
-def _root(miss: Callable[[complex], complex], start: complex) -> complex:
-    """Find a complex root by the secant method from a start close to it."""
-    before, now = start * (1.0 + 1e-6), start
-    for _ in range(100):
-        low, high = miss(before), miss(now)
-        if high == low or abs(now - before) <= 1e-15 * abs(now):
-            break
-        before, now = now, now - high * (now - before) / (high - low)
-    return now
+        start = self.block_growth(impedance / half_time, impedance * half_time / 3.0)
+        found = newton(miss, start, x1=start * (1.0 + 1e-6), tol=1e-300, rtol=1e-13, maxiter=100, disp=False)
+        return complex(found)

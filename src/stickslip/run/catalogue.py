@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
@@ -12,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 from stickslip.foundation.arguments import as_path, is_number, shown
 from stickslip.foundation.atomic_write import held
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, FORMAT, history_dataset, origin
+from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem.problem import Problem
@@ -215,12 +213,7 @@ class EventRows:
         if isinstance(self.rows, RowsInMemory) or self.told is None:
             return
         self.rows.sync()
-        solution = run.solution(code)
-        about = self._about(run, self.told, self.rows)
-        try:
-            write(history_dataset(solution).assign_attrs(origin(solution) | about), checkpoint_of(self.rows))
-        except FullDiskError as error:  # the previous checkpoint is still in the file
-            warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
+        save_checkpoint(run.solution(code), checkpoint_of(self.rows), self._about(run, self.told, self.rows))
 
     def finish(self, run: Session, stream: EventStream, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
@@ -233,7 +226,7 @@ class EventRows:
         self.rows.tidy()
         notes = {
             "predictability": prediction.text if prediction else "",
-            "trapped": trapped_note(solution),
+            "trapped": trapped_note(solution.history),
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,

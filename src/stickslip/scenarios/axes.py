@@ -8,7 +8,7 @@ from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.values import read_quantity, show
+from stickslip.scenarios.values import read_typed, show
 
 _AXIS = re.compile(r"(?P<name>[^=]+)=(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,6}))?(?P<log>:log)?")
 
@@ -23,15 +23,8 @@ def read_axis(problem: Problem, text: str, where: str) -> Axis:
         raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {show(text)}')
     try:
         found = parameter(problem, parts["name"].strip())
-        ends = [read_quantity(_number(parts[end]), found.declared, where, found.name) for end in ("low", "high")]
+        ends = [read_typed(parts[end], found.declared, where, found.name) for end in ("low", "high")]
         return Axis(found.name, ends[0], ends[1], int(parts["points"] or 40), bool(parts["log"]))
     except InputError as error:
         message = str(error)
         raise InputError(message if message.startswith(where) else f"{where}: {message}") from None
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text.strip()

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity
-from stickslip.friction.custom.from_expression import named_value
-from stickslip.friction.parameters import Choice, Field, Named, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, Field, Named, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.scenarios.values import describe as describe_quantity
 from stickslip.scenarios.values import read_quantity, show
 
@@ -21,41 +19,52 @@ class Source(NamedTuple):
     folder: Path | None = None
 
 
-def key_of(name: str, entry: Quantity | Field) -> str:
+def key_of(name: str, entry: Field) -> str:
     """Return the key of a field in a scenario."""
     return entry.key if isinstance(entry, NamedNumbers) else name
 
 
-def read_entry(value: Any, entry: Quantity | Field, source: Source, table: str, key: str, law: Callable[..., Any]) -> Any:
-    """Return a value of a scenario, converted and checked for its field.
+class Place(NamedTuple):
+    """The place of a value in a document: a table, which may be inside another as "friction.slip", and a key in it."""
 
-    `law` is the function that reads a law inside a law. Raises InputError with the place in the document.
+    source: Source
+    table: str
+    key: str
+
+    @property
+    def inner(self) -> str:
+        """The name of the table that the key would have."""
+        return f"{self.table}.{self.key}"
+
+    def __str__(self) -> str:
+        return f"[{self.table}] {self.key}"
+
+
+def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
+    """Return a value of a scenario in the form that its field takes, with numbers in SI.
+
+    Texts, choices, and the length and order of a series are checked by the law that has the field. `law` is the function that reads
+    a law inside a law. Raises InputError with the place in the document.
     """
-    place = f"[{table}] {key}"
+    file = place.source.file
     if isinstance(entry, Quantity):
-        return read_quantity(value, entry, source.file, place)
+        return read_quantity(value, entry, file, str(place))
     if isinstance(entry, Series):
-        return _series(value, entry, source.file, place)
+        if not isinstance(value, list):
+            unit = entry.item.label
+            raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {show(value)}")
+        return tuple(read_quantity(one, entry.item, file, f"{place}[{i}]") for i, one in enumerate(value))
     if isinstance(entry, NamedNumbers):
-        return _named(value, source.file, table, key)
+        return _named(value, place)
     if isinstance(entry, Part):
         if not isinstance(value, dict):
-            raise InputError(f"{source.file}: [{table}.{key}] must be a table, got {show(value)}")
-        return law(value, source, f"{table}.{key}")
-    return entry.check(source.file, place, value)
+            raise InputError(f"{file}: [{place.inner}] must be a table, got {show(value)}")
+        return law(value, place.source, place.inner)
+    return value
 
 
-def _series(value: Any, entry: Series, file: str, place: str) -> tuple[float, ...]:
-    if not isinstance(value, list):
-        raise InputError(
-            f"{file}: {place} must be a list of numbers in {entry.item.label} or of texts with units, got {show(value)}"
-        )
-    numbers = [read_quantity(one, entry.item, file, f"{place}[{i}]") for i, one in enumerate(value)]
-    return entry.check(file, place, numbers)
-
-
-def _named(value: Any, file: str, owner: str, key: str) -> tuple[Named, ...]:
-    table = f"[{owner}.{key}]"
+def _named(value: Any, place: Place) -> tuple[Named, ...]:
+    file, table = place.source.file, f"[{place.inner}]"
     if not isinstance(value, dict):
         raise InputError(f"{file}: {table} must be a table of names and values, got {show(value)}")
     for name, one in value.items():
@@ -63,10 +72,10 @@ def _named(value: Any, file: str, owner: str, key: str) -> tuple[Named, ...]:
             raise InputError(f"{file}: {table} {show(name)} must be a number or a text with a unit, got {show(one)}")
         if isinstance(one, int) and abs(one) > 10**300:
             raise InputError(f"{file}: {table} {show(name)} must be a number, got a whole number beyond 1e300")
-    return tuple(named_value(name, one, f"{file}: [{owner}]") for name, one in value.items())
+    return tuple(Named.read(name, one, f"{file}: [{place.table}]") for name, one in value.items())
 
 
-def describe(entry: Quantity | Field) -> str:
+def describe(entry: Field) -> str:
     """Return the meaning, the unit and the range of a field as text for users."""
     if isinstance(entry, Quantity):
         return describe_quantity(entry)
@@ -89,7 +98,7 @@ def to_table(owner: Any) -> dict[str, Any]:
     return table
 
 
-def _written(value: Any, entry: Quantity | Field) -> Any:
+def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
     return to_table(value) if isinstance(entry, Part) else value

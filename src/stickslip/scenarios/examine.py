@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 from stickslip.bodies import ElasticSlab, as_slab
@@ -12,9 +12,8 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.loading import LoadingHistory
 from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
@@ -71,26 +70,16 @@ def examine(scenario: Scenario) -> Examination:
 
 def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     problem = scenario.problem
-    body = type(problem.body)
-    initial = {f.name.removeprefix("initial_"): getattr(problem, f.name) for f in fields(problem) if f.name.startswith("initial_")}
-    run = {name: getattr(scenario, name) or None for name in ("duration", "rtol", "creep_rtol", "shortest_event")}
-    holders = {
-        "body": (body, vars(problem.body)),
-        "loading": (body, vars(problem)),
-        "initial": (body, initial),
-        "run": (body, run),
-    }
-    facts = {
-        table: [
-            fact
-            for name, (declared, _) in quantities_in(table, kind, problem.friction.state).items()
-            if values[name] is not None
-            for fact in _facts(name, values[name], declared)
-        ]
-        for table, (kind, values) in holders.items()
-    }
+    facts = {"body": list[Fact](), "friction": _of_law(problem.friction)}
+    owners = {"body": (problem.body, ""), "loading": (problem, ""), "initial": (problem, "initial_"), "run": (scenario, "")}
+    for table, (owner, prefix) in owners.items():
+        facts[table] = []
+        for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.state).items():
+            value = getattr(owner, prefix + name)
+            if value is not None and not (owner is scenario and value == 0.0):  # an option of a run that is off
+                facts[table] += _facts(name, value, declared)
     facts["run"] += _automatic(scenario)
-    return {"body": facts.pop("body"), "friction": _of_law(problem.friction)} | facts
+    return facts
 
 
 def _automatic(scenario: Scenario) -> list[Fact]:
@@ -198,15 +187,15 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     """Return the critical value of the law's own parameter, if it has one, and that of the normal stress."""
     if contact.resistance is None:
         return []
-    stress = critical_normal_stress(contact.resistance)
-    named = dict.fromkeys([(contact.critical_parameter, contact.critical_value), ("normal_stress", stress)])
-    found = [(parameter(problem, name), value) for name, value in named if name is not None and value is not None]
-    side = {True: "above", False: "below", None: "at"}
-    places = [f"here {side[one.value > value if one.value != value else None]} it, at {one.value:.9g}" for one, value in found]
-    proofs = [_proof(contact) if one.name == "body.normal_stress" else "" for one, _ in found]
-    return [
-        Fact(one.name, value, one.unit, place + proof) for (one, value), place, proof in zip(found, places, proofs, strict=True)
-    ]
+    named = {contact.critical_parameter: contact.critical_value, "normal_stress": critical_normal_stress(contact.resistance)}
+    facts = []
+    for name, value in named.items():
+        if name is not None and value is not None:
+            one = parameter(problem, name)
+            side = "at" if one.value == value else "above" if one.value > value else "below"
+            proof = _proof(contact) if one.name == "body.normal_stress" else ""
+            facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {one.value:.9g}{proof}"))
+    return facts
 
 
 def _proof(contact: Uniqueness) -> str:
@@ -220,8 +209,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     law = problem.friction
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
-    stretches = regimes_along_slip(problem)
-    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in stretches]
+    intervals = regimes_along_slip(problem)
+    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in intervals]
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.parameters import LARGEST_SERIES
+from stickslip.foundation.quantities import LARGEST_SERIES
 from stickslip.problem.problem import MAY_VARY
 from stickslip.scenarios.values import show
 
@@ -27,20 +27,26 @@ SIGNED = ("slip", *MAY_VARY)
 """Columns whose numbers may be negative; all others must not be."""
 
 
-def read_points(name: str, folder: Path | None, columns: Mapping[str, str], value: str, where: str) -> dict[str, list[float]]:
+def read_points(name: str, folder: Path | None, columns: Mapping[str, str], where: str) -> dict[str, list[float]]:
     """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
 
-    `columns` maps headings to fields. `value` is the heading of the dependent variable; exactly one other column must be there, and
+    `columns` maps headings to fields. The last is that of the dependent variable; exactly one other column must be there, and
     holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that begin with # and unknown
     columns are ignored. Raises InputError with a message of one line that names the file and the line.
     """
-    lines = _rows(_text(name, folder, where), f"{where}: {show(name)}")
+    *_, value = columns
+    try:
+        text = _text(name, folder)
+    except InputError as error:
+        raise InputError(f"{where} {show(name)}: {error}") from None
+    file = f"{where}: {show(name)}"
+    lines = _rows(text, file)
     number, header = next(lines, (1, []))
-    place = f"{where}: {show(name)}, line {number}"
+    place = f"{file}, line {number}"
     heading = _wanted([cell.strip() for cell in header], columns, value, place)
     found: dict[str, list[float]] = {column: [] for column in heading}
     for number, row in lines:
-        place = f"{where}: {show(name)}, line {number}"
+        place = f"{file}, line {number}"
         for column, i in heading.items():
             found[column].append(_number(row, i, column, place))
         _check_row(found, value, place)
@@ -49,27 +55,24 @@ def read_points(name: str, folder: Path | None, columns: Mapping[str, str], valu
     return {columns[column]: numbers for column, numbers in found.items()}
 
 
-def _text(name: str, folder: Path | None, where: str) -> str:
+def _text(name: str, folder: Path | None) -> str:
+    """Return the content of a data file. Raises InputError with a message that is meant to follow its name."""
     if folder is None:
-        raise InputError(f"{where} {show(name)}: only a scenario in a file can name another file; write the points as lists")
+        raise InputError("only a scenario in a file can name another file; write the points as lists")
     anywhere, hint = os.environ.get(ANYWHERE) == "1", f"{ANYWHERE}=1 in the environment allows others"
     if not name.isprintable() or (Path(name).is_absolute() and not anywhere):
-        raise InputError(f"{where} {show(name)}: the path must be relative to the scenario; {hint}")
+        raise InputError(f"the path must be relative to the scenario; {hint}")
     try:
         path = (folder / name).resolve()
         if not path.is_relative_to(folder.resolve()) and not anywhere:
-            raise InputError(f"{where} {show(name)}: the file must be in the folder of the scenario; {hint}")
+            raise InputError(f"the file must be in the folder of the scenario; {hint}")
         if not path.is_file():
-            raise InputError(f"{where} {show(name)}: no such file beside the scenario")
-        content = read_bounded(path, LARGEST).decode("utf-8-sig")
-    except InputError as error:
-        told = str(error)
-        raise InputError(told if told.startswith(where) else f"{where} {show(name)}: {told}") from None
+            raise InputError("no such file beside the scenario")
+        return read_bounded(path, LARGEST).decode("utf-8-sig")
     except OSError as error:
-        raise InputError(f"{where} {show(name)}: cannot be read: {error.strerror}") from None
+        raise InputError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise InputError(f"{where} {show(name)}: not a text file in UTF-8") from None
-    return content
+        raise InputError("not a text file in UTF-8") from None
 
 
 def _rows(text: str, place: str) -> Iterator[tuple[int, list[str]]]:

@@ -20,7 +20,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import KINDS, build, check_rtol, read_document, without_owner
+from stickslip.scenarios.schema import KINDS, check_rtol, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
@@ -106,15 +106,14 @@ class Scenario:
 
     def to_toml(self) -> str:
         """Return the scenario as TOML text, with every value in SI and to the last digit."""
-        tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
         problem = self.problem
-        for table, owner in (("body", problem.body), ("friction", problem.friction)):
-            tables[table] = to_table(owner)
-        given = _without_none({f.name: getattr(problem, f.name) for f in fields(problem) if f.name not in ("body", "friction")})
-        given.pop("selection")
-        loading = {name: value for name, value in given.items() if not name.startswith("initial_")}
-        tables["loading"] = {n: to_table(value) if isinstance(value, LoadingHistory) else value for n, value in loading.items()}
-        tables["initial"] = {name.removeprefix("initial_"): v for name, v in given.items() if name.startswith("initial_")}
+        tables: dict[str, Any] = {key: value for key, value in (("title", self.title), ("description", self.description)) if value}
+        tables |= {"body": to_table(problem.body), "friction": to_table(problem.friction), "loading": {}, "initial": {}}
+        for f in fields(problem):
+            value = getattr(problem, f.name)
+            if value is not None and f.name not in ("body", "friction", "selection"):
+                table = "initial" if f.name.startswith("initial_") else "loading"
+                tables[table][f.name.removeprefix("initial_")] = to_table(value) if isinstance(value, LoadingHistory) else value
         run = {"duration": self.duration, "events": self.max_events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
         run["shortest_event"] = self.shortest_event
         tables["run"] = _without_none(run | {"selection": problem.rule})
@@ -147,7 +146,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
     path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
-    file = _shown(path)
+    file = str(path) if str(path).isprintable() else show(str(path))
     return read_scenario(_read_file(path, file), file, name=path.stem, folder=path.parent)
 
 
@@ -188,38 +187,29 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
 
 def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
     """Return a scenario from a parsed TOML document. Raises InputError as `load_scenario` does."""
-    file = source.file
-    content = read_document(raw, source)
-    problem = _problem(content, file)
-    run = content["run"]
-    check_rtol(run["rtol"], file, "[run] rtol")
-    about = {"title": content["title"], "description": content["description"], "name": file}
-    check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
-    check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
-    how = {"max_events": run["events"], "creep_rtol": run["creep_rtol"], "shortest_event": run["shortest_event"]}
-    return Scenario(problem, run["duration"], run["rtol"], **how, **about)
-
-
-def _problem(content: dict[str, Any], file: str) -> Problem:
-    initial = {name: value for name, value in content["initial"].items() if value is not None}
-    if ("load" in initial) == ("excess" in initial):
-        found = "both" if "load" in initial else "neither"
-        raise InputError(f"{file}: [initial] needs either load or excess (load minus static strength), got {found}")
-    body, friction = (build(table, content[table], file) for table in KINDS)
+    document, file = read_document(raw, source), source.file
+    body, law = (read_part(table, document[table], source) for table in KINDS)
+    others = ("loading", "initial", "run")
+    loading, initial, run = (read_table(table, type(body), document[table], source, law.state) for table in others)
     start = {f"initial_{name}": value for name, value in initial.items()}
     try:
-        return Problem(body, friction, **content["loading"], **start, selection=content["run"]["selection"])
+        problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))
     except InputError as error:
         raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
+    check_rtol(run["rtol"], file, "[run] rtol")
+    check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
+    check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
+    limits = {"max_events": run.pop("events")}
+    return Scenario(problem, **run, **limits, title=document["title"], description=document["description"], name=file)
 
 
 def _in_tables(message: str) -> str:
     """Return a message of `Problem` with the names that a scenario file uses."""
-    return (
-        f"[loading] {message}"
-        if message.startswith(("far_stress", "only one of pull_rate"))
-        else message.replace("initial_", "[initial] ")
-    )
+    if message.startswith(("far_stress", "only one of pull_rate")):
+        return f"[loading] {message}"
+    if message.startswith("needs either"):
+        return f"[initial] {message.replace('initial_', '')}"
+    return message.replace("initial_", "[initial] ")
 
 
 def _read_file(path: Path, file: str) -> str:
@@ -233,11 +223,6 @@ def _read_file(path: Path, file: str) -> str:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{file}: not a text file in UTF-8") from None
-
-
-def _shown(path: Path) -> str:
-    """Return a path as text that can be shown in one line."""
-    return str(path) if str(path).isprintable() else show(str(path))
 
 
 def _hint(path: Path) -> str:

@@ -5,27 +5,26 @@ A new law or body enters the schema by being registered. pydantic checks names a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import MISSING, fields, replace
-from functools import cache
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, replace
+from functools import cache, partial
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, create_model
 
 from stickslip.bodies import BODIES
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity, quantities_of
+from stickslip.foundation.quantities import Field as Declared
+from stickslip.foundation.quantities import Part, Quantity, Series, fields_of, quantities_of
 from stickslip.friction import LAWS
-from stickslip.friction.law import StateVariable
-from stickslip.friction.parameters import Field as LawField
-from stickslip.friction.parameters import Part, Series, fields_of
+from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import MAY_VARY, Problem
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
-from stickslip.scenarios.entries import Source, describe, key_of, read_entry
+from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
-from stickslip.scenarios.values import read_quantity, show
+from stickslip.scenarios.values import read_typed, show
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
@@ -74,7 +73,7 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     return found | {"state": (remembered, None)} if table == "initial" else found
 
 
-def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity | LawField, Any]]:
+def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Declared, Any]]:
     """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history."""
     if not has_kind(table):
         return dict(quantities_in(table, kind, state))
@@ -88,7 +87,7 @@ def has_kind(table: str) -> bool:
     return table in KINDS or "." in table
 
 
-def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
+def in_unit(entry: Declared, unit: str) -> Declared:
     """Return the declaration of a field with the unit of the quantity that varies, if it is a value of a loading history."""
     if isinstance(entry, Series) and entry.item.unit == VARYING:
         return replace(entry, item=replace(entry.item, unit=unit))
@@ -96,7 +95,7 @@ def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
 
 
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
-    return {f.name: (f.metadata["quantity"], f.default) for f in fields(kind) if "quantity" in f.metadata}
+    return {name: (entry, default) for name, (entry, default) in fields_of(kind).items() if isinstance(entry, Quantity)}
 
 
 def _of_body(declared: Quantity, body: type) -> Quantity:
@@ -111,60 +110,62 @@ def table_model(table: str, kind: type, state: StateVariable | None = None) -> t
     """Return the pydantic model of one table."""
     entries: dict[str, Any] = {"kind": (str, ...)} if has_kind(table) else {}
     for name, (declared, default) in entries_in(table, kind, state).items():
-        read = Annotated[Any, BeforeValidator(_reader(table, name, declared))]
-        entries[name] = (read, Field(... if default is MISSING else default, description=describe(declared)))
+        read = partial(_read_entry, declared)
+        entries[name] = (_read_by(read, table, name), Field(... if default is MISSING else default, description=describe(declared)))
     if table == "run":
-        entries["events"] = (Annotated[int | None, BeforeValidator(_events)], None)
-        entries["selection"] = (Annotated[str, BeforeValidator(_selection)], SELECTION_RULES[0])
+        entries["events"] = (_read_by(_checked_by(check_events), table, "events"), None)
+        entries["selection"] = (_read_by(_checked_by(check_rule), table, "selection"), SELECTION_RULES[0])
     model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
     return model
 
 
-def _reader(table: str, name: str, declared: Quantity | LawField) -> Any:
-    def read(value: Any, info: ValidationInfo) -> Any:
-        source: Source = info.context["source"]  # type: ignore[index] # always given, in _validate
-        if table == "loading" and name in MAY_VARY and isinstance(value, dict):
-            return _history(value, source, f"{table}.{name}")
-        try:
-            return read_entry(value, declared, source, table, name, _nested)
-        except InputError as error:
-            raise InputError(f"{error}{_as_history(table, name, value)}") from None
+def _read_by(read: Callable[[Any, Place], Any], table: str, key: str) -> Any:
+    """Return the type of a key whose value `read` converts and checks, given also the place of the key for messages."""
 
-    return read
+    def validate(value: Any, info: ValidationInfo) -> Any:
+        return read(value, Place(info.context["source"], table, key))  # type: ignore[index] # always given, in _validate
+
+    return Annotated[Any, BeforeValidator(validate)]
 
 
-def _as_history(table: str, name: str, value: Any) -> str:
-    """Return a hint if a value looks like a loading history that is misplaced or not written as a table; "" otherwise."""
-    if table != "loading" or not (isinstance(value, list | dict) or value in HISTORIES):
-        return ""
-    if name in MAY_VARY:
-        return f"; what varies in time is a table [loading.{name}] of a kind: {', '.join(HISTORIES)}"
-    return f"; only {' or '.join(MAY_VARY)} may vary in time"
+def _checked_by(check: Callable[[Any, str, str], Any]) -> Callable[[Any, Place], Any]:
+    return lambda value, place: check(value, place.source.file, str(place))
 
 
-def _nested(raw: dict[str, Any], source: Source, table: str) -> Any:
+def _read_entry(declared: Declared, value: Any, place: Place) -> Any:
+    """Return a value converted and checked for its field; a table in place of a number that may vary is a loading history."""
+    varies = place.table == "loading" and place.key in MAY_VARY
+    if varies and isinstance(value, dict):
+        return read_part(place.inner, value, place.source)
+    try:
+        return read_entry(value, declared, place, _law_in)
+    except InputError as error:
+        if place.table != "loading" or not (isinstance(value, list | dict) or value in HISTORIES):
+            raise
+        hint = f"only {' or '.join(MAY_VARY)} may vary in time"
+        if varies:
+            hint = f"what varies in time is a table [{place.inner}] of a kind: {', '.join(HISTORIES)}"
+        raise InputError(f"{error}; {hint}") from None
+
+
+def _law_in(raw: dict[str, Any], source: Source, table: str) -> Any:
     """Return the law in a table such as [friction.slip]. Raises InputError for a law that is made of laws itself."""
     kind = kind_of(table, raw, source.file)
     if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
-        raise InputError(
-            f"{source.file}: [{table}] kind {show(raw['kind'])} is itself made of laws and cannot be part of another law"
-        )
-    return build(table, read_table(table, kind, raw, source), source.file)
+        found = f"[{table}] kind {show(raw['kind'])}"
+        raise InputError(f"{source.file}: {found} is itself made of laws and cannot be part of another law")
+    return read_part(table, raw, source)
 
 
-def _history(raw: dict[str, Any], source: Source, table: str) -> Any:
-    """Return the loading history in a table such as [loading.pull_rate]."""
-    return build(table, read_table(table, kind_of(table, raw, source.file), raw, source), source.file)
-
-
-def build(table: str, content: dict[str, Any], file: str) -> Any:
-    """Return the body, law or loading history of a table that was read. Raises InputError if its numbers are inconsistent."""
-    kind = kind_of(table, content, file)
-    names = {key_of(name, entry): name for name, (entry, _) in fields_of(kind).items()}
+def read_part(table: str, raw: dict[str, Any], source: Source) -> Any:
+    """Return the body, law or loading history that a table describes. Raises InputError."""
+    kind = kind_of(table, raw, source.file)
+    content = read_table(table, kind, raw, source)
+    keys = {name: key_of(name, entry) for name, (entry, _) in fields_of(kind).items()}
     try:
-        return kind(**{names[key]: value for key, value in content.items() if key != "kind"})
+        return kind(**{name: content[key] for name, key in keys.items()})
     except InputError as error:
-        raise InputError(f"{file}: [{table}] {without_owner(error)}") from None
+        raise InputError(f"{source.file}: [{table}] {without_owner(error)}") from None
 
 
 def without_owner(error: InputError) -> str:
@@ -172,16 +173,9 @@ def without_owner(error: InputError) -> str:
     return str(error).partition(": ")[2]
 
 
-def read_duration(text: str, where: str, name: str = "duration", declared: Quantity = DURATION) -> float:
-    """Read a time that a user typed, as a number of seconds or with a unit, and return it in s.
-
-    `declared` gives its range, by default that of a run's duration. Raises InputError with a message that begins with `where`.
-    """
-    try:
-        value: float | str = float(text)
-    except ValueError:
-        value = text
-    return read_quantity(value, declared, where, name)
+def read_duration(text: str, where: str, name: str = "duration") -> float:
+    """Return a duration (s) that a user typed, a number or a text with a unit. Raises InputError that begins with `where`."""
+    return read_typed(text, DURATION, where, name)
 
 
 def check_rtol(value: float, where: str, name: str = "rtol") -> float:
@@ -198,26 +192,16 @@ def check_events(value: Any, where: str, name: str = "events") -> int:
     return value
 
 
-def _events(value: Any, info: ValidationInfo) -> int:
-    return check_events(value, info.context["source"].file, "[run] events")  # type: ignore[index] # always given, in _validate
-
-
-def _selection(value: Any, info: ValidationInfo) -> str:
+def check_rule(value: Any, where: str, name: str) -> str:
+    """Return the name of a selection rule if there is such a rule. Raises InputError otherwise."""
     if value not in names():
-        raise InputError(f"{info.context['source'].file}: [run] selection {show(value)} {unknown(str(value))}")  # type: ignore[index] # as above
+        raise InputError(f"{where}: {name} {show(value)} {unknown(str(value))}")
     return str(value)
 
 
 def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
-    """Check a parsed TOML document, and return its title, its description and its five tables, with quantities as floats in SI.
-
-    Raises InputError with a message of one line: the file, the place in it, what was found and what is allowed.
-    """
-    document = _validate(_Document, dict(raw), source)
-    kinds = {table: kind_of(table, document[table], source.file) for table in KINDS}
-    for table in TABLES:
-        document[table] = read_table(table, kinds.get(table, kinds["body"]), document[table], source, kinds["friction"].state)  # type: ignore[attr-defined] # registered
-    return document
+    """Return a parsed TOML document if it has a scenario's texts and tables, whose content is not checked. Raises InputError."""
+    return _validate(_Document, dict(raw), source)
 
 
 def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
@@ -229,21 +213,19 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, stat
         if both or not isinstance(name, str):
             got = f"and {both} exclude each other" if both else f"must be text in quotes, got {show(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
-        points = read_points(name, source.folder, columns, value_column(columns), f"{source.file}: [{table}] file")
+        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file")
         raw = {key: value for key, value in raw.items() if key != "file"} | points
     return _validate(table_model(table, kind, state), raw, source, table)
 
 
 def columns_of(table: str, kind: type) -> dict[str, str]:
-    """Return the columns of a data file that may replace lists in a table, each with the key of its list."""
+    """Return the columns of a data file that may replace lists in a table, each with the key of its list.
+
+    The last one is the dependent variable.
+    """
     columns: dict[str, str] = getattr(kind, "columns", {}) if has_kind(table) else {}
     varies = table.partition(".")[2]
     return {varies if column == "value" else column: of for column, of in columns.items()}
-
-
-def value_column(columns: Mapping[str, str]) -> str:
-    """Return the column of the dependent variable, which is the last one."""
-    return list(columns)[-1]
 
 
 def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
@@ -285,12 +267,8 @@ def _one_line(error: ValidationError, model: type[BaseModel], file: str, table: 
 
 def _belongs(name: str, table: str) -> str:
     """Return a hint if a key is known but belongs in another table; "" otherwise."""
-    for body in KINDS["body"].values():
-        for other in TABLES:
-            if (
-                other not in ("friction", table)
-                and not table.startswith("friction.")
-                and name in table_model(other, body).model_fields
-            ):
-                return f"it belongs in [{other}]"
+    others = () if table.startswith("friction.") else (other for other in TABLES if other not in ("friction", table))
+    for other in others:
+        if any(name in table_model(other, body).model_fields for body in KINDS["body"].values()):
+            return f"it belongs in [{other}]"
     return ""

@@ -8,9 +8,8 @@ import math
 from stickslip.bodies import SpringBlock, as_block, as_slab
 from stickslip.contact.rules.loop import first_rate
 from stickslip.friction import RateAndState
-from stickslip.friction.slopes import slopes
 from stickslip.problem.problem import Problem
-from stickslip.reference.rate_and_state import block_growth, critical_stiffness, slab_growth
+from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.reference.slab.growth_rate import growth_rate
 
 
@@ -64,10 +63,9 @@ def stability_of(problem: Problem) -> str:
     body, law = problem.body, problem.friction
     if isinstance(law, RateAndState):
         return _steady_sliding(problem, law)
-    by_slip, by_rate = slopes(law, problem.law_slip)
+    by_slip, by_rate = law.slopes(problem.law_slip)
     if not body.has_waves:
         return _block_stability(as_block(body), by_slip, by_rate)
-    body = as_slab(body)
     number = -problem.normal * by_slip / body.stiffness
     if by_slip >= 0:
         return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
@@ -75,7 +73,7 @@ def stability_of(problem: Problem) -> str:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
         return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
-    rate = growth_rate(body.wave_speed, body.thickness, body.shear_modulus, problem.normal, -by_slip)
+    rate = growth_rate(as_slab(body), -by_slip)
     return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
 
 
@@ -96,17 +94,17 @@ def _steady_sliding(problem: Problem, law: RateAndState) -> str:
     body, rate, pull = problem.body, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
     if rate <= 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
-    numbers = (problem.normal, law.a, law.b, law.distance, rate)
+    sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
-        critical = critical_stiffness(*numbers, body.inertia, body.damping)
-        growth = block_growth(*numbers, body.stiffness, body.inertia, body.damping)
+        critical = sliding.critical_stiffness(body.inertia, body.damping)
+        growth = sliding.block_growth(body.stiffness, body.inertia, body.damping)
         text, unit = f"stiffness K = {body.stiffness:.6g}", "N/m"
     elif math.isinf(body.driver_impedance) and not body.has_inertia:
-        critical = critical_stiffness(*numbers)
-        growth = slab_growth(*numbers, body.impedance, 0.5 * body.round_trip_time)
+        critical = sliding.critical_stiffness()
+        growth = sliding.slab_growth(body.impedance, 0.5 * body.round_trip_time)
         text, unit = f"stiffness G/h = {body.stiffness:.6g}", "Pa/m"
     else:
-        return f"critical stiffness of slow sliding S (b - a) / Dc = {critical_stiffness(*numbers):.6g} Pa/m"
+        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} Pa/m"
     against = f"{text} against the critical {critical:.6g} {unit}"
     if growth.real <= 0.0:
         return f"steady sliding at the {pull} is stable: {against}; a small disturbance fades at {-growth.real:.6g} /s"

@@ -8,14 +8,14 @@ from dataclasses import MISSING
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.law import StateVariable
-from stickslip.friction.parameters import NamedNumbers, Part, fields_of
+from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of
-from stickslip.scenarios.schema import KINDS, TABLES, build, columns_of, entries_in, has_kind, kind_of, read_table
+from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
 """Names of the generic starters, each with the bundled scenario whose values it shows."""
@@ -103,8 +103,7 @@ def _starter(example: dict[str, Any], friction: str | None, pull: str | None) ->
 
 def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
     """Return [initial] for a law that never sticks: its example's state, and a load of the example's share of the normal load."""
-    source = Source("starter")
-    read = build("body", read_table("body", kind_of("body", body, source.file), body, source), source.file)
+    read = read_part("body", body, Source("starter"))
     return {"load": law.start["coefficient"] * read.normal_load, "state": law.start["state"]}
 
 

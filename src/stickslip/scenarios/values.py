@@ -24,6 +24,15 @@ def read_quantity(value: Any, declared: Quantity, where: str, name: str) -> floa
     return declared.check(where, name, value)
 
 
+def read_typed(text: str, declared: Quantity, where: str, name: str) -> float:
+    """Return in SI what a user typed, a number or a text with a unit. Raises InputError as `read_quantity` does."""
+    try:
+        value: float | str = float(text)
+    except ValueError:
+        value = text.strip()
+    return read_quantity(value, declared, where, name)
+
+
 def _read_text(text: str, declared: Quantity, where: str, name: str, refusal: str) -> float:
     parts = split_quantity(text)
     if declared.unit == "1" or parts is None:

@@ -266,6 +266,13 @@ def to_netcdf(solution: Solution, path: str | Path) -> Path:
     return write_solution(solution, path)
 
 
+def figure_of_study(study: object) -> Any:
+    """Return the module with the functions `data` and `draw` of a study."""
+    from stickslip.figures.studies import figure_of
+
+    return figure_of(study)
+
+
 def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
     """Raise InputError if a dataset is larger than the memory of most machines."""
     wanted = np.size(t) * (1 if x is None else np.size(x))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Moments, Side
+from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Readings:
         """The first and the last time (s) that figures show by default."""
         return self.history.span
 
-    def _at(self, t: ArrayLike, side: Side) -> tuple[Moments, tuple[int, ...]]:
+    def _at(self, t: ArrayLike, side: Side) -> tuple[Positions, tuple[int, ...]]:
         try:
             time = np.asarray(t, float)
         except OverflowError:  # a whole number larger than any float
@@ -121,7 +121,7 @@ class Readings:
         """
         from stickslip.observables.field import field
 
-        return field(self, x, t, side)
+        return field(self.history, getattr(self, self.curves[0]), x, t, side)
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
@@ -132,11 +132,10 @@ class Readings:
         """
         return shocks_table(self.history)
 
-    @cached_property
+    @property
     def breaks(self) -> Floats:
         """The times (s) at which recorded pieces begin or end, including 0 and the end of the run."""
-        history = self.history
-        return np.append(np.union1d(history.start, history.end[history.rests]), history.span[1])
+        return self.history.breaks
 
     @property
     def curves(self) -> tuple[Curve, ...]:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from stickslip.observables.rule_influence import RuleInfluence
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Solution(Exports):
@@ -185,7 +187,7 @@ class Solution(Exports):
         """
         from stickslip.observables.energy.balance import energy
 
-        return energy(self, t)
+        return energy(self.history, t)
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file.
@@ -232,7 +234,7 @@ class Solution(Exports):
         """One line on the energy of the waves that travel in the slab at the end of the run; empty for a block."""
         from stickslip.observables.energy.balance import trapped_note
 
-        return trapped_note(self)
+        return trapped_note(self.history)
 
     @cached_property
     def horizon_note(self) -> str:
@@ -245,11 +247,16 @@ class Solution(Exports):
         return predictability(self).text if is_followed(self.problem) else ""
 
     @cached_property
+    def rule_influence(self) -> RuleInfluence:
+        """Return which shocks the selection rule decided, and when it first had a choice."""
+        from stickslip.observables.rule_influence import rule_influence
+
+        return rule_influence(self.history, lambda: self.curve("load"))
+
+    @property
     def selection_note(self) -> str:
         """One line that says whether the result depends on the selection rule."""
-        from stickslip.observables.rule_influence import selection_note
-
-        return selection_note(self)
+        return self.rule_influence.note
 
     def __repr__(self) -> str:
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])

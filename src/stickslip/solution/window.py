@@ -77,7 +77,7 @@ class Window(Exports):
         """Return the energies at local times t (s), as differences from the start of the event: see `Solution.energy`."""
         from stickslip.observables.energy.balance import energy
 
-        return energy(self, t, origin=0.0)
+        return energy(self.history, t, origin=0.0)
 
     def __repr__(self) -> str:
         row, offset = self.epoch

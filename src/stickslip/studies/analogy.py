@@ -13,23 +13,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
-from stickslip.contact.regime_map import Axis
+from stickslip.contact.regime_map import Axis, put_both, two_parameters
 from stickslip.foundation.errors import InputError
-from stickslip.friction.slopes import slopes
-from stickslip.problem.parameters import Parameter, parameter
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.run.simulate import simulate
+from stickslip.studies.study import Study, uninterrupted
 from stickslip.trajectory.history import Floats
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Quantity = Literal["slip", "peak_rate", "duration"]
 QUANTITIES: tuple[Quantity, ...] = ("slip", "peak_rate", "duration")
@@ -43,7 +39,7 @@ REFUSED, NO_EVENT = "refused", "no slip event"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Analogy:
+class Analogy(Study):
     """The result of `analogy`.
 
     Attributes
@@ -85,29 +81,18 @@ class Analogy:
         table, percent = self.table, f"{100 * self.within:g} %"
         known, good = table.dropna(subset=[f"{one}_ratio" for one in QUANTITIES]), table[table.stands]
         count = f"at {len(good)} of {len(known)} points with an event (slip, peak rate and duration within {percent}, same pulses)"
-        if good.empty:
-            where = f"the block stands for the slab {count}"
-        else:
-            slip, rate = good.weakening_slip.max(), good.weakening_rate.max()
-            where = (
-                f"the block stands for the slab {count}: there friction weakens with slip up to {slip:.3g} times the stiffness, "
-                f"and with slip rate up to {rate:.3g} times the impedance"
+        where = f"the block stands for the slab {count}"
+        if not good.empty:
+            where += (
+                f": there friction weakens with slip up to {good.weakening_slip.max():.3g} times the stiffness, "
+                f"and with slip rate up to {good.weakening_rate.max():.3g} times the impedance"
             )
-        ranges = (f"{name} {low:.2g} to {high:.2g}" for name in QUANTITIES for low, high in [_range(known[f"{name}_ratio"])])
-        return f"{where}; slab over block: {', '.join(ranges).replace('_', ' ')}"
+        ratios = ((name, known[f"{name}_ratio"]) for name in QUANTITIES)
+        ranges = (f"{name.replace('_', ' ')} {ratio.min():.2g} to {ratio.max():.2g}" for name, ratio in ratios)
+        return f"{where}; slab over block: {', '.join(ranges)}"
 
-    def plot(self) -> Figure:
-        """Plot the three ratios, and the points at which the block represents the slab."""
-        from stickslip.figures.studies.analogy import data, draw
-
-        return draw(data(self))
-
-    def __repr__(self) -> str:
-        return f"stickslip Analogy\n  {self.text}"
-
-
-def _range(values: pd.Series[float]) -> tuple[float, float]:
-    return float(values.min()), float(values.max())
+    def _lines(self) -> tuple[str, ...]:
+        return (self.text,)
 
 
 def block_for(problem: Problem) -> Problem:
@@ -173,44 +158,29 @@ def analogy(
         If the user presses Ctrl-C.
     """
     check_problem("analogy", problem)
-    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
-    if names[0].name == names[1].name:
-        raise InputError(f"analogy: needs two different parameters, got {names[0].name} twice")
+    names = two_parameters(problem, x, y, "analogy")
     if not 0.0 < within < 1.0:
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")
-    block_for(problem)
+    block_for(problem)  # raises InputError if there is no equivalent block
     rows = []
     for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
-        row = {names[0].name: at_x, names[1].name: at_y}
-        rows.append(row | _point(names, (at_x, at_y), duration, rtol))
+        rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), duration, rtol))
         if progress is not None:
             progress(len(rows), x.points * y.points)
     table = pd.DataFrame(rows)
-    table["stands"] = _stands(table, within)
-    return Analogy(problem, duration, x, y, within, table)
+    table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES})
+    return Analogy(problem, duration, x, y, within, table.assign(stands=_stands(table, within)))
 
 
-def _point(names: tuple[Parameter, Parameter], values: tuple[float, float], duration: float, rtol: float) -> dict[str, Any]:
-    """Return the columns of the table that describe both bodies at a point."""
-    problem = _put(names, values)
-    blank = {"weakening_slip": np.nan, "weakening_rate": np.nan}
-    events = dict.fromkeys(("slab", "block"), _nothing(REFUSED))
-    if problem is not None:
-        blank = weakening(problem)
-        events = {name: _first_event(one, duration, rtol) for name, one in (("slab", problem), ("block", block_for(problem)))}
-    found = {f"{key}_{name}": value for key in events["slab"] for name in events for value in [events[name][key]]}
-    return blank | found | {f"{key}_ratio": found[f"{key}_slab"] / found[f"{key}_block"] for key in QUANTITIES}
-
-
-def _put(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
-    """Return the problem at a point, or None if the values are refused."""
-    pairs = list(zip(names, values, strict=True))
-    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be invalid although both together are valid
-        try:
-            return parameter(first.put(one), second.name).put(other)
-        except InputError:
-            continue
-    return None
+def _point(problem: Problem | None, duration: float, rtol: float) -> dict[str, Any]:
+    """Return the columns of the table that describe both bodies at a point; the problem is None if its values are refused."""
+    if problem is None:
+        numbers = {"weakening_slip": np.nan, "weakening_rate": np.nan}
+        slab = block = _nothing(REFUSED)
+    else:
+        numbers = weakening(problem)
+        slab, block = (_first_event(one, duration, rtol) for one in (problem, block_for(problem)))
+    return numbers | {f"{key}_{name}": event[key] for key in slab for name, event in (("slab", slab), ("block", block))}
 
 
 def weakening(problem: Problem) -> dict[str, float]:
@@ -219,15 +189,13 @@ def weakening(problem: Problem) -> dict[str, float]:
     The keys are "weakening_slip" and "weakening_rate".
     """
     body = as_slab(problem.body)
-    by_slip, _ = slopes(problem.friction, problem.law_slip)
+    by_slip, _ = problem.friction.slopes(problem.law_slip)
     massless = replace(problem, body=replace(body, contact_mass=0.0))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}
 
 
 def _first_event(problem: Problem, duration: float, rtol: float) -> dict[str, Any]:
-    solution = simulate(problem, duration, rtol, max_events=1)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
+    solution = uninterrupted(simulate(problem, duration, rtol, max_events=1))
     if solution.events.empty:
         return _nothing(NO_EVENT)
     event = solution.events.iloc[0]
@@ -240,5 +208,6 @@ def _nothing(status: str) -> dict[str, Any]:
 
 
 def _stands(table: pd.DataFrame, within: float) -> pd.Series[bool]:
-    near = [(table[f"{one}_ratio"] - 1.0).abs() <= within for one in QUANTITIES]
-    return near[0] & near[1] & near[2] & (table.pulses_slab == table.pulses_block)
+    """Return where the block represents the slab: all ratios are near 1, and the events have the same number of pulses."""
+    near = (table[[f"{key}_ratio" for key in QUANTITIES]] - 1.0).abs() <= within
+    return near.all(axis=1) & (table.pulses_slab == table.pulses_block)

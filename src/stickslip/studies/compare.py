@@ -6,26 +6,22 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 import stickslip
-from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError
 from stickslip.io.netcdf import PAPER, open_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
-from stickslip.observables.rule_influence import choices
 from stickslip.run.progress import Progress
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.schema import check_rtol
 from stickslip.solution.solution import Solution
+from stickslip.studies.study import Study, TextProgress, say_nothing, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents
 from stickslip.trajectory.tables import default_event_rate
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
@@ -34,13 +30,13 @@ COLUMNS = {
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
     "events": ("", "slip events, see `Solution.events`"),
-    "pulses": ("", "of the largest event: maxima of the slip rate, see `Solution.events`"),
+    "pulses": ("", "maxima of the slip rate in the largest event, see `Solution.events`"),
     "slip": ("m", "slip of the largest event"),
     "peak_rate": ("m/s", "largest slip rate of the run"),
-    "static_drop": ("load", "of the largest event: stiffness (G/h, or K) times its slip"),
-    "traction_drop": ("load", "of the largest event: traction at rest before it minus traction at rest after it"),
-    "dynamic_drop": ("load", "of the largest event: traction at rest before it minus the smallest one while it slips"),
-    "duration": ("s", "of the first event; NaN if it is not over"),
+    "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
+    "traction_drop": ("load", "traction at rest before the largest event minus traction at rest after it"),
+    "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
+    "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate"),
     "slip_rate": ("", "smooth, or jumps"),
     "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
@@ -49,23 +45,14 @@ COLUMNS = {
 """Columns of the table, each with its unit and meaning; the unit "load" stands for the one in the column `load_unit`."""
 
 
-@dataclass(frozen=True)
-class Source:
-    """A run to compare or to export: its name, and a function that returns its solution.
+class Source(NamedTuple):
+    """A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
 
-    `finished` is True if the solution exists already, so that a status "interrupted" in it does not come from Ctrl-C now.
+    The function raises KeyboardInterrupt if Ctrl-C ends the run.
     """
 
     name: str
-    run: Callable[[Progress | None], Solution]
-    finished: bool = True
-
-    def solution(self, progress: Progress | None = None) -> Solution:
-        """Run it, or read it, and return the solution. Raises KeyboardInterrupt if Ctrl-C ends the run."""
-        found = self.run(progress)
-        if not self.finished and found.status.name == "interrupted":
-            raise KeyboardInterrupt
-        return found
+    solution: Callable[[Progress | None], Solution]
 
 
 def read_source(source: str | Path | Scenario | Solution, until: float | None = None, rtol: float | None = None) -> Source:
@@ -74,25 +61,21 @@ def read_source(source: str | Path | Scenario | Solution, until: float | None = 
     `until` (s) and `rtol` replace those of a scenario. Raises InputError if `source` is none of these, and if `until` or `rtol` is
     given with a solution, which has been run already.
     """
-    finished = isinstance(source, Solution) or Path(str(source)).suffix == ".nc"
-    if finished and (until is not None or rtol is not None):
-        raise InputError(f"{_shown(source)}: has been run: leave until and rtol away")
+    computed = isinstance(source, Solution)
+    if (computed or Path(str(source)).suffix == ".nc") and not (until is None and rtol is None):
+        raise InputError(f"{'a solution' if computed else source}: has been run: leave until and rtol away")
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
-    if finished:
+    if Path(str(source)).suffix == ".nc":
         solution = open_solution(str(source))
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = source if isinstance(source, Scenario) else load_scenario(source)
     changed = replace(scenario, duration=until or scenario.duration, rtol=rtol or scenario.rtol)
-    return Source(scenario.name, changed.run, finished=False)
-
-
-def _shown(source: Any) -> str:
-    return "a solution" if isinstance(source, Solution) else str(source)
+    return Source(scenario.name, lambda progress: uninterrupted(changed.run(progress)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Study):
     """The result of `compare`.
 
     Attributes
@@ -121,29 +104,17 @@ class Comparison:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return the table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
+        """The table with one row for each run; columns and units are in `stickslip.studies.compare.COLUMNS`."""
         return pd.DataFrame([_row(name, solution) for name, solution in self.runs.items()], columns=list(COLUMNS))
 
-    def save(self, path: str | Path) -> Path:
-        """Write the table as CSV and return its path.
-
-        Comment lines (#) before the table give the version, the units of the columns, and every scenario in SI units.
-        """
-        return write_table(Path(path), self.table, self._about())
-
     def _about(self) -> Iterator[str]:
+        """Yield the version, the columns with their units, and every scenario in SI units, for the file of the table."""
         yield f"stickslip {stickslip.__version__}: runs side by side. Method: {PAPER}"
         for name, (unit, meaning) in COLUMNS.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
         for name, solution in self.runs.items():
             yield f"\n---- {name}: {solution.status}"
             yield Scenario(solution.problem, solution.duration, solution.rtol, max_events=solution.max_events).to_toml()
-
-    def plot(self) -> Figure:
-        """Plot slip, slip rate and traction against time, with one line for each run."""
-        from stickslip.figures.studies.compare import data, draw
-
-        return draw(data(self.runs, self.event))
 
     def __repr__(self) -> str:
         return f"stickslip Comparison of {', '.join(self.runs)}\n{self.table.drop(columns='name').T.to_string()}"
@@ -155,7 +126,7 @@ def compare(
     event: int | None = None,
     until: float | None = None,
     rtol: float | None = None,
-    progress: Callable[[str], Any] | None = None,
+    progress: TextProgress | None = None,
 ) -> Comparison:
     """Compare two or more runs in one table and one figure.
 
@@ -198,32 +169,28 @@ def compare(
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
-    runs = {}
+    tell, runs = progress or say_nothing, {}
     for name, source in zip(called, read, strict=True):
-        if progress is not None:
-            progress(name)
-        runs[name] = source.solution()
+        tell(name)
+        runs[name] = source.solution(None)
     return Comparison(runs, event)
 
 
 def distinct(names: Sequence[str]) -> list[str]:
     """Return the names, with (2), (3) ... appended to repeated ones."""
-    seen: dict[str, int] = {}
-    found = []
-    for name in names:
-        seen[name] = seen.get(name, 0) + 1
-        found.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
-    return found
+    repeats = [list(names[:i]).count(name) for i, name in enumerate(names)]
+    return [f"{name} ({count + 1})" if count else name for name, count in zip(names, repeats, strict=True)]
 
 
 def _row(name: str, solution: Solution) -> dict[str, Any]:
+    """Return the row of the table for a run; columns that it lacks are NaN."""
     problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
     row = {
         "name": name,
         "body": problem.body.kind,
         "friction": problem.friction.kind,
         "rule": problem.rule,
-        "regime": choices(solution).regime,
+        "regime": solution.rule_influence.regime,
         "events": len(events),
         "pulses": 0,
         "shocks": shocks,

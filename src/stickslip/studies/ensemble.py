@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.netcdf_file import write
+from stickslip.io.netcdf import origin
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
@@ -21,20 +22,15 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
 from stickslip.trajectory.history import Floats
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
-
-MAX_PIECES, MAX_TOTAL = 200_000, 2_000_000
-"""Default limits on the pieces of history of one run and of all runs together, which are held in memory (some 400 bytes each)."""
-Report = Callable[[str], Any]
-"""A function that is called with a line of text on the progress of a study."""
+MAX_TOTAL = 2_000_000
+"""Default limit on the pieces of history of all runs together."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble:
+class Ensemble(RunsCompared):
     """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
     Attributes
@@ -62,17 +58,15 @@ class Ensemble:
 
     @property
     def problem(self) -> Problem:
-        """Return the problem without disturbance."""
+        """The problem without disturbance."""
         return self.reference.problem
 
-    @cached_property
-    def until(self) -> float:
-        """Return the time (s) up to which runs are compared: the earliest end of a run."""
-        return min(run.history.span[1] for run in (self.reference, *self.runs))
+    def _all_runs(self) -> tuple[Solution, ...]:
+        return self.reference, *self.runs
 
     @property
     def note(self) -> str:
-        """Return a warning if a disturbance of the initial load can only shift the whole run in time; otherwise ""."""
+        """A warning if a disturbance of the initial load can only shift the whole run in time; otherwise ""."""
         problem = self.problem
         shifted = problem.friction.state is None and not is_lossy(problem) and not problem.varies
         if not (shifted and -2.0 * problem.strength < problem.excess < 0.0):
@@ -80,26 +74,18 @@ class Ensemble:
         return "the run begins at rest: its members do the same, earlier or later; give initial excess 0 to disturb what they do"
 
     @property
-    def ok(self) -> bool:
-        """Return True if every run reached its end."""
-        return all(run.status.ok for run in (self.reference, *self.runs))
-
-    @property
     def stopped(self) -> str:
-        """Return the reason why there are fewer members or a shorter time than asked for; "" if nothing is missing."""
-        early = [run for run in (self.reference, *self.runs) if not run.status.ok]
-        reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
-        parts = [f"interrupted: {len(self.runs)} of {self.wanted} members"] if len(self.runs) < self.wanted else []
-        parts += [f"compared up to {_time(self.until)} only, where the first run ended ({reasons})"] if early else []
-        return "; ".join(parts)
+        """The reason why there are fewer members or a shorter time than asked for; "" if nothing is missing."""
+        missing = f"interrupted: {len(self.runs)} of {self.wanted} members" if len(self.runs) < self.wanted else ""
+        return "; ".join(part for part in (missing, super().stopped) if part)
 
     @cached_property
     def _all_events(self) -> tuple[pd.DataFrame, ...]:
-        return tuple(run.catalogue(self.event_rate) for run in (self.reference, *self.runs))
+        return tuple(run.catalogue(self.event_rate) for run in self._all_runs())
 
     @cached_property
     def catalogues(self) -> tuple[pd.DataFrame, ...]:
-        """Return the slip events that start up to `until`: those of the undisturbed run, then those of each member."""
+        """The slip events that start up to `until`: those of the undisturbed run, then those of each member."""
         return tuple(table[table.start <= self.until] for table in self._all_events)
 
     @cached_property
@@ -108,7 +94,7 @@ class Ensemble:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Return a table with one row for each event of the undisturbed run.
+        """A table with one row for each event of the undisturbed run.
 
         Returns
         -------
@@ -126,28 +112,28 @@ class Ensemble:
 
     @property
     def has(self) -> NDArray[np.bool_]:
-        """Return whether each member (row) still has each event of the undisturbed run (column), shape (members, events)."""
+        """True where a member (row) still has an event of the undisturbed run (column), shape (members, events)."""
         return self._shared[1]
 
     @property
     def first_lost(self) -> int | None:
-        """Return the first row of `table` that some member lacks; None if every member has every event."""
+        """The first row of `table` that some member lacks; None if every member has every event."""
         lost = np.flatnonzero(self.table.members < len(self.runs))
         return int(lost[0]) if lost.size else None
 
     @property
     def horizon(self) -> float:
-        """Return the start (s) of the first event that some member lacks; inf if there is none."""
+        """The start (s) of the first event that some member lacks; inf if there is none."""
         return math.inf if self.first_lost is None else float(self.table.start.iloc[self.first_lost])
 
     @cached_property
     def separation(self) -> Separation:
-        """Return the separation of the members' loads from that of the undisturbed run."""
+        """The separation of the members' loads from that of the undisturbed run."""
         return separation(self.reference, self.runs, self.until)
 
     @cached_property
     def growth(self) -> pd.DataFrame:
-        """Return the growth of the disturbances with time.
+        """The growth of the disturbances with time.
 
         Returns
         -------
@@ -156,8 +142,6 @@ class Ensemble:
             divided by its push: median, smallest and largest of the members; small, True until a separation first leaves the
             range between rounding and saturation; predicted, the largest predicted growth so far (NaN if it is not known).
         """
-        import pandas as pd
-
         times = self.separation.apart / np.abs(self.pushes)[:, None]
         columns = {"time": self.separation.time, "growth": np.median(times, axis=0), "least": times.min(axis=0)}
         return pd.DataFrame(columns | {"most": times.max(axis=0), "small": self.separation.small, "predicted": self._predicted()})
@@ -171,7 +155,7 @@ class Ensemble:
 
     @cached_property
     def prediction(self) -> Predictability | None:
-        """Return the predicted growth of the largest push; None for a block, a contact mass, and a law of slip or with a state."""
+        """The predicted growth of the largest push; None for a block, a contact mass, and a law of slip or with a state."""
         if not is_followed(self.problem):
             return None
         found, lost = predictability(self.reference), self.separation.saturation
@@ -181,7 +165,7 @@ class Ensemble:
 
     @property
     def exponent(self) -> float:
-        """Return the measured growth rate (1/s) of a disturbance, an estimate of the largest Lyapunov exponent.
+        """The measured growth rate (1/s) of a disturbance, an estimate of the largest Lyapunov exponent.
 
         It is the slope of the straight line fitted to ln(growth) against time while the separation is small, and NaN if there are
         fewer than three such times. It is 0 for a disturbance that persists, and negative for one that decays.
@@ -191,14 +175,14 @@ class Ensemble:
 
     @property
     def predicted_exponent(self) -> float:
-        """Return the slope (1/s) of the predicted growth, at those times of `exponent` at which it is small too; NaN if unknown."""
+        """The slope (1/s) of the predicted growth, at those times of `exponent` at which it is small too; NaN if unknown."""
         largest = self.separation.saturation / np.abs(self.pushes).max()
         small = self.growth[self.growth.small & (self.growth.predicted < largest)]
         return slope(small.time.to_numpy(), small.predicted.to_numpy())
 
     @cached_property
     def statistics(self) -> pd.DataFrame:
-        """Return how far the statistics of the members differ.
+        """The statistics of the undisturbed run, and how far those of the members differ.
 
         Returns
         -------
@@ -243,29 +227,16 @@ class Ensemble:
 
         Raises InputError if the name ends otherwise, or if an .nc file cannot be written.
         """
-        from stickslip.figures.studies.ensemble import data
-        from stickslip.foundation.atomic_write import write_atomically
-        from stickslip.foundation.netcdf_file import write
-        from stickslip.io.netcdf import origin
-
-        path = Path(path)
-        if path.suffix.lower() == ".csv":
-            return write_atomically(path, lambda draft: self.table.to_csv(draft, index=False, lineterminator="\n"))
-        if path.suffix.lower() != ".nc":
+        ending = Path(path).suffix.lower()
+        if ending not in (".csv", ".nc"):
             raise InputError(f"ensemble: {path}: the name must end in .csv or .nc")
-        return write(data(self).assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), path)
+        if ending == ".csv":
+            return super().save(path)
+        return write(self.dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
 
-    def plot(self) -> Figure:
-        """Plot the events of every member, the growth of the disturbance, and the distribution of slips."""
-        from stickslip.figures.studies.ensemble import data, draw
-
-        return draw(data(self))
-
-    def __repr__(self) -> str:
+    def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
-        return "\n".join(
-            ["stickslip Ensemble", *(f"  {line}" for line in (about, self.note, self.text, self.growth_text, self.stopped) if line)]
-        )
+        return about, self.note, self.text, self.growth_text, self.stopped
 
 
 def ensemble(
@@ -278,7 +249,7 @@ def ensemble(
     max_events: int | None = None,
     seed: int = 0,
     event_rate: float | None = None,
-    progress: Report | None = None,
+    progress: TextProgress | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
     """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
@@ -330,7 +301,7 @@ def ensemble(
     pushes = drawn(problem, members, size, seed)
     if event_rate is not None and not event_rate >= 0.0:
         raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
-    tell = progress or (lambda text: None)
+    tell = progress or say_nothing
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     tell("undisturbed")
     reference = _run(problem, duration, rtol, max_events, most)
@@ -347,11 +318,9 @@ def ensemble(
 
 def _run(problem: Problem, duration: float, rtol: float, max_events: int | None, max_pieces: int) -> Solution:
     # leaps over creep and lumped events would hide the small differences between the runs
-    exact: dict[str, Any] = {"creep_rtol": 0.0, "shortest_event": 0.0}
-    solution = simulate(problem, duration, rtol, max_events=max_events, max_pieces=max_pieces, **exact)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
-    return solution
+    return uninterrupted(
+        simulate(problem, duration, rtol, max_events=max_events, max_pieces=max_pieces, creep_rtol=0.0, shortest_event=0.0)
+    )
 
 
 def _time(seconds: float) -> str:

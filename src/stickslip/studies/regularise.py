@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from itertools import combinations
 
 import numpy as np
+import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
-from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
@@ -24,15 +24,10 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.figure import Figure
-
-MAX_PIECES = 200_000
-"""Default limit on the pieces of history of one run, which are held in memory."""
 LARGEST_SHARE, FACTOR, COUNT = 30.0, 4.0, 8
 """Default sizes: the largest is the two-way travel time over LARGEST_SHARE; each of COUNT is the one before over FACTOR."""
 RESOLVED = 100.0
@@ -40,12 +35,9 @@ RESOLVED = 100.0
 FIRST_JUMPS = 12
 """Largest number of jumps that are timed."""
 
-Report = Callable[[str], Any]
-"""A function that is called with a line of text on the progress of a study."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Regularisation:
+class Regularisation(RunsCompared):
     """The result of `regularise`, which compares all runs from t = 0 to `until` (s).
 
     Attributes
@@ -74,30 +66,30 @@ class Regularisation:
     runs: tuple[Solution, ...]
     seconds: tuple[float, ...]
 
-    @cached_property
-    def until(self) -> float:
-        """Return the time (s) up to which runs are compared: the earliest end of a run."""
-        return min(float(run.breaks[-1]) for run in (*self.exact.values(), *self.runs))
+    def _all_runs(self) -> tuple[Solution, ...]:
+        return *self.exact.values(), *self.runs
 
     @cached_property
     def floor(self) -> float:
-        """Return the mean slip difference (m) below which runs are equal to within their accuracy."""
+        """The mean slip difference (m) below which runs are equal to within their accuracy."""
         first = next(iter(self.exact.values()))
         return RESOLVED * self.rtol * max(float(np.ptp(first.slip(np.linspace(0.0, self.until, 101)))), 1e-300)
 
     @cached_property
     def groups(self) -> tuple[tuple[str, ...], ...]:
-        """Return the rules in groups that have the same exact solution."""
+        """The rules in groups that have the same exact solution."""
         return tuple(groups(tuple(self.exact), self._apart, self.floor))
 
     @cached_property
     def _apart(self) -> dict[tuple[str, str], float]:
-        pairs = ((one, other) for one in self.exact for other in self.exact)
-        return {(a, b): difference(self.exact[a], self.exact[b], self.until).mean if a != b else 0.0 for a, b in pairs}
+        found = {(rule, rule): 0.0 for rule in self.exact}
+        for a, b in combinations(self.exact, 2):
+            found[a, b] = found[b, a] = difference(self.exact[a], self.exact[b], self.until).mean
+        return found
 
     @cached_property
     def differences(self) -> dict[tuple[str, ...], list[Difference]]:
-        """Return, for each group of rules, the difference in slip (m) of each run from their exact solution."""
+        """The differences in slip (m) of each run from the exact solution of each group of rules."""
         return {group: [difference(run, self.exact[group[0]], self.until) for run in self.runs] for group in self.groups}
 
     def errors(self, rule: str) -> Floats:
@@ -111,33 +103,25 @@ class Regularisation:
 
     @cached_property
     def changes(self) -> Floats:
-        """Return the mean magnitude of the slip difference (m) between each run and the one before, shape (n,); NaN first."""
+        """The mean magnitude of the slip difference (m) between each run and the one before, shape (n,); NaN first."""
         pairs = zip(self.runs[1:], self.runs[:-1], strict=True)
         return np.array([np.nan, *(difference(run, before, self.until).mean for run, before in pairs)])
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Return the rule to which the runs converge, and the order of convergence."""
+        """The rule to which the runs converge, and the order of convergence."""
         against = {group: self.errors(group[0]) for group in self.groups}
         apart = {a: min([math.inf, *(self._apart[a[0], b[0]] for b in self.groups if b != a)]) for a in self.groups}
         return judge(Errors(self.sizes, against, self.changes, apart, self.floor))
 
     @property
     def target(self) -> str:
-        """Return the rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
+        """The rule against which jumps are timed: the one to which the runs converge, otherwise the nearest one."""
         return self.verdict.rules[0] if self.verdict.rules else min(self.exact, key=lambda rule: float(self.errors(rule)[-1]))
-
-    @property
-    def stopped(self) -> str:
-        """Return the reason why the comparison ends before the duration that was asked for; "" if it does not."""
-        early = [run for run in (*self.exact.values(), *self.runs) if not run.status.ok]
-        reasons = ", ".join(dict.fromkeys(run.status.name for run in early))
-        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
-        return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if early else ""
 
     @cached_property
     def jumps(self) -> pd.DataFrame:
-        """Return the jumps in the exact solution of the target rule.
+        """The jumps in the exact solution of the target rule.
 
         Returns
         -------
@@ -146,19 +130,22 @@ class Regularisation:
             decreases; expected, the order from theory: "2/3" at a fold, "1 (log)" for a jump out of rest under a ramp of load,
             and "1" for a jump caused by a jump of the load.
         """
-        from stickslip.studies.tables import jumps_table
-
-        return jumps_table(self)
+        shocks = self.shocks
+        table = shocks[["time", "cause", "rate_before", "rate_after"]].copy()
+        table["order"] = [self.delay_order(j).power for j in range(len(shocks))]
+        ramped = (shocks.cause == "fold") | ((shocks.cause == "start") & (self.problem.excess == 0.0))
+        table["expected"] = np.select([ramped & (shocks.rate_before == 0.0), ramped], ["1 (log)", "2/3"], "1")
+        return table
 
     @cached_property
     def shocks(self) -> pd.DataFrame:
-        """Return the first shocks of the target's exact solution before `until` (at most FIRST_JUMPS): see `Solution.shocks`."""
+        """The first shocks of the target's exact solution before `until` (at most FIRST_JUMPS): see `Solution.shocks`."""
         shocks = self.exact[self.target].shocks
         return shocks[shocks.time < self.until].head(FIRST_JUMPS)
 
     @cached_property
     def delays(self) -> Floats:
-        """Return the delay (s) of each run (row) at each of the `jumps` (column), relative to the exact solution.
+        """The delay (s) of each run (row) at each of the `jumps` (column), relative to the exact solution.
 
         A run makes a jump when its slip rate passes the middle between the rates before and after; NaN if it does not.
         """
@@ -168,12 +155,12 @@ class Regularisation:
         found = np.full((len(self.runs), len(times)), np.nan)
         for j, (at, before, after) in enumerate(zip(times, shocks.rate_before, shocks.rate_after, strict=True)):
             for i, run in enumerate(self.runs):
-                found[i, j] = passage(run, 0.5 * (before + after), after > before, at, edges[j], edges[j + 1]) - at
+                found[i, j] = passage(run, 0.5 * (before + after), after > before, at, (edges[j], edges[j + 1])) - at
         return found
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return a table with one row for each size.
+        """A table with one row for each size.
 
         Returns
         -------
@@ -182,9 +169,21 @@ class Regularisation:
             difference (m) from its exact solution, and order_, between neighbouring sizes; change, the mean difference (m) from the
             size before; delay_ of each jump (s); pieces of history; seconds of computing time; status.
         """
-        from stickslip.studies.tables import sizes_table
-
-        return sizes_table(self)
+        kind = kind_of(self.by)
+        columns: dict[str, object] = {"size": self.sizes}
+        if kind.parameter != "time":
+            columns[kind.parameter] = [kind.value(self.problem, size) for size in self.sizes.tolist()]
+        for group, found in self.differences.items():
+            for rule in group:
+                name = rule.replace("-", "_")
+                columns |= {f"{part}_{name}": [getattr(one, part) for one in found] for part in ("mean", "largest", "end")}
+                columns[f"order_{name}"] = self.local_orders(rule)
+        columns["change"] = self.changes
+        columns |= {f"delay_{j + 1}": delay for j, delay in enumerate(self.delays.T)}
+        columns["pieces"] = [len(run.history) for run in self.runs]
+        columns["seconds"] = list(self.seconds)
+        columns["status"] = [run.status.name for run in self.runs]
+        return pd.DataFrame(columns)
 
     def delay_order(self, jump: int) -> Order:
         """Return the order with which the delay of a jump (a row of `jumps`) decreases with the size."""
@@ -194,15 +193,8 @@ class Regularisation:
         """Return the order of the errors relative to a rule between each size and the one before, shape (n,); NaN first."""
         return local_orders(self.sizes, self.errors(rule))
 
-    def plot(self) -> Figure:
-        """Plot the errors against size, and the runs near a jump."""
-        from stickslip.figures.studies.regularise import data, draw
-
-        return draw(data(self))
-
-    def __repr__(self) -> str:
-        lines = [f"regularised by {kind_of(self.by).title}, {len(self.sizes)} sizes", self.verdict.text, self.stopped]
-        return "\n".join(["stickslip Regularisation", *(f"  {line}" for line in lines if line)])
+    def _lines(self) -> tuple[str, ...]:
+        return f"regularised by {kind_of(self.by).title}, {len(self.sizes)} sizes", self.verdict.text, self.stopped
 
 
 def default_sizes(two_way_time: float) -> tuple[float, ...]:
@@ -216,9 +208,9 @@ def regularise(
     by: str = "contact-mass",
     sizes: Sequence[float] | None = None,
     rules: Sequence[str] = SELECTION_RULES,
-    rtol: float = 1e-10,
     *,
-    progress: Report | None = None,
+    rtol: float = 1e-10,
+    progress: TextProgress | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
     """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.
@@ -258,26 +250,26 @@ def regularise(
     """
     slab = check_massless(problem)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
-    tell = progress or (lambda text: None)
+    tell = progress or say_nothing
     softened = [regularised(problem, by, size) for size in times.tolist()]
     exact = {}
     for rule in _known(rules):
         tell(f"exact answer, {rule}")
-        exact[rule] = _run(replace(problem, selection=rule), duration, rtol, max_pieces)[0]
-    done = []
+        exact[rule], _ = _run(replace(problem, selection=rule), duration, rtol, max_pieces)
+    runs, seconds = [], []
     for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
         tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
-        done.append(_run(one, duration, rtol, max_pieces))
-    return Regularisation(problem, by, times, rtol, exact, tuple(run for run, _ in done), tuple(spent for _, spent in done))
+        run, spent = _run(one, duration, rtol, max_pieces)
+        runs.append(run)
+        seconds.append(spent)
+    return Regularisation(problem, by, times, rtol, exact, tuple(runs), tuple(seconds))
 
 
 def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tuple[Solution, float]:
     """Run a problem, and return the solution and the seconds that it took, without compilation."""
     prepare(problem, rtol)
     start = time.perf_counter()
-    solution = simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
+    solution = uninterrupted(simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0))
     return solution, time.perf_counter() - start
 
 

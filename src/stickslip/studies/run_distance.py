@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.contact.roots import sign_change
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import Floats
 
@@ -14,8 +15,6 @@ UNIFORM = 2001
 """Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""
 INSIDE = np.linspace(0.0, 1.0, 5)[:-1]
 """Positions of the times within each piece of a history, as shares of its length."""
-HALVINGS = 80
-"""Largest number of bisections, more than the digits of a time need."""
 
 
 @dataclass(frozen=True)
@@ -42,24 +41,16 @@ def _inside(solution: Solution, start: float, end: float) -> Floats:
     return np.append(times[(times >= start) & (times <= end)], min(end, float(breaks[-1])))
 
 
-def passage(solution: Solution, level: float, rising: bool, near: float, start: float, end: float) -> float:
-    """Return the time (s) between start and end at which the slip rate passes a level (m/s), upwards if `rising`.
+def passage(solution: Solution, level: float, rising: bool, near: float, span: tuple[float, float]) -> float:
+    """Return the time (s) in a span (start, end) at which the slip rate passes a level (m/s), upwards if `rising`.
 
     If there are several such times, the result is the one nearest to `near`; it is NaN if there is none.
     """
-    time = _inside(solution, start, end)
+    time = _inside(solution, *span)
     beyond = (solution.slip_rate(time) > level) == rising
     steps = np.flatnonzero(beyond[1:] & ~beyond[:-1])
     if not steps.size:
         return math.nan
     step = int(steps[np.argmin(np.abs(time[steps] - near))])
-    low, high = float(time[step]), float(time[step + 1])
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if (float(solution.slip_rate(middle)) > level) == rising:
-            high = middle
-        else:
-            low = middle
-    return high
+    way = 1.0 if rising else -1.0
+    return sign_change(lambda t: way * (float(solution.slip_rate(t)) - level), float(time[step]), float(time[step + 1]))

@@ -47,7 +47,7 @@ class Separation(NamedTuple):
 
     @property
     def small(self) -> NDArray[np.bool_]:
-        """Return True for the intervals before the first in which the separation of a member is saturated or only rounding."""
+        """True for the intervals before the first in which the separation of a member is saturated or only rounding."""
         fine = ((self.apart < self.saturation) & (self.apart > self.noise)).all(axis=0)
         return np.logical_and.accumulate(fine)
 
@@ -135,13 +135,8 @@ def statistics_spread(reference: pd.DataFrame, members: Sequence[pd.DataFrame]) 
     for name in DESCRIBED:
         row = {"count": float(own["count"][name])}
         for what in ("mean", "variation"):
-            values = np.array([one[what][name] for one in others])
-            there = values[np.isfinite(values)]
-            row |= {
-                what: own[what][name],
-                f"{what}_members": there.mean() if there.size else np.nan,
-                f"{what}_deviation": there.std(ddof=1) if there.size > 1 else np.nan,
-            }
+            values = pd.Series([one[what][name] for one in others]).dropna()
+            row |= {what: own[what][name], f"{what}_members": values.mean(), f"{what}_deviation": values.std()}
         row["chance"] = own.deviation[name] / np.sqrt(own["count"][name]) if own["count"][name] else np.nan
         rows[name] = row
     return pd.DataFrame.from_dict(rows, orient="index").astype({"count": int})

@@ -110,11 +110,8 @@ def judge(found: Errors) -> Verdict:
 
 def groups(rules: Sequence[str], apart: Mapping[tuple[str, str], float], floor: float) -> list[tuple[str, ...]]:
     """Group the rules whose solutions differ by no more than the floor (m), in the order of `rules`."""
-    found: list[list[str]] = []
+    found: dict[str, list[str]] = {}
     for rule in rules:
-        home = next((group for group in found if apart[group[0], rule] <= floor), None)
-        if home is None:
-            found.append([rule])
-        else:
-            home.append(rule)
-    return [tuple(group) for group in found]
+        first = next((one for one in found if apart[one, rule] <= floor), rule)
+        found.setdefault(first, []).append(rule)
+    return [tuple(group) for group in found.values()]

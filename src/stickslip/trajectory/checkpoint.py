@@ -10,19 +10,7 @@ from pathlib import Path
 from stickslip.engine.codegen.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers
 
-DECIDE = (
-    "batch",
-    "bodies",
-    "contact",
-    "creep",
-    "engine",
-    "engine_input",
-    "friction",
-    "loading",
-    "run",
-    "solution",
-    "trajectory",
-)
+DECIDE = ("batch", "bodies", "contact", "creep", "engine", "engine_input", "friction", "loading", "run", "solution", "trajectory")
 """Folders of the package whose code decides the result of a run."""
 
 
@@ -40,7 +28,7 @@ class Checkpoint:
 
     @property
     def length(self) -> int:
-        """Return the number of pieces in the history at the checkpoint; a run that has ended may hold more, cut at its end."""
+        """The number of pieces in the history at the checkpoint; a run that has ended may hold more, cut at its end."""
         return int(Counts(self.count).length)
 
 

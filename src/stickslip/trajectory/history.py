@@ -61,11 +61,11 @@ NO_LEAPS = np.empty((0, 4))
 
 
 @dataclass(frozen=True)
-class Moments:
+class Positions:
     """Times located in the history: each lies in a piece, at a place xi in it, or in a rest over which nothing was recorded.
 
     At rest the load is an echo of `piece`: `leaped` is the number of whole rows since then (0 within a recorded piece), and
-    `last` is the last piece before the moment.
+    `last` is the last piece before the position.
     """
 
     piece: NDArray[np.intp]
@@ -76,20 +76,20 @@ class Moments:
     last: NDArray[np.intp]
 
     @classmethod
-    def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Moments:
-        """Return the moments at places xi in recorded pieces."""
+    def inside(cls, piece: ArrayLike, xi: ArrayLike) -> Positions:
+        """Return the positions at places xi in recorded pieces."""
         pieces, places = np.broadcast_arrays(np.atleast_1d(np.asarray(piece, np.intp)), np.atleast_1d(np.asarray(xi, float)))
         return cls(pieces, places, np.zeros(len(pieces)), np.zeros(len(pieces), bool), pieces)
 
     @property
     def at_rest(self) -> NDArray[np.bool_]:
-        """Return True for moments at which nothing was recorded because the contact rests."""
+        """True for positions at which nothing was recorded because the contact rests."""
         return self.leaped > 0.0
 
-    def recorded(self) -> Moments:
-        """Return the last recorded moments up to these; slip is the same at both, because the contact rests between them."""
+    def recorded(self) -> Positions:
+        """Return the last recorded positions up to these; slip is the same at both, because the contact rests between them."""
         piece, xi = np.where(self.at_rest, self.last, self.piece), np.where(self.at_rest, 1.0, self.xi)
-        return Moments(piece, xi, np.zeros(len(xi)), self.before, piece)
+        return Positions(piece, xi, np.zeros(len(xi)), self.before, piece)
 
 
 @dataclass(frozen=True)
@@ -121,19 +121,24 @@ class History:
 
     @cached_property
     def start(self) -> Floats:
-        """Return the time at which each piece starts, s."""
+        """The time at which each piece starts, s."""
         return self.seconds(self.store.row, self.store.theta_from)
 
     @cached_property
     def end(self) -> Floats:
-        """Return the time at which each piece ends, s."""
+        """The time at which each piece ends, s."""
         return self.seconds(self.store.row, self.store.theta_to)
 
     @property
     def span(self) -> tuple[float, float]:
-        """Return the times (s) of the start and the end of the run."""
+        """The times (s) of the start and the end of the run."""
         start = float(self.seconds(np.zeros(1), np.zeros(1))[0])
         return start, start + self.duration
+
+    @cached_property
+    def breaks(self) -> Floats:
+        """The times (s) at which recorded pieces begin or end, including the start and the end of the run."""
+        return np.append(np.union1d(self.start, self.end[self.rests]), self.span[1])
 
     def __len__(self) -> int:
         return len(self.store.pieces)
@@ -142,7 +147,7 @@ class History:
         """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
         return bool((self.creep[:, 0] == row).any())
 
-    def find(self, time: Floats, side: Side) -> Moments:
+    def find(self, time: Floats, side: Side) -> Positions:
         """Locate times (s, one-dimensional) in the history; `side` picks the piece at a boundary.
 
         Raises InputError for times outside the run.
@@ -155,14 +160,14 @@ class History:
         piece = np.searchsorted(self.start, time, side="left" if side == "left" else "right") - 1
         before = piece < 0
         last: NDArray[np.intp] = np.maximum(piece, 0)
-        found = Moments(last.copy(), self.xi(last, time - self.start[last]), np.zeros(len(time)), before, last)
+        found = Positions(last.copy(), self.xi(last, time - self.start[last]), np.zeros(len(time)), before, last)
         late = time >= self.end[last] if side == "right" else time > self.end[last]
         rests = np.flatnonzero(late & self.rests[last])
         if rests.size:
             self._find_echoes(found, rests, time[rests], side)
         return found
 
-    def _find_echoes(self, found: Moments, n: NDArray[np.intp], time: Floats, side: Side) -> None:
+    def _find_echoes(self, found: Positions, n: NDArray[np.intp], time: Floats, side: Side) -> None:
         """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`."""
         row = (self.store.row[found.last[n]] - self.epoch.row).astype(float)
         rows = row + np.floor((time + self.epoch.offset - row * self.row_time) / self.row_time)
@@ -171,17 +176,17 @@ class History:
             rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.row_time, phase)
         self._set_echoes(found, n, rows + self.epoch.row, phase, side)
 
-    def _set_echoes(self, found: Moments, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
+    def _set_echoes(self, found: Positions, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
         piece = self.phases.latest(phase, found.last[n], side)
         known = piece >= 0
         n, piece, row, phase = n[known], piece[known], row[known], phase[known]
         found.piece[n], found.leaped[n] = piece, row - self.store.row[piece]
         found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
 
-    def just_before(self, piece: Integers) -> Moments:
-        """Return the moments of the left limits at the starts of pieces."""
+    def just_before(self, piece: Integers) -> Positions:
+        """Return the positions of the left limits at the starts of pieces."""
         last = np.maximum(piece - 1, 0)
-        found = Moments(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
+        found = Positions(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
         n = np.flatnonzero(self.rests[last] & (piece > 0))
         if n.size:
             row, phase = self.store.row[piece[n]].astype(float), self.store.theta_from[piece[n]]
@@ -191,7 +196,7 @@ class History:
 
     @cached_property
     def phases(self) -> Phases:
-        """Return the index of the pieces by phase."""
+        """The index of the pieces by phase."""
         return Phases.of(self.store, self.row_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
@@ -227,20 +232,20 @@ class History:
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
-        """Return True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
+        """True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
         row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
         follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
         last = row[-1:] * self.row_time + end[-1:]
         return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.row_time), last)
 
-    def placed(self, at: Moments) -> tuple[Integers, Floats]:
-        """Return the rows and offsets (s) of moments."""
+    def placed(self, at: Positions) -> tuple[Integers, Floats]:
+        """Return the rows and offsets (s) of positions."""
         store, piece, xi = self.store, at.piece, at.xi
         inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
         return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
 
-    def lasting(self, begin: Moments, end: Moments) -> Floats:
-        """Return the time between pairs of moments (s), without the rounding of either."""
+    def lasting(self, begin: Positions, end: Positions) -> Floats:
+        """Return the time between pairs of positions (s), without the rounding of either."""
         (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
         return np.asarray((later_row - row) * self.row_time + (later_offset - offset))
 
@@ -251,9 +256,9 @@ class History:
         pace = speed + root  # zero only at the very start of a piece that starts at a fold
         return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
 
-    # ---- values at moments --------------------------------------------------------------------------------------------------
+    # ---- values at positions ------------------------------------------------------------------------------------------------
 
-    def excess(self, at: Moments) -> Floats:
+    def excess(self, at: Positions) -> Floats:
         """Return the load minus the reference strength, Pa (block: N)."""
         value = horner(self.store.load[at.piece], at.xi)
         if at.at_rest.any() and self.problem.body.has_waves:
@@ -261,22 +266,22 @@ class History:
             value = np.where(at.at_rest, value - left, value)
         return np.where(at.before, self.problem.excess, value + self._gained(at))
 
-    def _gained(self, at: Moments) -> Floats:
+    def _gained(self, at: Positions) -> Floats:
         """Return the growth of the load over the rows at rest since it was recorded."""
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
         offset = self.store.theta_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
         return inflow_of(self.problem).gathered(self.store.row[at.piece].astype(float), offset, at.leaped)
 
-    def rate(self, at: Moments) -> Floats:
+    def rate(self, at: Positions) -> Floats:
         """Return the slip rate, m/s."""
         return np.where(at.before | at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
 
-    def mode(self, at: Moments) -> Integers:
+    def mode(self, at: Positions) -> Integers:
         """Return the mode of the contact: 0 at rest, +1 in forward slip, -1 in backward slip."""
         return np.where(at.at_rest, 0, self.store.mode[at.piece])
 
-    def grown(self, at: Moments) -> Floats:
+    def grown(self, at: Positions) -> Floats:
         """Return the slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
         rate = self.store.rate[at.piece]
         powers = np.arange(1, rate.shape[1] + 1)
@@ -286,43 +291,43 @@ class History:
             return straight
         return straight + at.xi**2 * horner(2.0 * bend[:, None] * rate / (powers + 1), at.xi)
 
-    def slipped(self, at: Moments) -> Floats:
+    def slipped(self, at: Positions) -> Floats:
         """Return the slip since the start of the run, m."""
         at = at.recorded()
         return np.where(at.before, 0.0, self.store.slip[at.piece] + self.grown(at))
 
-    def slipped_since(self, origin: Moments, at: Moments) -> Floats:
-        """Return the slip since one moment, m.
+    def slipped_since(self, origin: Positions, at: Positions) -> Floats:
+        """Return the slip since one position, m.
 
-        The sum begins at that moment, so that it has full precision however large the slip before it is.
+        The sum begins at that position, so that it has full precision however large the slip before it is.
         """
         origin, at = origin.recorded(), at.recorded()
         begin = int(origin.piece[0])
         first, last = min(begin, int(at.piece.min())), max(begin, int(at.piece.max()))
         crossed = np.arange(first, last)
         pieces, places = (np.concatenate(parts) for parts in ((crossed, origin.piece, at.piece), (crossed >= 0, origin.xi, at.xi)))
-        grown = self.grown(Moments.inside(pieces, places))
+        grown = self.grown(Positions.inside(pieces, places))
         earlier, later, behind = np.split(grown, [begin - first, last - first])
         sums = np.concatenate([-np.cumsum(earlier[::-1])[::-1], [0.0], np.cumsum(later)])
         return np.where(at.before, -self.slipped(origin), sums[at.piece - first] + (behind[1:] - behind[0]))
 
-    def slipped_within(self, begin: Moments, end: Moments) -> Floats:
-        """Return the slip from each of several recorded moments to a later one, m, with the precision of `slipped_since`."""
+    def slipped_within(self, begin: Positions, end: Positions) -> Floats:
+        """Return the slip from each of several recorded positions to a later one, m, with the precision of `slipped_since`."""
         past = np.cumsum(end.piece - begin.piece)
         crossed = np.arange(past[-1] if len(past) else 0) + np.repeat(end.piece - past, end.piece - begin.piece)
         blocks = np.array_split(crossed, len(crossed) // BLOCK + 1)
-        whole = np.concatenate([self.grown(Moments.inside(block, 1.0)) for block in blocks])
+        whole = np.concatenate([self.grown(Positions.inside(block, 1.0)) for block in blocks])
         sums = np.empty(len(past))
         add_up(whole, past, sums)
         return sums + (self.grown(end) - self.grown(begin))
 
-    def state(self, at: Moments) -> Floats:
+    def state(self, at: Positions) -> Floats:
         """Return the state of the friction law as its formulas see it; 0 for a law without a state."""
         if self.problem.friction.state is None:
             return np.zeros(len(at.xi))
         return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
 
-    def friction(self, at: Moments) -> Floats:
+    def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body

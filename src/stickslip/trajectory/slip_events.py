@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
-from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.history import History, Positions
 
 MAXIMA_PER_PIECE = 32
 """Largest number of extrema of the slip rate, or of crossings of the threshold, in one piece."""
@@ -21,23 +21,32 @@ NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
 
 
+class Turns(NamedTuple):
+    """Hold points along |slip rate|: where it begins, ends, turns, or crosses a threshold. Arrays may be longer than needed."""
+
+    piece: Integers  # piece of the history
+    xi: Floats  # place in the piece, from 0 to 1
+    rate: Floats  # m/s
+    kind: Integers  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
+
+
+def new_turns(capacity: int) -> Turns:
+    """Return uninitialised arrays for `capacity` points."""
+    return Turns(np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity), np.empty(capacity, np.int64))
+
+
 @kernel
-def turning_points(
-    table: Integers, begin: int, length: int, threshold: float, piece: Integers, xi: Floats, rate: Floats, kind: Integers
-) -> int:
+def turning_points(table: Integers, begin: int, length: int, threshold: float, turns: Turns) -> int:
     """Walk along |slip rate| from piece `begin` on and record its starts, ends, extrema and crossings of the threshold.
 
-    `table` is that of a history (`Store.pieces`).
-
-    For each point the arrays receive the piece, the place xi in it, the rate (m/s), and the kind: 0 for a point above the
-    threshold, +1 if the rate rises above the threshold there, -1 if it falls to it. Returns the number of points, or -1 if the
-    arrays are too short.
+    `table` is that of a history (`Store.pieces`) with `length` pieces. Returns the number of points, or -1 if there is no room for
+    all of them.
     """
     found, pieces = 0, pieces_in(table)
     p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
     above = False
     for n in range(begin, length):
-        if found + 3 * MAXIMA_PER_PIECE > len(piece):
+        if found + 3 * MAXIMA_PER_PIECE > len(turns.piece):
             return -1
         mode, its_rate = pieces[n].mode, pieces[n].rate
         sign = 1.0 if mode >= 0 else -1.0
@@ -46,28 +55,27 @@ def turning_points(
         contiguous = n > begin and mode == pieces[n - 1].mode
         begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
         if above and not (begins and contiguous):
-            found = _note(piece, xi, rate, kind, found, n - 1, 1.0, 0.0, -1)
+            found = _note(turns, found, (n - 1, 1.0), 0.0, -1)
             above = False
         if mode == 0:
             continue
         if begins:
-            found = _note(piece, xi, rate, kind, found, n, 0.0, p[0], 0 if above else 1)
+            found = _note(turns, found, (n, 0.0), p[0], 0 if above else 1)
             above = True
-        turns_not, last = is_monotone(p, slope), total(p)
+        monotone, last = is_monotone(p, slope), total(p)
         p[0] -= threshold
-        stays = turns_not and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
+        stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
         crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
         for i in range(crossed):
             above = not above
-            found = _note(piece, xi, rate, kind, found, n, places[i], threshold, 1 if above else -1)
+            found = _note(turns, found, (n, places[i]), threshold, 1 if above else -1)
         p[0] += threshold
-        turns = 0 if turns_not else crossings(slope, places)
-        for i in range(turns):
+        for i in range(0 if monotone else crossings(slope, places)):
             height = evaluate(p, places[i])
             if height > threshold:
-                found = _note(piece, xi, rate, kind, found, n, places[i], height, 0)
+                found = _note(turns, found, (n, places[i]), height, 0)
         if above:
-            found = _note(piece, xi, rate, kind, found, n, 1.0, last, 0)
+            found = _note(turns, found, (n, 1.0), last, 0)
     return found
 
 
@@ -107,10 +115,10 @@ def _rises(p: Floats) -> bool:
 
 
 @kernel
-def _note(
-    piece: Integers, xi: Floats, rate: Floats, kind: Integers, n: int, where: int, place: float, height: float, what: int
-) -> int:
-    piece[n], xi[n], rate[n], kind[n] = where, place, height, what
+def _note(turns: Turns, n: int, place: tuple[int, float], rate: float, kind: int) -> int:
+    """Write point n, at a place (piece, xi), and return the number of points."""
+    turns.piece[n], turns.xi[n] = place
+    turns.rate[n], turns.kind[n] = rate, kind
     return n + 1
 
 
@@ -161,16 +169,16 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
                 break
 
 
-def walk(history: History, threshold: float, begin: int = 0) -> tuple[Any, Any, Any, Any]:
+def walk(history: History, threshold: float, begin: int = 0) -> Turns:
     """Return the points of `turning_points` in order of time, with arrays that are large enough for all of them."""
     room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
     while True:
-        piece, kind = np.empty(room, np.int64), np.empty(room, np.int64)
-        xi, rate = np.empty(room), np.empty(room)
-        found = turning_points(history.store.pieces, begin, len(history), threshold, piece, xi, rate, kind)
+        turns = new_turns(room)
+        found = turning_points(history.store.pieces, begin, len(history), threshold, turns)
         if found >= 0:
-            order = np.lexsort((-kind[:found] * (xi[:found] < 1.0), xi[:found], piece[:found]))
-            return piece[:found][order], xi[:found][order], rate[:found][order], kind[:found][order]
+            piece, xi, rate, kind = turns.piece[:found], turns.xi[:found], turns.rate[:found], turns.kind[:found]
+            order = np.lexsort((-kind * (xi < 1.0), xi, piece))
+            return Turns(piece[order], xi[order], rate[order], kind[order])
         room *= 2
 
 
@@ -201,19 +209,19 @@ class SlipEvents(NamedTuple):
         return self._replace(**{name: column[..., which] for name, column in self._asdict().items()})
 
     @property
-    def begin(self) -> Moments:
-        """Return the moments at which the events begin."""
-        return Moments.inside(self.piece[0], self.xi[0])
+    def begin(self) -> Positions:
+        """The positions at which the events begin."""
+        return Positions.inside(self.piece[0], self.xi[0])
 
     @property
-    def peak(self) -> Moments:
-        """Return the moments at which the slip rate is largest."""
-        return Moments.inside(self.piece[1], self.xi[1])
+    def peak(self) -> Positions:
+        """The positions at which the slip rate is largest."""
+        return Positions.inside(self.piece[1], self.xi[1])
 
     @property
-    def end(self) -> Moments:
-        """Return the moments at which the events end, or the history does."""
-        return Moments.inside(self.piece[2], self.xi[2])
+    def end(self) -> Positions:
+        """The positions at which the events end, or the history does."""
+        return Positions.inside(self.piece[2], self.xi[2])
 
     def largest(self, values: Floats) -> Floats:
         """Return the largest value in each event, from values given for each piece of the history."""

@@ -10,7 +10,7 @@ from stickslip.contact.uniqueness import uniqueness
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import History, Moments
+from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
 
 if TYPE_CHECKING:
@@ -104,12 +104,12 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def friction_before(history: History, begin: Moments) -> Floats:
+def friction_before(history: History, begin: Positions) -> Floats:
     """Return the traction minus the reference strength just before events begin (left limit)."""
     at_once = begin.xi == 0.0
     friction = np.empty(len(at_once))
     friction[at_once] = history.friction(history.just_before(begin.piece[at_once]))
-    friction[~at_once] = history.friction(Moments.inside(begin.piece[~at_once], begin.xi[~at_once]))
+    friction[~at_once] = history.friction(Positions.inside(begin.piece[~at_once], begin.xi[~at_once]))
     return friction
 
 
@@ -123,7 +123,7 @@ def friction_after(history: History, events: SlipEvents) -> Floats:
     rests = (by != NOT_YET) & (mode[by] != mode[end.piece])
     steps = ~rests & (end.xi == 1.0) & (end.piece + 1 < len(history))
     piece = np.where(rests, by, np.where(steps, end.piece + 1, end.piece))
-    return history.friction(Moments.inside(piece, np.where(rests | steps, 0.0, end.xi)))
+    return history.friction(Positions.inside(piece, np.where(rests | steps, 0.0, end.xi)))
 
 
 def shocks_table(history: History, first: float = -np.inf, last: float = np.inf) -> pd.DataFrame:
@@ -131,7 +131,7 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
     import pandas as pd
 
     piece = np.flatnonzero((history.store.cause > 0) & (history.start >= first) & (history.start <= last))
-    before, after = history.just_before(piece), Moments.inside(piece, 0.0)
+    before, after = history.just_before(piece), Positions.inside(piece, 0.0)
     reference = history.problem.strength
     columns = {
         "time": history.start[piece],

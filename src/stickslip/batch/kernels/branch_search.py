@@ -1,15 +1,13 @@
 """Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and `contact.rules.selection` in compiled code.
 
 If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
-folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law. In all functions `address`
-is that of the formula's compiled `value`, `c` points to its constants, `impedance` is Z (Pa s/m), `normal` is S (Pa), and `out` has
-room for the numbers that `value` returns.
+folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -39,24 +37,55 @@ OCTAVE, STEPS = 2**52, 16
 returns to halving the bits."""
 
 
+class Resistance(NamedTuple):
+    """Hold what the resistance g(s) = Z s + S mu(s) of one member is calculated from."""
+
+    address: int  # of the formula's compiled `value`
+    constants: Any  # pointer to the formula's constants
+    impedance: float  # Z, Pa s/m
+    normal: float  # S, Pa
+    start: float  # g(0+) minus the static strength, Pa
+    out: Any  # pointer to room for what `value` returns
+
+
+class Resistances(NamedTuple):
+    """Hold what the resistances of all members are calculated from, and where to look for their folds."""
+
+    address: int  # of the formula's compiled `value`
+    constants: Floats  # (members or 1, 1, size)
+    impedance: Floats  # Z, Pa s/m
+    normal: Floats  # S, Pa
+    start: Floats  # g(0+) minus the static strength, Pa
+    slowest: Floats  # slowest and fastest scale of the contact, m/s
+    fastest: Floats
+    near: Floats  # m/s: slip rate at which the law says that the fold is, or NaN
+
+
+class Found(NamedTuple):
+    """Hold what is found for each member."""
+
+    table: Floats  # (members, largest number of branches, Branch.total)
+    branches: Integers  # number of branches; NEVER_RISES or TOO_MANY
+    irregular: Floats  # 1 if several slip rates solve the contact equation at some load
+    stick_to: Floats  # Pa: load minus strength at which stick ends
+
+
 @kernel
-def slope_at(address: int, c: Any, impedance: float, normal: float, rate: float, out: Any) -> float:
+def slope_at(g: Resistance, rate: float) -> float:
     """Return g'(s), in Pa s/m, at a slip rate (m/s) and the reference slip."""
-    call_value(address, c, 0.0, rate, out)
-    return impedance + normal * out[1]
+    call_value(g.address, g.constants, 0.0, rate, g.out)
+    return g.impedance + g.normal * g.out[1]
 
 
 @kernel
-def excess_at(address: int, c: Any, impedance: float, normal: float, start: float, rate: float, out: Any) -> float:
-    """Return g(s) minus the static strength (Pa) at a slip rate (m/s); start is g(0+) minus the static strength."""
-    call_value(address, c, 0.0, rate, out)
-    return impedance * rate + normal * out[0] + start
+def excess_at(g: Resistance, rate: float) -> float:
+    """Return g(s) minus the static strength (Pa) at a slip rate (m/s)."""
+    call_value(g.address, g.constants, 0.0, rate, g.out)
+    return g.impedance * rate + g.normal * g.out[0] + g.start
 
 
 @kernel
-def turn_between(
-    address: int, c: Any, impedance: float, normal: float, low: float, high: float, at_low: float, at_high: float, out: Any
-) -> float:
+def turn_between(g: Resistance, low: float, high: float, at_low: float, at_high: float) -> float:
     """Return the slip rate between `low` and `high` at which g' changes sign: the last or the first one at which g still rises.
 
     at_low and at_high are g' at the two ends. The bits of the rates are halved until these differ by less than a factor of two.
@@ -70,7 +99,7 @@ def turn_between(
         if near:
             crossing = (float_of(before) * at_high - float_of(behind) * at_low) / (at_high - at_low)
             probe, steps = min(max(bits_of(crossing), before + 1), behind - 1), steps + 1
-        value = slope_at(address, c, impedance, normal, float_of(probe), out)
+        value = slope_at(g, float_of(probe))
         if (value > 0.0) == rises:
             at_high *= share_kept(value, at_low) if side > 0 else 1.0
             before, at_low, side = probe, value, 1 if near else 0
@@ -88,36 +117,33 @@ def share_kept(value: float, last: float) -> float:
 
 
 @kernel
-def turns_once(
-    address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, near: float, ends: Floats, out: Any
-) -> int:
+def turns_once(g: Resistance, slowest: float, fastest: float, near: float, ends: Floats) -> int:
     """Write the ends of the branches (m/s) into `ends`, if the slope of g is monotone; return their number or NEVER_RISES.
 
-    slowest and fastest are the scales of the contact (m/s). `near` is the rate at which the law says that the fold is, or NaN.
+    slowest, fastest and near are those of `Resistances`.
     """
     low, high = 0.0, ABOVE * fastest
-    at_high = slope_at(address, c, impedance, normal, high, out)
+    at_high = slope_at(g, high)
     if not at_high > 0.0:
         return NEVER_RISES
-    at_low = slope_at(address, c, impedance, normal, low, out)
+    at_low = slope_at(g, low)
     ends[0], ends[1] = 0.0, math.inf
-    if at_low > 0.0 or (at_low == 0.0 and slope_at(address, c, impedance, normal, BELOW * slowest, out) > 0.0):
+    if at_low > 0.0 or (at_low == 0.0 and slope_at(g, BELOW * slowest) > 0.0):
         return 1
     for rate in (near * (1.0 - NEARBY), near * (1.0 + NEARBY), slowest, fastest):
         if low < rate < high:
-            slope = slope_at(address, c, impedance, normal, rate, out)
+            slope = slope_at(g, rate)
             if slope > 0.0:
                 high, at_high = rate, slope
             else:
                 low, at_low = rate, slope
-    ends[0] = turn_between(address, c, impedance, normal, low, high, at_low, at_high, out)
+    ends[0] = turn_between(g, low, high, at_low, at_high)
     return 1
 
 
 @kernel
 def search_grid(slowest: float, fastest: float) -> Floats:
-    """Return ascending slip rates (m/s): 0, a geometric progression over all scales, and an even spacing up to EVEN_REACH times the
-    fastest."""
+    """Return ascending slip rates (m/s): 0, a geometric progression over all scales, and an even one up to EVEN_REACH fastest."""
     low, high = math.log10(slowest * BELOW), math.log10(fastest * ABOVE)
     even = np.linspace(0.0, EVEN_REACH * fastest, EVEN_POINTS)
     steep = 10.0 ** np.linspace(low, high, math.ceil((high - low) * POINTS_PER_DECADE))
@@ -137,21 +163,21 @@ def refined(rates: Floats, slope: Floats) -> Floats:
 
 
 @kernel
-def slopes_at(address: int, c: Any, impedance: float, normal: float, rates: Floats, out: Any) -> Floats:
+def slopes_at(g: Resistance, rates: Floats) -> Floats:
     """Return g' (Pa s/m) at many slip rates (m/s)."""
     slope = np.empty(len(rates))
     for n in range(len(rates)):
-        slope[n] = slope_at(address, c, impedance, normal, rates[n], out)
+        slope[n] = slope_at(g, rates[n])
     return slope
 
 
 @kernel
-def turns(address: int, c: Any, impedance: float, normal: float, slowest: float, fastest: float, ends: Floats, out: Any) -> int:
+def turns(g: Resistance, slowest: float, fastest: float, ends: Floats) -> int:
     """Write the ends of the branches of any resistance into `ends`; return the number of branches, NEVER_RISES or TOO_MANY."""
     rates = search_grid(slowest, fastest)
     for _ in range(ROUNDS):
-        rates = refined(rates, slopes_at(address, c, impedance, normal, rates, out))
-    slope = slopes_at(address, c, impedance, normal, rates, out)
+        rates = refined(rates, slopes_at(g, rates))
+    slope = slopes_at(g, rates)
     if not slope[-1] > 0.0:
         return NEVER_RISES
     found, rises = 0, slope[0] > 0.0 or (slope[0] == 0.0 and slope[1] > 0.0)
@@ -161,7 +187,7 @@ def turns(address: int, c: Any, impedance: float, normal: float, slowest: float,
         if (slope[n] > 0.0) != rises:
             if found + 2 > len(ends):
                 return TOO_MANY
-            ends[found] = turn_between(address, c, impedance, normal, rates[n - 1], rates[n], slope[n - 1], slope[n], out)
+            ends[found] = turn_between(g, rates[n - 1], rates[n], slope[n - 1], slope[n])
             found, rises = found + 1, not rises
     ends[found] = math.inf
     return (found + 1) // 2
@@ -189,46 +215,30 @@ def keep_levels(rule: int, count: int, branches: Branch) -> float:
 
 
 @kernel
-def branch_tables(
-    address: int,
-    constants: Floats,
-    impedance: Floats,
-    normal: Floats,
-    start: Floats,
-    slowest: Floats,
-    fastest: Floats,
-    near: Floats,
-    one_way: bool,
-    rule: int,
-    work: Floats,
-    table: Floats,
-    branches: Integers,
-    irregular: Floats,
-    stick_to: Floats,
-) -> None:
-    """Fill `table`, of shape (members, largest number of branches, Branch.total), and the other results for each member.
+def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, found: Found) -> None:
+    """Find the branches of each member's resistance and what follows from them.
 
-    branches receives the number of branches, irregular 1 if several slip rates solve the contact equation at some load, and
-    stick_to the load minus strength (Pa) at which stick ends. one_way: mu is convex or concave. rule: an index of RULES. work has
-    room for four numbers and belongs to the caller, because an array made here would be freed as soon as its address is taken.
+    one_way: mu is convex or concave. rule: a code of `Rule`. work has room for what `value` returns and belongs to the caller,
+    because an array made here would be freed as soon as its address is taken.
     """
     ends = np.empty(2 * MOST_BRANCHES)
-    out, size = floats(work.ctypes.data), constants.shape[1] * constants.shape[2] if len(constants) > 1 else 0
-    for n in range(len(table)):
-        c, z, s = ahead(floats(constants.ctypes.data), n * size), impedance[n], normal[n]
+    out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
+    for n in range(len(found.table)):
+        c = ahead(floats(of.constants.ctypes.data), n * size)
+        g = Resistance(of.address, c, of.impedance[n], of.normal[n], of.start[n], out)
         if one_way:
-            found = turns_once(address, c, z, s, slowest[n], fastest[n], near[n], ends, out)
+            count = turns_once(g, of.slowest[n], of.fastest[n], of.near[n], ends)
         else:
-            found = turns(address, c, z, s, slowest[n], fastest[n], ends, out)
-        branches[n], irregular[n], stick_to[n] = found, 0.0, 0.0
-        if found <= 0:
+            count = turns(g, of.slowest[n], of.fastest[n], ends)
+        found.branches[n], found.irregular[n], found.stick_to[n] = count, 0.0, 0.0
+        if count <= 0:
             continue
-        own = branches_in(table[n])
-        for i in range(found):
-            low, high = ends[2 * i], ends[2 * i + 1]
-            own[i].rate_from, own[i].rate_to = low, high
-            own[i].excess_from = excess_at(address, c, z, s, start[n], low, out)
-            own[i].excess_to = math.inf if math.isinf(high) else excess_at(address, c, z, s, start[n], high, out)
-            if low > 0.0 or own[i].excess_from < 0.0:
-                irregular[n] = 1.0
-        stick_to[n] = keep_levels(rule, found, own)
+        branches = branches_in(found.table[n])
+        for i in range(count):
+            branch, low, high = branches[i], ends[2 * i], ends[2 * i + 1]
+            branch.rate_from, branch.rate_to = low, high
+            branch.excess_from = excess_at(g, low)
+            branch.excess_to = math.inf if math.isinf(high) else excess_at(g, high)
+            if low > 0.0 or branch.excess_from < 0.0:
+                found.irregular[n] = 1.0
+        found.stick_to[n] = keep_levels(rule, count, branches)

@@ -1,5 +1,4 @@
-"""Find the slip events of a run: sort the points of `trajectory.slip_events.turning_points`, and find where each event begins and
-ends."""
+"""Find the slip events of a run from the turning points of its slip rate (`trajectory.slip_events.turning_points`)."""
 
 from __future__ import annotations
 
@@ -8,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.state.layout import Floats, Integers
-from stickslip.trajectory.slip_events import NOT_YET, count_pulses, highest, turning_points
+from stickslip.engine.state.layout import Integers
+from stickslip.trajectory.slip_events import NOT_YET, Turns, count_pulses, highest, new_turns, turning_points
 
 POINTS_PER_PIECE = 8
 """Number of turning points for which there is room at first, for each piece of history."""
@@ -18,10 +17,7 @@ POINTS_PER_PIECE = 8
 class Points(NamedTuple):
     """The turning points of a slip rate in order of time, and the events that they form. Arrays may be longer than needed."""
 
-    piece: Integers  # of each point: its piece of history
-    xi: Floats  # of each point: its place in the piece, from 0 to 1
-    rate: Floats  # of each point: magnitude of the slip rate, m/s
-    kind: Integers  # of each point: +1 if the rate rises above the threshold, -1 if it falls to it, 0 above it
+    turns: Turns
     begin: Integers  # of each event: its first point
     past: Integers  # of each event: the point after its last one
     top: Integers  # of each event: its fastest point
@@ -30,23 +26,22 @@ class Points(NamedTuple):
 
 def new_points(capacity: int) -> Points:
     """Return uninitialised arrays for `capacity` points."""
-    whole = [np.empty(capacity, np.int64) for _ in range(6)]
-    return Points(whole[0], np.empty(capacity), np.empty(capacity), *whole[1:])
+    return Points(new_turns(capacity), *(np.empty(capacity, np.int64) for _ in range(4)))
 
 
 @kernel
-def put_in_order(points: Points, found: int) -> None:
+def put_in_order(turns: Turns, found: int) -> None:
     """Sort the first `found` points by piece and place, and at one place those at which the rate rises first.
 
     This is the order of `slip_events.walk`. The pieces are in order already.
     """
     for n in range(1, found):
-        piece, xi, rate, kind = points.piece[n], points.xi[n], points.rate[n], points.kind[n]
+        piece, xi, rate, kind = turns.piece[n], turns.xi[n], turns.rate[n], turns.kind[n]
         k = n - 1
-        while k >= 0 and points.piece[k] == piece and comes_later(points.xi[k], points.kind[k], xi, kind):
-            move(points, k, k + 1)
+        while k >= 0 and turns.piece[k] == piece and comes_later(turns.xi[k], turns.kind[k], xi, kind):
+            move(turns, k, k + 1)
             k -= 1
-        points.piece[k + 1], points.xi[k + 1], points.rate[k + 1], points.kind[k + 1] = piece, xi, rate, kind
+        turns.piece[k + 1], turns.xi[k + 1], turns.rate[k + 1], turns.kind[k + 1] = piece, xi, rate, kind
 
 
 @kernel
@@ -56,10 +51,10 @@ def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
 
 
 @kernel
-def move(points: Points, source: int, target: int) -> None:
+def move(turns: Turns, source: int, target: int) -> None:
     """Copy a point to another position in the order."""
-    points.piece[target], points.xi[target] = points.piece[source], points.xi[source]
-    points.rate[target], points.kind[target] = points.rate[source], points.kind[source]
+    turns.piece[target], turns.xi[target] = turns.piece[source], turns.xi[source]
+    turns.rate[target], turns.kind[target] = turns.rate[source], turns.kind[source]
 
 
 @kernel
@@ -68,17 +63,17 @@ def find_events(table: Integers, length: int, threshold: float, points: Points) 
 
     The points of each event are written into `points`. Returns NOT_YET if there is no room for all turning points.
     """
-    found = turning_points(table, 0, length, threshold, points.piece, points.xi, points.rate, points.kind)
+    found = turning_points(table, 0, length, threshold, points.turns)
     if found < 0:
         return NOT_YET
-    put_in_order(points, found)
+    put_in_order(points.turns, found)
     events = 0
     for n in range(found):
-        if points.kind[n] == 1:
+        if points.turns.kind[n] == 1:
             points.begin[events] = n
             events += 1
     for n in range(events):
         points.past[n] = points.begin[n + 1] if n + 1 < events else found
-    highest(points.rate, points.begin[:events], points.past[:events], points.top)
-    count_pulses(points.rate, points.begin[:events], points.past[:events], points.pulses)
+    highest(points.turns.rate, points.begin[:events], points.past[:events], points.top)
+    count_pulses(points.turns.rate, points.begin[:events], points.past[:events], points.pulses)
     return events

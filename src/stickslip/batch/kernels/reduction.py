@@ -127,20 +127,21 @@ def slipped_between(history: HistoryPiece, piece: int, xi: float, later: int, la
 
 
 @kernel
-def friction_in(run: Run, history: HistoryPiece, piece: int, xi: float) -> float:
+def friction_in(run: Run, piece: int, xi: float) -> float:
     """Return friction minus the reference strength (Pa or N) at a place, in slip or at rest, as in `History.friction`."""
-    excess, rate, mode = evaluate(history[piece].load, xi), evaluate(history[piece].rate, xi), history[piece].mode
+    kept = run.history[piece]
+    excess, rate, mode = evaluate(kept.load, xi), evaluate(kept.rate, xi), kept.mode
     if run.counts.has_inertia == 0:
         return excess - run.par.impedance * rate
     if mode == 0:
         return excess
-    walked = grown(history, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
-    friction_of(run, history[piece].law_piece, history[piece].law_slip + walked, abs(rate))
+    walked = grown(run.history, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
+    friction_of(run, kept.law_piece, kept.law_slip + walked, abs(rate))
     return run.friction.stress if mode > 0 else -run.friction.stress - 2.0 * run.par.reference
 
 
 @kernel
-def friction_before(run: Run, history: HistoryPiece, piece: int, excess: float) -> float:
+def friction_before(run: Run, piece: int, excess: float) -> float:
     """Return friction minus the reference strength (Pa or N) just before a piece starts.
 
     Before the first piece the contact is at rest under the initial `excess`. After round trips at rest that were not recorded, the
@@ -148,58 +149,59 @@ def friction_before(run: Run, history: HistoryPiece, piece: int, excess: float) 
     """
     if piece == 0:
         return excess
-    row_time, last = run.par.row_time, piece - 1
+    history, row_time, last = run.history, run.par.row_time, piece - 1
     if not time_between(history, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
-        return friction_in(run, history, last, 1.0)
+        return friction_in(run, last, 1.0)
     row, phase = history[piece].row, history[piece].theta_from
     if phase == 0.0:
         row, phase = row - 1, row_time
     while last >= 0 and not (history[last].theta_from < phase <= history[last].theta_to):
         last -= 1
     if last < 0:
-        return friction_in(run, history, piece - 1, 1.0)
+        return friction_in(run, piece - 1, 1.0)
     xi, trips = place_of(history, last, phase - history[last].theta_from), row - history[last].row
     if trips == 0:
-        return friction_in(run, history, last, xi)
+        return friction_in(run, last, xi)
     load = evaluate(history[last].load, xi) + trips * run.par.ramp
     return load if run.counts.is_block == 1 else load - 2.0 * run.par.impedance * evaluate(history[last].rate, xi)
 
 
 @kernel
-def friction_after(run: Run, history: HistoryPiece, length: int, piece: int, xi: float) -> float:
+def friction_after(run: Run, piece: int, xi: float) -> float:
     """Return friction minus the reference strength (Pa or N) after an event that ends at a place, as in `tables.friction_after`.
 
     If the slip rate falls from there to zero, this is the friction at rest.
     """
+    history, length = run.history, run.counts.length
     mode, rate = history[piece].mode, abs(evaluate(history[piece].rate, xi))
     for n in range(piece + 1, length):
         if history[n].mode != mode:
-            return friction_in(run, history, n, 0.0)
+            return friction_in(run, n, 0.0)
         if rises_over(history[n].rate, rate):
             break
     if xi == 1.0 and piece + 1 < length:
-        return friction_in(run, history, piece + 1, 0.0)
-    return friction_in(run, history, piece, xi)
+        return friction_in(run, piece + 1, 0.0)
+    return friction_in(run, piece, xi)
 
 
 # ---- events -----------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def fold_events(run: Run, history: HistoryPiece, points: Points, events: int, out: Reduced) -> None:
+def fold_events(run: Run, points: Points, events: int, out: Reduced) -> None:
     """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
     out.events, out.pulses = events, 0.0
     for column in range(FIRST_OF_EVENTS, LAST_OF_EVENTS + 1):
         numbers_of(out)[column] = math.nan
     if events == 0:
         return
-    row_time, fastest = run.par.row_time, points.top[0]
+    history, row_time, fastest = run.history, run.par.row_time, points.top[0]
     for n in range(events):
         out.pulses += points.pulses[n]
-        if points.rate[points.top[n]] > points.rate[fastest]:
+        if points.turns.rate[points.top[n]] > points.turns.rate[fastest]:
             fastest = points.top[n]
-    out.peak_rate = points.rate[fastest]
-    out.peak_time = time_at(history, row_time, points.piece[fastest], points.xi[fastest])
+    out.peak_rate = points.turns.rate[fastest]
+    out.peak_time = time_at(history, row_time, points.turns.piece[fastest], points.turns.xi[fastest])
     if events > 1:
         fold_recurrence(history, row_time, points, events, out)
 
@@ -213,7 +215,9 @@ def fold_recurrence(history: HistoryPiece, row_time: float, points: Points, even
     mean = spread = 0.0
     for n in range(1, events):
         a, b = points.begin[n - 1], points.begin[n]
-        since = time_between(history, row_time, points.piece[a], points.xi[a], points.piece[b], points.xi[b])
+        since = time_between(
+            history, row_time, points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
+        )
         change = since - mean
         mean += change / n
         spread += change * (since - mean)
@@ -223,28 +227,27 @@ def fold_recurrence(history: HistoryPiece, row_time: float, points: Points, even
 
 
 @kernel
-def fold_first(run: Run, history: HistoryPiece, length: int, points: Points, excess: float, stiffness: float, out: Reduced) -> None:
-    """Write the numbers that describe the first event into `out`, as in `tables.event_rows`.
+def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
+    """Write the numbers that describe the first event into `out`, as in `tables.event_rows`, except its static drop.
 
-    excess is the initial load minus the static strength (Pa or N), stiffness that of the body (Pa/m or N/m).
+    excess is the initial load minus the static strength (Pa or N).
     """
+    history = run.history
     a, b = points.begin[0], points.past[0] - 1
-    piece, xi, last, last_xi = points.piece[a], points.xi[a], points.piece[b], points.xi[b]
+    piece, xi, last, last_xi = points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
     row_time = run.par.row_time
     out.first_start = time_at(history, row_time, piece, xi)
-    if points.kind[b] == -1:
+    if points.turns.kind[b] == -1:
         out.first_end = time_at(history, row_time, last, last_xi)
         out.first_duration = time_between(history, row_time, piece, xi, last, last_xi)
     out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
-    out.first_static_drop = stiffness * out.first_slip
-    before = friction_before(run, history, piece, excess) if xi == 0.0 else friction_in(run, history, piece, xi)
-    out.first_traction_drop = before - friction_after(run, history, length, last, last_xi)
+    before = friction_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
+    out.first_traction_drop = before - friction_after(run, last, last_xi)
 
 
 @kernel
-def fold_whole(history: HistoryPiece, length: int, row_time: float, duration: float, code: int, out: Reduced) -> None:
-    """Write the numbers that describe the whole run into `out`; the run was to last `duration` s and ended with a `Stop` code."""
-    end = reached(duration, code, row_time, history, length)
+def fold_whole(history: HistoryPiece, length: int, row_time: float, end: float, out: Reduced) -> None:
+    """Write the numbers that describe the whole run, which has reached the time `end` (s), into `out`."""
     shocks = 0
     for n in range(length):
         shocks += 1 if history[n].cause > 0 else 0
@@ -254,9 +257,12 @@ def fold_whole(history: HistoryPiece, length: int, row_time: float, duration: fl
 
 
 @kernel
-def fold_end(table: Integers, length: int, row_time: float, duration: float, code: int, numbers: Floats) -> None:
-    """Do the same as `fold_whole` for the last pieces of a history, but keep the number of shocks, which are not all among them."""
-    out = reduced_at(numbers)
+def fold_end(table: Integers, row_time: float, duration: float, code: int, numbers: Floats) -> None:
+    """Do what `fold_whole` does for a history of which only the last pieces are known, but keep the number of shocks.
+
+    The run was to last `duration` s and ended with the given code.
+    """
+    out, history = reduced_at(numbers), pieces_in(table)
     shocks = out.shocks
-    fold_whole(pieces_in(table), length, row_time, duration, code, out)
+    fold_whole(history, len(table), row_time, reached(duration, code, row_time, history, len(table)), out)
     out.shocks = shocks

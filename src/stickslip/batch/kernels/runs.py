@@ -16,7 +16,7 @@ from numba import carray
 from stickslip.batch.kernels.engine import run_until_at
 from stickslip.batch.kernels.lanes import Waits, step_side_by_side
 from stickslip.batch.kernels.points import find_events
-from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reduced_at
+from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
 from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
@@ -56,41 +56,40 @@ class Lane(NamedTuple):
     code: Integers  # what the engine returned last
 
 
-@kernel
-def run_group(
-    engine: int,
-    setups: Setups,
-    base: Integers,
-    stride: Integers,
-    work: Workspace,
-    wants_events: bool,
-    stop: Integers,
-    codes: Integers,
-    out: Floats,
-) -> int:
-    """Run members, each in a lane of the workspace, and write their stop codes and numbers into `codes` and `out`.
+class Group(NamedTuple):
+    """Hold members that differ in numbers only, and where their results go."""
 
-    engine is the address of `advance`; base and stride are those of `batch.workspace.table_of`; out has the shape (members,
-    len(COLUMNS)). Returns WIDTH when all members are done or `stop` is set. Otherwise it returns the lane that has no room, or
-    whose member has crept for so long (code PAUSED) that it should be run alone. Called again, it continues from there.
+    engine: int  # address of `loop.run_until`
+    setups: Setups
+    wants_events: bool  # True if slip events must be found
+    stop: Integers  # (1,): a flag that ends the whole batch
+    codes: Integers  # (members,): codes of what ended the runs
+    out: Floats  # (members, Reduced.total)
+
+
+@kernel
+def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -> int:
+    """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
+
+    base and stride are those of `batch.workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
+    returns the lane that has no room, or whose member has crept for so long (code PAUSED) that it should be run alone. Called
+    again, it continues from there.
     """
     first = first_lane(work, base, stride)
-    jets, block = integers(setups.jets.ctypes.data), work.block[0]
+    jets, block = integers(group.setups.jets.ctypes.data), work.block[0]
     for n in range(WIDTH):
         if nth(first, n).stage[0] != Stage.FREE:
-            point_at(nth(first, n), setups, first.member[n])
+            point_at(nth(first, n), group.setups, first.member[n])
     while True:
         waiting = 0
         for n in range(WIDTH):
             if first.waits[n] == Waits.NONE or first.waits[n] == Waits.ALONE:
                 if first.stage[n] == Stage.UNDER_WAY:
-                    advance_member(engine, nth(first, n), setups, stop)
-                if first.waits[n] == Waits.NONE and not bring_on(
-                    engine, nth(first, n), setups, work, n, wants_events, stop, codes, out
-                ):
+                    advance_member(group, nth(first, n))
+                if first.waits[n] == Waits.NONE and not bring_on(group, nth(first, n), work, n):
                     return n
             waiting += first.waits[n] != Waits.NONE
-        if waiting == 0 or stop[0] != 0:
+        if waiting == 0 or group.stop[0] != 0:
             return WIDTH
         step_side_by_side(first.table, first.waits, jets, block)
 
@@ -138,16 +137,17 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 
 
 @kernel
-def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> None:
+def advance_member(group: Group, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
+    last_row, last_theta = group.setups.last_row[n], group.setups.last_theta[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], 1)
+        code = run_until_at(group.engine, table, last_row, last_theta, 1)
         counts.waits = 1
-    while code == Stop.NONE and stop[0] == 0:
-        code = run_until_at(engine, table, setups.last_row[n], setups.last_theta[n], BUDGET)
+    while code == Stop.NONE and group.stop[0] == 0:
+        code = run_until_at(group.engine, table, last_row, last_theta, BUDGET)
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
@@ -155,29 +155,19 @@ def advance_member(engine: int, lane: Lane, setups: Setups, stop: Integers) -> N
 
 
 @kernel
-def bring_on(
-    engine: int,
-    lane: Lane,
-    setups: Setups,
-    work: Workspace,
-    place: int,
-    wants_events: bool,
-    stop: Integers,
-    codes: Integers,
-    out: Floats,
-) -> bool:
+def bring_on(group: Group, lane: Lane, work: Workspace, place: int) -> bool:
     """Reduce runs that have ended and start further members in a lane, until one waits for a step side by side or none is left.
 
     place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
     """
-    numbers = floats(out.ctypes.data)
+    setups, codes, numbers = group.setups, group.codes, floats(group.out.ctypes.data)
     while lane.stage[0] != Stage.UNDER_WAY:
         n = lane.member[0]
         if lane.stage[0] == Stage.AT_END:
             run = borrow(lane.table)
             codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
             member = reduced_at(ahead(numbers, n * len(COLUMNS)))
-            if run.counts.length > 0 and not fold_member(run, setups, n, work, place, wants_events, codes[n], member):
+            if run.counts.length > 0 and not fold_member(run, group, work, place, member):
                 return False
             lane.stage[0] = Stage.FREE
         n = work.upcoming[0]
@@ -190,20 +180,22 @@ def bring_on(
         point_at(lane, setups, n)
         start_member(borrow(lane.table), setups, n)
         lane.stage[0], lane.member[0] = Stage.UNDER_WAY, n
-        advance_member(engine, lane, setups, stop)
+        advance_member(group, lane)
     return lane.code[0] == Stop.SLIPS
 
 
 @kernel
-def fold_member(run: Run, setups: Setups, n: int, work: Workspace, lane: int, wants_events: bool, code: int, out: Reduced) -> bool:
-    """Reduce the run of member n, which has ended with a code, to the numbers in `out`; return False if points lack room."""
-    pieces, length = run.history, run.counts.length
-    if wants_events:
+def fold_member(run: Run, group: Group, work: Workspace, lane: int, out: Reduced) -> bool:
+    """Reduce the run in a lane, which has ended, to the numbers in `out`; return False if points lack room."""
+    setups, n, length = group.setups, work.member[lane], run.counts.length
+    if group.wants_events:
         events = find_events(work.store.pieces[lane], length, setups.threshold[n], work.points)
         if events == NOT_YET:
             return False
-        fold_events(run, pieces, work.points, events, out)
+        fold_events(run, work.points, events, out)
         if events > 0:
-            fold_first(run, pieces, length, work.points, setups.excess[n], setups.stiffness[n], out)
-    fold_whole(pieces, length, run.par.row_time, setups.duration[n], code, out)
+            fold_first(run, work.points, setups.excess[n], out)
+            out.first_static_drop = setups.stiffness[n] * out.first_slip
+    end = reached(setups.duration[n], group.codes[n], run.par.row_time, run.history, length)
+    fold_whole(run.history, length, run.par.row_time, end, out)
     return True

@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated
 
 import typer
 
 from stickslip.cli.names import complete_law, complete_pull, complete_template
+from stickslip.cli.options import argument, option
 from stickslip.foundation.errors import InputError
 
 
 def new(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            help="slab, block, or the name of a bundled scenario.", autocompletion=complete_template, show_default=False
-        ),
-    ] = None,
-    friction: Annotated[
-        str | None,
-        typer.Option(help="A friction law to put into a starter.", autocompletion=complete_law, show_default=False),
-    ] = None,
-    pull: Annotated[
-        str | None,
-        typer.Option(help="A pull rate that varies in time, for a starter.", autocompletion=complete_pull, show_default=False),
-    ] = None,
+    name: Annotated[str | None, argument("slab, block, or the name of a bundled scenario.", complete_template)] = None,
+    *,
+    friction: Annotated[str | None, option("A friction law to put into a starter.", autocompletion=complete_law)] = None,
+    pull: Annotated[str | None, option("A pull rate that varies in time, for a starter.", autocompletion=complete_pull)] = None,
     show_list: Annotated[bool, typer.Option("--list", "-l", help="List the names, with what each shows.")] = False,
 ) -> None:
-    """Print a commented scenario to start from.
+    r"""Print a commented scenario to start from.
 
     "slab" and "block" are starters that explain every key, its unit and its
     range; the others are bundled runs. Redirect the text into a file,
@@ -65,11 +57,9 @@ def _print_list() -> None:
         content = tomllib.loads(library.text(name))
         listing.add_row(name, f"{content['title']}. {content['description']}")
     console().print(listing)
-    laws = table("--friction", "law")
-    for kind, law in LAWS.items():
-        laws.add_row(kind, (law.__doc__ or "").strip().splitlines()[0])
-    console().print(laws)
-    pulls = table("--pull", "pull rate")
-    for kind, history in HISTORIES.items():
-        pulls.add_row(kind, (history.__doc__ or "").strip().splitlines()[0])
-    console().print(pulls)
+    registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))
+    for option_name, what, kinds in registered:
+        listing = table(option_name, what)
+        for kind, one in kinds.items():
+            listing.add_row(kind, (one.__doc__ or "").strip().splitlines()[0])
+        console().print(listing)

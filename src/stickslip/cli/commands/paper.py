@@ -7,13 +7,15 @@ from typing import Annotated
 
 import typer
 
+from stickslip.cli.output.files import announce, check_folder
+
 
 def paper(
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for figures, tables and the report; made if it is missing.", file_okay=False)
     ] = Path("paper"),
 ) -> None:
-    """Reproduce the paper: Figs 1-7, tables, and a verdict on every claim.
+    r"""Reproduce the paper: Figs 1-7, tables, and a verdict on every claim.
 
     The command runs every case of Campillo, Ionescu, Paumier & Renard (1996)
     with the constants as printed and in the readings under which the described
@@ -22,12 +24,10 @@ def paper(
     \b
       stickslip paper --out paper
     """
-    from stickslip.cli.output.files import check_folder
     from stickslip.cli.output.show import progress_to
 
     check_folder(out, "--out")
     from stickslip.paper import make
 
     with progress_to("paper") as report:
-        written = make(out, report)
-    typer.echo(f"written: {written}")
+        announce(make(out, report))

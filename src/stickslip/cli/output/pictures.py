@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.files import check_target
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.cli.output.files import check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from stickslip.problem.problem import Problem
     from stickslip.solution.solution import Solution
-
-SUFFIXES = (".png", ".pdf", ".svg")
-"""File suffixes of figures; those of animations differ."""
 
 
 @dataclass(frozen=True)
@@ -33,26 +26,20 @@ class Pictures:
     animation: Path | None
 
     @property
-    def _targets(self) -> dict[str, Path]:
-        """Return the files that are wanted, by option."""
+    def wanted(self) -> dict[str, Path]:
+        """The files that are wanted, by option."""
         named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self)}
         return {option: target for option, target in named.items() if target is not None}
 
-    @property
-    def wanted(self) -> list[str]:
-        """Return the options that were given."""
-        return list(self._targets)
-
     def check(self) -> None:
         """Refuse files that could not be written. Raises InputError."""
-        for option, target in self._targets.items():
+        for option, target in self.wanted.items():
             if option != "--animation":
-                check_target(target, option, SUFFIXES)
+                check_target(target, option)
         if self.animation is not None:
-            from stickslip.figures.runs.animation import SUFFIXES as MOVING
-            from stickslip.figures.runs.animation import check_animation
+            from stickslip.figures.runs.animation import SUFFIXES, check_animation
 
-            check_target(self.animation, "--animation", MOVING)
+            check_target(self.animation, "--animation", SUFFIXES)
             check_animation(self.animation, "--animation")
 
     def check_problem(self, problem: Problem) -> None:
@@ -67,20 +54,16 @@ class Pictures:
                 what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"run: --path needs {what}")
 
-    def draw(self, solution: Solution) -> Iterator[Path]:
-        """Draw all that are wanted, and yield each file when it is complete."""
-        still: tuple[tuple[Path | None, Callable[[Solution], Figure]], ...] = (
-            (self.figure, lambda run: run.plot()),
-            (self.path, lambda run: run.plot.path()),
-            (self.catalog_figure, lambda run: run.plot.catalogue()),
-            (self.energy, lambda run: run.plot.energy()),
-            (self.space_time, lambda run: run.plot.field()),
+    def draw(self, solution: Solution) -> list[Path]:
+        """Draw all that are wanted, and return their files."""
+        return write_files(
+            (self.figure, drawing(solution.plot)),
+            (self.path, drawing(solution.plot.path)),
+            (self.catalog_figure, drawing(solution.plot.catalogue)),
+            (self.energy, drawing(solution.plot.energy)),
+            (self.space_time, drawing(solution.plot.field)),
+            (self.animation, lambda target: _animate(solution, target)),
         )
-        for target, figure in still:
-            if target is not None:
-                yield write_atomically(target, figure(solution).savefig)
-        if self.animation is not None:
-            yield _animate(solution, self.animation)
 
 
 def _animate(solution: Solution, target: Path) -> Path:

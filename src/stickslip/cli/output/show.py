@@ -17,6 +17,7 @@ from stickslip.foundation.constants import YEAR
 
 if TYPE_CHECKING:
     from stickslip.run.progress import Report
+    from stickslip.scenarios.scenario import Scenario
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 """SI prefixes with their factors, largest first."""
@@ -42,6 +43,19 @@ def table(*headings: str, numbers: bool = False) -> Table:
 def clean(text: str) -> str:
     """Return a text of a scenario with spaces in place of control characters, which could change the terminal."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def titled(scenario: Scenario) -> Console:
+    """Print the title of a scenario, or its name, on the console for results, and return the console."""
+    screen = console()
+    screen.print(clean(scenario.title or scenario.name), style="bold")
+    return screen
+
+
+def print_sentences(screen: Console, *texts: str) -> None:
+    """Print texts as sentences, each on a line of its own; empty ones are left out."""
+    for text in filter(None, texts):
+        screen.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
 
 
 def number(value: float, digits: int = 8) -> str:

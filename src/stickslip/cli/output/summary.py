@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.show import clean, console, number, table, with_unit
+from stickslip.cli.output.files import announce
+from stickslip.cli.output.show import number, table, titled, with_unit
 from stickslip.engine_input.creep_limits import creep_tolerance
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from stickslip.run.catalogue import Catalogue
     from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
+    from stickslip.trajectory.status import Status
 
 FIRST = 12
 """Number of table rows that are shown."""
@@ -25,45 +27,39 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary of a run on standard output."""
-    screen, force = console(), scenario.problem.load_unit
-    screen.print(clean(scenario.title or scenario.name), style="bold")
-    screen.print(f"{solution.status.name}: {solution.status.message}", soft_wrap=True)
-    _say_how(screen, scenario, solution.creep_note, solution.lumping_note)
+    screen, force = titled(scenario), scenario.problem.load_unit
+    _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
     _print(screen, "slip event", solution.events[shown], units)
     _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
-    if solution.trapped_note:
-        screen.print(f"trapped energy: {solution.trapped_note}\n", soft_wrap=True)
-    if solution.horizon_note:
-        screen.print(f"predictability: {solution.horizon_note}\n", soft_wrap=True)
-    if solution.rounding_note:
-        screen.print(f"rounding: {solution.rounding_note}\n", soft_wrap=True)
+    notes = (solution.trapped_note, solution.horizon_note, solution.rounding_note)
+    for what, note in zip(("trapped energy", "predictability", "rounding"), notes, strict=True):
+        if note:
+            screen.print(f"{what}: {note}\n", soft_wrap=True)
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     """Print on standard output the summary of a run of which only slip events were kept."""
-    screen = console()
-    screen.print(clean(scenario.title or scenario.name), style="bold")
-    screen.print(f"{found.status.name}: {found.status.message}", soft_wrap=True)
-    _say_how(screen, scenario, found.notes.get("creep", ""), found.notes.get("lumping", ""))
+    screen = titled(scenario)
+    _say_how(screen, scenario, found.status, found.notes.get("creep", ""), found.notes.get("lumping", ""))
     screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
     for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
         if name in found.notes:
             screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
-    for file in found.files:
-        screen.print(f"written: {file}", soft_wrap=True)
+    announce(*found.files)
 
 
-def _say_how(screen: Console, scenario: Scenario, creep: str, lumping: str) -> None:
-    """Print duration and tolerances, and the requested or automatic leaps over creep and lumping of events."""
+def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lumping: str) -> None:
+    """Print what ended a run, its duration and tolerances, and requested or automatic leaps over creep and lumping of events."""
+    screen.print(f"{status.name}: {status.message}", soft_wrap=True)
     screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
-    if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
+    if scenario.shortest_event:
         screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
     if lumping:
         screen.print(f"shortest_event automatic: {lumping}", soft_wrap=True)
-    if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
+    if scenario.creep_rtol:
         screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
     elif creep:
         tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.cli.output.show import about_time, clean, console, number, table, with_unit
+from stickslip.cli.output.files import announce
+from stickslip.cli.output.show import about_time, clean, console, number, table, titled, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,17 +44,15 @@ def show_sweep(plan: Plan, dataset: xr.Dataset, *written: Path | None) -> int:
     _show_ends(status, dataset.reason.to_numpy().ravel())
     _show_quantities(plan, dataset)
     _show_changes(plan, dataset)
-    for path in filter(None, written):
-        console().print(f"written: {path}", soft_wrap=True)
+    announce(*written)
     if (status == NOT_RUN).any():
         raise KeyboardInterrupt
     return int((status >= FIRST_FAILURE).all())
 
 
 def _say_what(plan: Plan) -> None:
-    screen = console()
-    screen.print(clean(plan.scenario.title or plan.scenario.name), style="bold")
-    screen.print(f"{plan.design} over {', '.join(key.name for key in plan.design.keys)}", soft_wrap=True)
+    screen = titled(plan.scenario)
+    screen.print(f"{plan.design} over {', '.join(plan.design.names)}", soft_wrap=True)
 
 
 def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.ndarray[tuple[int], np.dtype[np.object_]]) -> None:

@@ -24,10 +24,6 @@ Verdict = Literal["proven", "not decided", "searched"]
 
 MOST_EVALUATIONS = 200_000
 """Largest number of cells and single rates at which g' is bounded, about 0.2 s; cells that remain are left undecided."""
-_AT_A_TIME = 256
-"""Number of cells that one round of subdivision aims at; the cost of a round hardly grows up to this number."""
-_MOST_PARTS, _FEWEST_PARTS = 16, 2
-"""Largest and smallest number of parts into which a cell is cut in one round."""
 
 Interval = tuple[float, float]
 
@@ -101,11 +97,10 @@ def _certified(bounds: SlopeBounds) -> Certificate:
         cells, signs = cells[~settled], signs[~settled]
         kept.append(cells[signs.hopeless])
         cells = cells[~signs.hopeless]
-        parts = int(np.clip(_AT_A_TIME // max(len(cells), 1), _FEWEST_PARTS, _MOST_PARTS))
-        if spent + 4 * parts * len(cells) > MOST_EVALUATIONS:
+        if spent + 4 * cells.parts * len(cells) > MOST_EVALUATIONS:
             kept.append(cells)
             break
-        cells = cells.split(parts)
+        cells = cells.split(cells.parts)
     at_rest, knots, loose = edges
     undecided = _merged([*_intervals(joined(kept)), *loose])
     found = sorted([*_intervals(joined(turns)), *knots])

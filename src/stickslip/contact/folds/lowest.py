@@ -17,8 +17,6 @@ from stickslip.contact.folds.certified import MOST_EVALUATIONS, Verdict
 from stickslip.contact.folds.slope_bounds import Cells, Floats, Looks, SlopeBounds, joined
 from stickslip.friction.formula.enclosure import NotEnclosedError
 
-_AT_A_TIME, _FEWEST_PARTS, _MOST_PARTS = 256, 2, 16
-"""Number of cells that one round of subdivision aims at, and smallest and largest number of parts of a cell in one round."""
 _TOLERANCE = 1e-12
 """Distance of the two bounds, relative to the larger of Z and |g'|, at which the search ends.
 
@@ -77,17 +75,12 @@ def _lowest(bounds: SlopeBounds, tolerance: float) -> Lowest:
         done = (least >= most - slack) | final
         settled = min(settled, float(least[done].min(initial=math.inf)))
         cells = cells[~done]
-        parts = _parts(len(cells))
-        if spent + 4 * parts * len(cells) > MOST_EVALUATIONS:
+        if spent + 4 * cells.parts * len(cells) > MOST_EVALUATIONS:
             return Lowest("not decided", min(settled, float(least[~done].min())), most, *place)
-        cells = cells.split(parts)
+        cells = cells.split(cells.parts)
     least_of_all = min(settled, most)
     near = most - least_of_all <= _NEAR * tolerance * max(bounds.g.impedance, abs(most))
     return Lowest("proven" if near else "not decided", least_of_all, most, *place)
-
-
-def _parts(count: int) -> int:
-    return int(np.clip(_AT_A_TIME // max(count, 1), _FEWEST_PARTS, _MOST_PARTS))
 
 
 def _least(seen: Looks) -> tuple[Floats, NDArray[np.bool_]]:
@@ -111,19 +104,22 @@ def proven_regime(g: Resistance) -> Literal["regular", "irregular"] | None:
             least, final = _least(seen)
             open_.append(cells[(least <= 0.0) & final])
             cells = cells[(least <= 0.0) & ~final]
-            if spent + 4 * _parts(len(cells)) * len(cells) > MOST_EVALUATIONS:
+            if spent + 4 * cells.parts * len(cells) > MOST_EVALUATIONS:
                 return None
-            cells = cells.split(_parts(len(cells)))
+            cells = cells.split(cells.parts)
     except NotEnclosedError:
         return None
     return None if len(joined(open_)) else "regular"
 
 
-def normal_stress_between(g: Resistance, lowest: Lowest) -> tuple[float, float] | None:
-    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) from the bounds of the smallest g'.
+def critical_stress_between(g: Resistance) -> tuple[float, float] | None:
+    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) by the bounds of the smallest g'.
 
-    Returns None if friction is not proven to fall anywhere, or if there are no finite bounds.
+    Returns None if friction is not proven to fall with the slip rate, if it steps down as slip begins, or without finite bounds.
     """
+    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
+        return None
+    lowest = lowest_slope(g)
     if lowest.verdict == "searched":
         return None
     steepest, at_least = ((g.impedance - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))

@@ -25,6 +25,10 @@ _FAR = 1e12
 """Ratio of the ends of the first cells beyond the fastest scale, where g' hardly changes."""
 _JUST_ABOVE_ONE = 1.0 + 8.0 * float(np.finfo(float).eps)
 """Factor that covers the rounding of the half widths of cells."""
+_AT_A_TIME = 256
+"""Number of cells that one round of subdivision aims at; the cost of a round hardly grows up to this number."""
+_MOST_PARTS, _FEWEST_PARTS = 16, 2
+"""Largest and smallest number of parts into which a cell is cut in one round."""
 _NOISE = 4.0
 """A cell is hopeless if g' changes on it by no more than this multiple of the rounding of its bounds."""
 
@@ -56,6 +60,11 @@ class Cells:
     def at_rounding(self) -> NDArray[np.bool_]:
         """Return True for each cell that is only a few floating-point numbers wide."""
         return self.high - self.low <= 4.0 * np.spacing(self.high)
+
+    @property
+    def parts(self) -> int:
+        """Return the number of parts into which each cell is cut in a round of subdivision: the more, the fewer cells there are."""
+        return int(np.clip(_AT_A_TIME // max(len(self), 1), _FEWEST_PARTS, _MOST_PARTS))
 
     def split(self, parts: int) -> Cells:
         """Cut each cell into parts of equal width, or of equal ratio if its upper end exceeds 4 times its lower one."""

@@ -57,7 +57,7 @@ class CompiledFormula:
 
     @property
     def guard_count(self) -> int:
-        """Return the number of guards of the formula (see `codegen.guards`)."""
+        """The number of guards of the formula (see `codegen.guards`)."""
         return len(self._writer.guards)
 
     def address(self, part: str) -> int:

@@ -34,7 +34,7 @@ class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
 
     @property
     def codegen(self) -> Any:
-        """Return the code generator, wrapped because a function without machine code has no environment either."""
+        """The code generator, wrapped because a function without machine code has no environment either."""
         return _WithoutEnvironments(self._codegen)
 
     def enable_object_caching(self) -> None:

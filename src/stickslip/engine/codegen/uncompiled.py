@@ -38,7 +38,7 @@ class Pointer:
 
     @property
     def address(self) -> int:
-        """Return the address of the number, in bytes."""
+        """The address of the number, in bytes."""
         return self.memory.ctypes.data + BYTES * self.first
 
     def __getitem__(self, n: int) -> Any:

@@ -6,16 +6,9 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.append_segment import record
-from stickslip.engine.contact.contact_equation import (
-    friction_at,
-)
+from stickslip.engine.contact.contact_equation import friction_at
 from stickslip.engine.contact_step.step_events import growth
-from stickslip.engine.series.polynomial import (
-    RECIPROCAL,
-    evaluate,
-    multiply,
-    total,
-)
+from stickslip.engine.series.polynomial import RECIPROCAL, evaluate, multiply, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run

@@ -6,10 +6,7 @@ import math
 from typing import NamedTuple
 
 from stickslip.engine.codegen.compiler import call_part, kernel
-from stickslip.engine.contact.contact_equation import (
-    TIE,
-    branch_exit,
-)
+from stickslip.engine.contact.contact_equation import TIE, branch_exit
 from stickslip.engine.folds.fold import (
     SHORTEST_FOLD,
     approach_fold,

@@ -11,13 +11,7 @@ import math
 from stickslip.engine.codegen.compiler import call_jet, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.append_segment import note_jump
-from stickslip.engine.contact.contact_equation import (
-    TIE,
-    constants_of,
-    load_ahead,
-    rate_from_here,
-    rate_on_branch,
-)
+from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.keep_step import move
@@ -32,16 +26,8 @@ from stickslip.engine.contact_step.verify import (
     obeys_contact,
     within_guards,
 )
-from stickslip.engine.folds.fold import (
-    last_to_fold,
-    reach_end,
-    straight_from_fold,
-    straight_to_fold,
-)
-from stickslip.engine.series.polynomial import (
-    multiply,
-    total,
-)
+from stickslip.engine.folds.fold import last_to_fold, reach_end, straight_from_fold, straight_to_fold
+from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, NearFold, StepEvent, Stop

@@ -12,16 +12,7 @@ from typing import NamedTuple
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.contact_equation import towards
-from stickslip.engine.folds.branch_scan import (
-    Contact,
-    Scan,
-    area,
-    branch_near,
-    contact_of,
-    find_branches,
-    rate_at,
-    strength_at,
-)
+from stickslip.engine.folds.branch_scan import Contact, Scan, area, branch_near, contact_of, find_branches, rate_at, strength_at
 from stickslip.engine.series.polynomial import NONE, evaluate, integral
 from stickslip.engine.state.layout import Integers, Rule
 from stickslip.engine.state.workspace import Run, borrow

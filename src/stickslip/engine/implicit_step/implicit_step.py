@@ -6,27 +6,15 @@ import math
 
 from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact.append_segment import record
-from stickslip.engine.contact.contact_equation import (
-    onset_of_slip,
-)
+from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, settling_rate
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.step_events import cut_at_first_event, resolve, stretch
-from stickslip.engine.contact_step.taylor_step import (
-    note_shock,
-)
-from stickslip.engine.contact_step.verify import (
-    NEGLIGIBLE,
-)
+from stickslip.engine.contact_step.taylor_step import note_shock
+from stickslip.engine.contact_step.verify import NEGLIGIBLE
 from stickslip.engine.implicit_step.radau_step import collocate
-from stickslip.engine.series.polynomial import (
-    NONE,
-    copy,
-    fill,
-    scale,
-    total,
-)
+from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import Run

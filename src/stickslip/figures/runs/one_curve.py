@@ -5,8 +5,8 @@ from __future__ import annotations
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from stickslip.figures.style import BLUE, letter, readable, styled, time_unit
-from stickslip.io.netcdf import LONG_NAMES, units
+from stickslip.figures.panels import letter
+from stickslip.figures.style import BLUE, clock, curve_label, readable, styled, system_title, time_unit
 from stickslip.solution.evaluation import Curve, Readings
 
 
@@ -17,13 +17,22 @@ def plot(readings: Readings, name: Curve, start: float | None = None, end: float
     start, end = first if start is None else start, last if end is None else end
     time, values = readings.curve(name, start, end)
     unit, size = time_unit(end - start)
-    value_unit, value_size = units(readings)[name].replace("m s-1", "m/s"), 1.0
-    if name in ("traction", "load"):
-        value_unit, value_size = readable(float(abs(values).max()), value_unit)
     figure = pyplot.figure(figsize=(6.4, 3.0), layout="constrained")
     axes = figure.subplots()
+    text, value_size = _label(readings, name, float(abs(values).max()))
     axes.plot(time / size, values / value_size, color=BLUE)
-    axes.set_ylabel(f"{name.replace('event_slip', 'slip in the event').replace('_', ' ')} ({value_unit})")
-    axes.set_xlabel(f"time since the event began ({unit})" if "event_slip" in readings.curves else f"time $t$ ({unit})")
-    letter(axes, LONG_NAMES[name])
+    axes.set_ylabel(text)
+    axes.set_xlabel(f"{clock(readings)} ({unit})")
+    letter(axes, system_title(readings.problem))
     return figure
+
+
+def _label(readings: Readings, name: Curve, largest: float) -> tuple[str, float]:
+    """Return the axis label of a curve and the size of its unit, which suits the largest value of a stress or force."""
+    state = readings.problem.friction.state
+    if name == "state" and state is not None:
+        return f"state ({state.unit})", 1.0
+    if name in ("traction", "load"):
+        unit, size = readable(largest, readings.problem.load_unit)
+        return curve_label(name, unit), size
+    return curve_label(name), 1.0

@@ -9,23 +9,16 @@ tests the run, and is not an identity.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_slab
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.quadrature import Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Epoch, History, Moments
-
-if TYPE_CHECKING:
-    from stickslip.solution.evaluation import Readings
-    from stickslip.solution.solution import Solution
-
-Floats = NDArray[np.float64]
+from stickslip.trajectory.history import Epoch, Floats, History, Positions
 
 LONG_NAMES = {
     "work": "work of the driver",
@@ -41,15 +34,15 @@ LONG_NAMES = {
 """Long names of the energies in a dataset."""
 
 
-def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
+def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
     """Return the energies of a run as differences from their values at an origin.
 
     Parameters
     ----------
-    readings : Readings
-        A run, or a window on it.
+    history : History
+        History of a run.
     t : array_like
-        Times, s.
+        Times since the history's epoch, s.
     origin : float, optional
         Time at which the differences are zero, s. The default is the start of the run.
 
@@ -72,7 +65,6 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
     waves.
     """
     time = np.atleast_1d(np.asarray(t, float))
-    history = readings.history
     begin = history.span[0] if origin is None else origin
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
@@ -82,8 +74,8 @@ def energy(readings: Readings, t: ArrayLike, origin: float | None = None) -> xr.
     return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
 
 
-def event_energies(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
-    """Return the energies of slip events from their first to their last moments.
+def event_energies(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
+    """Return the energies of slip events from their first to their last positions.
 
     The keys are the columns of `trajectory.tables.ENERGY_COLUMNS`. The energies are integrated over
     each event alone, so their digits do not depend on the run before it.
@@ -94,7 +86,7 @@ def event_energies(history: History, first: Moments, last: Moments) -> dict[str,
     return parts
 
 
-def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+def _slab_events(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
     body = as_slab(history.problem.body)
     waves = Waves(history, body)
     spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
@@ -107,7 +99,7 @@ def _slab_events(history: History, first: Moments, last: Moments) -> dict[str, F
     }
 
 
-def _block_events(history: History, first: Moments, last: Moments) -> dict[str, Floats]:
+def _block_events(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
     force, left = history.excess(first), history.excess(last)
@@ -121,33 +113,33 @@ def _block_events(history: History, first: Moments, last: Moments) -> dict[str, 
     }
 
 
-def trapped_note(solution: Solution) -> str:
+def trapped_note(history: History) -> str:
     """Return one line on the waves that travel in the slab at the end of a run; empty for a block, which has none."""
-    history, body = solution.history, solution.problem.body
+    body = history.problem.body
     if not body.has_waves:
         return ""
-    end = epochs(history, Moments.inside(len(history) - 1, 1.0))[0]
+    end = epochs(history, Positions.inside(len(history) - 1, 1.0))[0]
     energy = Waves(history, as_slab(body)).trapped(end)
-    holds = solution.problem.strength**2 / (2.0 * body.stiffness)
+    holds = history.problem.strength**2 / (2.0 * body.stiffness)
     share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
     return f"{energy:.6g} J/m2 in waves at the end{share}"
 
 
-def epochs(history: History, at: Moments) -> list[Epoch]:
-    """Return moments as epochs, without rounding."""
+def epochs(history: History, at: Positions) -> list[Epoch]:
+    """Return positions as epochs, without rounding."""
     return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
 
 
-def energies(history: History, at: Moments) -> dict[str, Floats]:
-    """Return the energies at moments of a history.
+def energies(history: History, at: Positions) -> dict[str, Floats]:
+    """Return the energies at positions in a history.
 
     Work, heat, damped and radiated count from the start of the run; stored and elastic are up to a constant; kinetic and trapped
-    are absolute. All are taken at exactly the same moments, so that their differences balance late in a run too.
+    are absolute. All are taken at exactly the same positions, so that their differences balance late in a run too.
     """
     return _slab(history, at) if history.problem.body.has_waves else _block(history, at)
 
 
-def _slab(history: History, at: Moments) -> dict[str, Floats]:
+def _slab(history: History, at: Positions) -> dict[str, Floats]:
     body = as_slab(history.problem.body)
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
     contact = 0.5 * body.contact_mass * history.rate(at) ** 2
@@ -164,7 +156,7 @@ def _slab(history: History, at: Moments) -> dict[str, Floats]:
     }
 
 
-def _block(history: History, at: Moments) -> dict[str, Floats]:
+def _block(history: History, at: Positions) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
     force, rate = history.excess(at), history.rate(at)
@@ -183,10 +175,10 @@ def _block(history: History, at: Moments) -> dict[str, Floats]:
 
 
 def _pulling(history: History) -> Integrand:
-    """Return the power of the block's driver as a function of moments, W."""
+    """Return the power of the block's driver as a function of positions, W."""
     problem = history.problem
 
-    def power(at: Moments) -> Floats:
+    def power(at: Positions) -> Floats:
         row, offset = history.placed(at)
         rate = problem.pull_rate_at(row * history.row_time + offset)
         return np.asarray(rate * (problem.strength + history.excess(at)))
@@ -194,13 +186,13 @@ def _pulling(history: History) -> Integrand:
     return power
 
 
-def _at_rest(history: History, at: Moments) -> Floats:
-    """Return the work of the block's driver up to each moment in rests that were not recorded, J: the spring has stored it."""
+def _at_rest(history: History, at: Positions) -> Floats:
+    """Return the work of the block's driver up to each position in rests that were not recorded, J: the spring has stored it."""
     row = history.store.row
     before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
-    force, left = (history.excess(Moments.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
+    force, left = (history.excess(Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
     whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
-    last = history.excess(Moments.inside(at.last, 1.0))
+    last = history.excess(Positions.inside(at.last, 1.0))
     part = np.where(at.at_rest, _stretching(history, last, history.excess(at)), 0.0)
     return np.asarray(whole[np.searchsorted(before, at.last)] + part)
 
@@ -211,16 +203,16 @@ def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
-def heat(history: History, at: Moments) -> Floats:
-    """Return the friction heat up to each moment, from the law. Slab: J/m^2, block: J."""
+def heat(history: History, at: Positions) -> Floats:
+    """Return the friction heat up to each position, from the law. Slab: J/m^2, block: J."""
     return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
 
 
 def resistance(history: History) -> Integrand:
-    """Return the traction against slip while the contact slips as a function of moments (slab: Pa, block: N): S mu(u, |v|)."""
+    """Return the traction against slip while the contact slips as a function of positions (slab: Pa, block: N): S mu(u, |v|)."""
     problem, law = history.problem, history.problem.friction
 
-    def traction(at: Moments) -> Floats:
+    def traction(at: Positions) -> Floats:
         mode, grown = history.store.mode[at.piece], history.grown(at)
         walked = mode * grown if law.counts == "path" else grown
         slip = problem.law_slip + history.store.law_slip[at.piece] + walked
@@ -230,13 +222,13 @@ def resistance(history: History) -> Integrand:
 
 
 def _heating(history: History) -> Integrand:
-    """Return the power of friction heat as a function of moments (slab: W/m^2, block: W)."""
+    """Return the power of friction heat as a function of positions (slab: W/m^2, block: W)."""
     traction = resistance(history)
     return lambda at: traction(at) * np.abs(history.rate(at))
 
 
 def _damping(history: History) -> Integrand:
-    """Return the power that the block's damping dissipates as a function of moments, W."""
+    """Return the power that the block's damping dissipates as a function of positions, W."""
     body = history.problem.body
     damping = body.damping
     return lambda at: damping * history.rate(at) ** 2

@@ -19,35 +19,34 @@ from stickslip.observables.energy.balance import epochs, event_energies
 from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.history import Floats, History, Positions
 from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import friction_before
+from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 
 if TYPE_CHECKING:
     import pandas as pd
 
 ENERGETICS_COLUMNS = {
-    "start": ("s", "when |v| rises above the threshold"),
-    "slip": ("m", "slip within the event, positive in either direction"),
+    "start": EVENT_COLUMNS["start"],
+    "slip": EVENT_COLUMNS["slip"],
     "work": ("energy", "work of the driver, net of what is radiated"),
     "elastic": ("energy", "elastic energy that the event takes from the body"),
     "kinetic": ("energy", "kinetic energy at the end less that at the start"),
     "heat": ("energy", "all work of friction, from the law: fracture energy is part of it"),
     "fracture": ("energy", "fracture energy, summed over the pulses"),
-    "damped": ("energy", "dissipated by the block's damping"),
+    "damped": ENERGY_COLUMNS["damped"],
     "radiated": ("energy", "energy radiated through a driver of finite impedance during the event"),
-    "trapped": ("energy", "energy of waves travelling in the slab at the end, beyond that of the same mean stress at rest"),
+    "trapped": ENERGY_COLUMNS["trapped"],
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
-    "static_drop": ("load", "stiffness (G/h, or K) times slip"),
+    "static_drop": EVENT_COLUMNS["static_drop"],
     "dynamic_drop": ("load", "traction at rest before the slip less the smallest one while it slips"),
     "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
-"""Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
-
+"""Columns of `Solution.energetics`: unit and meaning, as in EVENT_COLUMNS."""
 
 ROUNDING = 1e-12
 """Rounding of a stress drop, relative to the normal stress (block: force)."""
@@ -76,14 +75,14 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     return table[list(ENERGETICS_COLUMNS)]
 
 
-def _energies(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _energies(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
     extra = (_of_slab if history.problem.body.has_waves else _of_block)(history, begin, end)
     made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
     return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
 
 
-def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     body = as_slab(history.problem.body)
     waves, radiation = Waves(history, body), Radiation(history, body)
     first, last = epochs(history, begin), epochs(history, end)
@@ -96,20 +95,20 @@ def _of_slab(history: History, begin: Moments, end: Moments) -> dict[str, Floats
     }
 
 
-def _of_block(history: History, begin: Moments, end: Moments) -> dict[str, Floats]:
+def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     nothing = np.zeros(len(begin.piece))
     moving = 0.5 * history.problem.body.inertia * (history.rate(end) ** 2 - history.rate(begin) ** 2)
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
-def extreme_tractions(history: History, begin: Moments, pulses: Pulses) -> tuple[Floats, Floats]:
+def extreme_tractions(history: History, begin: Positions, pulses: Pulses) -> tuple[Floats, Floats]:
     """Return two tractions against the slip of each event (Pa, block: N): at rest before it, and the smallest of its pulses."""
     smallest = np.full(len(begin.piece), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
     return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
 
 
-def friction_at_rest_before(history: History, begin: Moments) -> Floats:
+def friction_at_rest_before(history: History, begin: Positions) -> Floats:
     """Return the traction minus the reference strength at rest before the slip in which each event begins.
 
     This is the load, also if the contact does not rest but only reverses its direction. A block, or a contact with mass, moves

@@ -8,13 +8,10 @@ s^2 (3 - 2 s) for the place in such an interval they are smooth functions of s u
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.observables.waves import Waves
-from stickslip.trajectory.history import Epoch, Moments
-
-Floats = NDArray[np.float64]
+from stickslip.trajectory.history import Epoch, Floats, Positions
 
 PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
@@ -58,17 +55,18 @@ class _Both:
 
     def _left(self, time: Floats) -> Floats:
         """Return w plus the reference (Pa) that left the contact at these times."""
-        found = -self.waves.slope * (self.begun + time) - self.waves.excess
+        found = self.waves.left_before(self.begun + time)
         known = np.flatnonzero(time > -self.begun) if len(self.start) else np.empty(0, np.intp)
         which = np.maximum(np.searchsorted(self.start, time[known], side="right") - 1, 0)
         piece = self.piece[which]
         xi = self.waves.history.xi(piece, np.maximum(time[known] - self.origin[which], 0.0))
-        at = Moments(piece, xi, self.leaped[which], np.zeros(len(piece), bool), piece)
+        at = Positions(piece, xi, self.leaped[which], np.zeros(len(piece), bool), piece)
         found[known] = self.waves.leaving(at)
         return found
 
     def _coming(self, away: Floats) -> Floats:
         """Return the load minus the reference (Pa) that reaches the contact after the time `away` (s)."""
         since, left = self.begun + away, away - self.waves.round
-        of_start = self.waves.excess + self.waves.slope * since
-        return np.where(since < self.waves.half, of_start, self.waves.arriving(self._left(left), self.begun + left))
+        return np.where(
+            since < self.waves.half, self.waves.first_load(since), self.waves.arriving(self._left(left), self.begun + left)
+        )

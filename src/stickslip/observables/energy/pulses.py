@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from stickslip.observables.energy.balance import resistance
 from stickslip.observables.quadrature import between
-from stickslip.trajectory.history import Floats, History, Moments
+from stickslip.trajectory.history import Floats, History, Positions
 from stickslip.trajectory.slip_events import SlipEvents, walk
 
 if TYPE_CHECKING:
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 PULSE_COLUMNS = {
     "event": ("1", "row of the event in the catalogue"),
     "start": ("s", "start of the event, or where |v| is smallest since the pulse before"),
-    "start_after": ("s", "the same since the event began, without rounding"),
-    "duration": ("s", "until the next pulse, or the end of the event"),
+    "start_after": ("s", "time from the start of the event to that of the pulse, without rounding"),
+    "duration": ("s", "time until the next pulse, or the end of the event"),
     "slip": ("m", "slip during the pulse, positive in either direction"),
     "peak_rate": ("m s-1", "largest |v|"),
-    "smallest_traction": ("load", "of the pulse while it slips, against the slip"),
+    "smallest_traction": ("load", "smallest traction of the pulse while it slips, against the slip"),
     "weakening_slip": ("m", "slip until the smallest traction"),
     "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
 }
-"""Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+"""Columns of `Solution.pulses`: unit and meaning, as in `trajectory.tables.EVENT_COLUMNS`."""
 
 GRID = 17
 """Number of places on a piece at which the traction is compared to find the smallest one."""
@@ -44,9 +44,9 @@ class Pulses(NamedTuple):
     """Pulses in order of time: the event of each; where it begins, is weakest and ends; and its largest slip rate (m/s)."""
 
     event: NDArray[np.intp]
-    begin: Moments
-    weakest: Moments
-    end: Moments
+    begin: Positions
+    weakest: Positions
+    end: Positions
     peak_rate: Floats
 
     @classmethod
@@ -59,7 +59,7 @@ class Pulses(NamedTuple):
         first = np.concatenate([*places, np.empty(0, np.intp)]).astype(np.intp)
         last_of_event = np.append(event[1:] != event[:-1], np.full(len(event[:1]), True))
         past = np.where(last_of_event, starts[event + 1] - 1, np.append(first[1:], 0))
-        begin, end = (Moments.inside(piece[where], xi[where]) for where in (first, past))
+        begin, end = (Positions.inside(piece[where], xi[where]) for where in (first, past))
         peak = np.array([rate[a : b + 1].max() for a, b in zip(first.tolist(), past.tolist(), strict=True)])
         return cls(event, begin, _weakest(history, begin, end), end, peak)
 
@@ -67,7 +67,7 @@ class Pulses(NamedTuple):
         """Return the fracture energy of each pulse, J/m^2 (block: J)."""
         traction, reference = resistance(history), history.problem.strength
 
-        def power(at: Moments) -> Floats:
+        def power(at: Positions) -> Floats:
             return (traction(at) - reference) * np.abs(history.rate(at))
 
         spent = between(history, self.begin, self.weakest, power)
@@ -89,7 +89,7 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
     events = SlipEvents.of(history, threshold)
     pulses = Pulses.of(history, events, threshold)
     begun = events.begin
-    event_begin = Moments.inside(begun.piece[pulses.event], begun.xi[pulses.event])
+    event_begin = Positions.inside(begun.piece[pulses.event], begun.xi[pulses.event])
     columns = {
         "event": pulses.event,
         "start": history.seconds(*history.placed(pulses.begin)),
@@ -124,8 +124,8 @@ def _starts(rate: Floats, begin: int, past: int) -> list[int]:
     return found
 
 
-def _weakest(history: History, begin: Moments, end: Moments) -> Moments:
-    """Find the moments of the smallest traction against slip (the first, if several are equal) between pairs of moments.
+def _weakest(history: History, begin: Positions, end: Positions) -> Positions:
+    """Find the positions of the smallest traction against slip (the first, if several are equal) between pairs of positions.
 
     The search compares places on a grid, and then refines it.
     """
@@ -142,12 +142,12 @@ def _weakest(history: History, begin: Moments, end: Moments) -> Moments:
     for _ in range(REFINEMENTS):
         xi, _ = _lowest(history, piece, np.maximum(xi - width, low), np.minimum(xi + width, high))
         width = width / 8.0
-    return Moments.inside(piece, xi)
+    return Positions.inside(piece, xi)
 
 
 def _lowest(history: History, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Return the place on a grid from low to high (xi) at which the traction in each piece is smallest, and that traction."""
     xi = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, GRID)
-    values = resistance(history)(Moments.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
+    values = resistance(history)(Positions.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
     chosen = np.arange(len(piece)), np.argmin(values, axis=1)
     return xi[chosen], values[chosen]

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.bodies import ElasticSlab
+
 
 @dataclass(frozen=True)
 class CoulombSlab:
@@ -21,58 +23,44 @@ class CoulombSlab:
 
     Parameters
     ----------
-    density : float
-        Density (kg/m^3).
-    wave_speed : float
-        Wave speed c (m/s).
-    thickness : float
-        Thickness h (m).
-    normal_stress : float
-        Normal stress S (Pa).
+    body : ElasticSlab
+        The slab, under a rigid driver and without contact mass.
     static, dynamic : float
         Friction coefficients at rest and while slipping.
     pull_rate : float
         Pull rate V (m/s); 0 means the limit 0+.
     """
 
-    density: float
-    wave_speed: float
-    thickness: float
-    normal_stress: float
+    body: ElasticSlab
     static: float
     dynamic: float
     pull_rate: float = 0.0
 
     @property
-    def impedance(self) -> float:
-        """Return the impedance Z = rho c (Pa s/m)."""
-        return self.density * self.wave_speed
-
-    @property
     def duration(self) -> float:
         """Return the time from onset to arrest (s), which is the two-way travel time R = 2 h / c."""
-        return 2.0 * self.thickness / self.wave_speed
+        return self.body.two_way_time
 
     @property
     def drop(self) -> float:
         """Return the static minus the dynamic strength (Pa)."""
-        return (self.static - self.dynamic) * self.normal_stress
+        return (self.static - self.dynamic) * self.body.normal_stress
 
     @property
     def loading_rate(self) -> float:
         """Return the loading rate G V / h (Pa/s)."""
-        return self.density * self.wave_speed**2 * self.pull_rate / self.thickness
+        return self.body.stiffness * self.pull_rate
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the slip rate v(t) (m/s) at times t (s) after onset, of the shape of t; right limits at jumps."""
         t = np.asarray(t, float)
         moving = (t >= 0.0) & (t < self.duration)
-        return np.where(moving, (self.drop + self.loading_rate * t) / self.impedance, 0.0)
+        return np.where(moving, (self.drop + self.loading_rate * t) / self.body.impedance, 0.0)
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the slip since onset (m) at times t (s) after onset, of the shape of t."""
         t = np.clip(t, 0.0, self.duration)
-        return (self.drop * t + 0.5 * self.loading_rate * t**2) / self.impedance
+        return (self.drop * t + 0.5 * self.loading_rate * t**2) / self.body.impedance
 
     @property
     def total_slip(self) -> float:
@@ -82,4 +70,4 @@ class CoulombSlab:
     @property
     def end_load(self) -> float:
         """Return the load right after arrest (Pa), S (2 dynamic - static) + 2 Z V."""
-        return (2.0 * self.dynamic - self.static) * self.normal_stress + 2.0 * self.impedance * self.pull_rate
+        return (2.0 * self.dynamic - self.static) * self.body.normal_stress + 2.0 * self.body.impedance * self.pull_rate

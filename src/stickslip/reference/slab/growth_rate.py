@@ -11,22 +11,16 @@ from __future__ import annotations
 
 import math
 
-from stickslip.reference.bisection import bisect
+from stickslip.bodies import ElasticSlab
 
 
-def growth_rate(wave_speed: float, thickness: float, shear_modulus: float, normal_stress: float, weakening: float) -> float:
+def growth_rate(slab: ElasticSlab, weakening: float) -> float:
     """Return the growth rate lambda of a perturbation of a slab that weakens with slip.
 
     Parameters
     ----------
-    wave_speed : float
-        Wave speed c (m/s).
-    thickness : float
-        Thickness h (m).
-    shear_modulus : float
-        Shear modulus G (Pa).
-    normal_stress : float
-        Normal stress S (Pa).
+    slab : ElasticSlab
+        The slab, under a rigid driver and without contact mass.
     weakening : float
         Weakening -mu'(u) of the law (1/m).
 
@@ -35,11 +29,13 @@ def growth_rate(wave_speed: float, thickness: float, shear_modulus: float, norma
     float
         Growth rate (1/s); 0 if the slab is stable.
     """
-    target = normal_stress * weakening / shear_modulus * thickness
+    from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
+
+    target = slab.normal_stress * weakening / slab.shear_modulus * slab.thickness
     if target <= 1.0:
         return 0.0
-    x = bisect(lambda x: _excess(x) - (target - 1.0), 0.0, target + 1.0)
-    return x * wave_speed / thickness
+    x: float = brentq(lambda x: _excess(x) - (target - 1.0), 0.0, target + 1.0, xtol=1e-300)
+    return x * slab.wave_speed / slab.thickness
 
 
 def _excess(x: float) -> float:

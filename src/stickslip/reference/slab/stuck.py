@@ -16,6 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.bodies import ElasticSlab
+
 
 @dataclass(frozen=True)
 class StuckSlab:
@@ -23,14 +25,8 @@ class StuckSlab:
 
     Parameters
     ----------
-    density : float
-        Density (kg/m^3).
-    wave_speed : float
-        Wave speed c (m/s).
-    thickness : float
-        Thickness h (m).
-    driver_impedance : float
-        Impedance Zd of the driver (Pa s/m), inf for a rigid one.
+    body : ElasticSlab
+        The slab.
     initial_load : float
         Initial load tau0 (Pa).
     pull_rate : float
@@ -39,59 +35,47 @@ class StuckSlab:
         Far stress (Pa) and its rate (Pa/s); they have no effect under a rigid driver.
     """
 
-    density: float
-    wave_speed: float
-    thickness: float
-    driver_impedance: float
+    body: ElasticSlab
     initial_load: float
     pull_rate: float
     far_stress: float = 0.0
     far_stress_rate: float = 0.0
 
     @property
-    def impedance(self) -> float:
-        """Return the impedance Z = rho c (Pa s/m)."""
-        return self.density * self.wave_speed
-
-    @property
-    def two_way_time(self) -> float:
-        """Return the two-way travel time R = 2 h / c (s)."""
-        return 2.0 * self.thickness / self.wave_speed
-
-    @property
     def loading_rate(self) -> float:
         """Return the loading rate G V / h (Pa/s)."""
-        return self.density * self.wave_speed**2 * self.pull_rate / self.thickness
+        return self.body.stiffness * self.pull_rate
 
     def load(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the load beta(t) (Pa) at times t >= 0 (s), of the shape of t; right limits at jumps."""
         t = np.asarray(t, float)
-        if math.isinf(self.driver_impedance):
+        if math.isinf(self.body.driver_impedance):
             return self.initial_load + self.loading_rate * t
-        trips = np.floor(t / self.two_way_time)
-        factor = -self._reflection
+        trips = np.floor(t / self.body.two_way_time)
+        factor = -self.body.reflection
         power = factor**trips
         # `ones` and `indices` are the sums over k < trips of factor^k and of k factor^k; factor < 1
         ones = (1.0 - power) / (1.0 - factor)
         indices = (factor - trips * power + (trips - 1.0) * power * factor) / (1.0 - factor) ** 2
-        forcing = self._forcing(t) * ones - self._forcing_rate * self.two_way_time * indices
-        return power * self._first_trip(t - trips * self.two_way_time) + forcing
+        forcing = self._forcing(t) * ones - self._forcing_rate * self.body.two_way_time * indices
+        return power * self._first_trip(t - trips * self.body.two_way_time) + forcing
 
     @property
-    def _reflection(self) -> float:
-        return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
+    def _passed(self) -> float:
+        """Return the share 2 Z / (Z + Zd) of a stress beyond the driver that reaches the contact as load."""
+        return 2.0 * self.body.impedance / (self.body.impedance + self.body.driver_impedance)
 
     @property
     def _forcing_rate(self) -> float:
-        return 2.0 * self.impedance / (self.impedance + self.driver_impedance) * self.far_stress_rate
+        return self._passed * self.far_stress_rate
 
     def _forcing(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
-        far = self.driver_impedance * self.pull_rate + self.far_stress
-        constant = 2.0 * self.impedance / (self.impedance + self.driver_impedance) * far
-        return constant + self._forcing_rate * (t - 0.5 * self.two_way_time)
+        far = self.body.driver_impedance * self.pull_rate + self.far_stress
+        return self._passed * far + self._forcing_rate * (t - 0.5 * self.body.two_way_time)
 
     def _first_trip(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return beta for 0 <= t < R: the uniform ramp until h/c, then the reflection of the start w(-y) = G V y / h - tau0."""
+        trip = self.body.two_way_time
         early = self.initial_load + self.loading_rate * t
-        late = self._reflection * (self.loading_rate * (self.two_way_time - t) - self.initial_load) + self._forcing(t)
-        return np.where(t < 0.5 * self.two_way_time, early, late)
+        late = self.body.reflection * (self.loading_rate * (trip - t) - self.initial_load) + self._forcing(t)
+        return np.where(t < 0.5 * trip, early, late)

@@ -113,7 +113,7 @@ def test_what_is_refused(fig6: Comparison) -> None:
 
 
 def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
-    dataset = data(fig6.runs)
+    dataset = data(fig6)
     assert dataset.run0_traction.attrs["units"] == "1"
     assert float(dataset.run0_traction[0]) == pytest.approx(0.8, rel=1e-12, abs=0.0)
     assert float(dataset.run1_traction.min()) == pytest.approx(-0.399999969 / 100, rel=1e-4, abs=0.0)
@@ -125,7 +125,7 @@ def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
 
 def test_runs_of_very_different_lengths_share_no_seconds() -> None:
     runs = {"short": ss.load_scenario("fig6-slab").run(), "long": ss.load_scenario("second-event-maxwell").run()}
-    dataset = data(runs)
+    dataset = data(Comparison(runs))
     assert dataset.attrs["shares"] == 1
     assert float(dataset.run1_slip_time.max()) == 1.0
     assert dataset.attrs["spans"] == ["7.143 s", "480 year"]
@@ -134,7 +134,7 @@ def test_runs_of_very_different_lengths_share_no_seconds() -> None:
 
 def test_one_event_of_each_in_local_time() -> None:
     runs = {rule: ss.load_scenario(f"second-event-{rule}").run() for rule in ("maxwell", "maximal")}
-    dataset = data(runs, 1)
+    dataset = data(Comparison(runs, 1))
     assert (dataset.attrs["shares"], dataset.attrs["local"]) == (0, 1)
     for k, run in enumerate(runs.values()):
         event = run.events.iloc[1]

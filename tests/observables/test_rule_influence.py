@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.rule_influence import choices
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -19,7 +18,7 @@ LOOP = ss.load_scenario("fig4-loop")
 def test_the_first_event_rests_on_no_choice_and_every_rule_agrees() -> None:
     runs = {rule: ss.simulate(replace(FIG6, selection=rule), 12.0) for rule in SELECTION_RULES}
     for solution in runs.values():
-        found = choices(solution)
+        found = solution.rule_influence
         assert (found.regime, found.shocks.tolist(), found.since) == ("irregular", [False, False], None)
         assert "this run depends on the rule; it decided none of the 2 shocks" in solution.selection_note
         assert float(solution.slip(12.0)) == pytest.approx(23.4402332474, rel=1e-10, abs=0)
@@ -29,7 +28,7 @@ def test_the_first_event_rests_on_no_choice_and_every_rule_agrees() -> None:
 def test_the_loop_rests_on_the_rule(rule: str) -> None:
     """The load grows from 60 MPa by G V/h: it is between the folds once it has passed 64.47 MPa."""
     solution = ss.simulate(replace(LOOP.problem, selection=rule), LOOP.duration)
-    found = choices(solution)
+    found = solution.rule_influence
     assert found.rule == rule
     assert found.shocks.tolist() == [True, True]
     growth = SLAB.stiffness * LOOP.problem.pull_rate
@@ -41,8 +40,8 @@ def test_the_first_time_with_a_choice_in_a_leap_of_centuries() -> None:
     runs = {rule: ss.simulate(replace(FIG6, selection=rule), 480 * ss.YEAR) for rule in ("perfect-delay", "maximal")}
     second = float(runs["maximal"].events.start[1])
     for solution in runs.values():
-        assert choices(solution).since == pytest.approx(second, rel=1e-9, abs=0)
-    shocks = choices(runs["perfect-delay"]).shocks
+        assert solution.rule_influence.since == pytest.approx(second, rel=1e-9, abs=0)
+    shocks = runs["perfect-delay"].rule_influence.shocks
     assert shocks.tolist()[:3] == [False, False, True]
     assert "between the folds first at 378.262 years" in runs["maximal"].selection_note
 
@@ -50,7 +49,7 @@ def test_the_first_time_with_a_choice_in_a_leap_of_centuries() -> None:
 def test_a_window_of_a_third_of_a_millipascal_is_not_overlooked() -> None:
     critical = ss.load_scenario("fig7-slab-critical").problem
     solution = ss.simulate(critical, 93_886.0)
-    found = choices(solution)
+    found = solution.rule_influence
     assert found.since is not None
     (low, high), excess = ss.uniqueness(critical).window, float(solution.load(found.since)) - critical.strength
     assert low - 3e-8 <= excess <= high + 3e-8
@@ -65,6 +64,6 @@ def test_no_choice_where_the_rate_is_unique() -> None:
         ss.load_scenario("fig5-slab-reconstructed").problem,
     ):
         solution = ss.simulate(problem, 3.0)
-        found = choices(solution)
+        found = solution.rule_influence
         assert (found.regime, found.since, found.shocks.any()) == ("regular", None, np.False_)
         assert solution.selection_note.endswith("without effect, the solution is unique")

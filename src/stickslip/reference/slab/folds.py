@@ -1,7 +1,12 @@
-"""Folds and jumps of the hyperbolic rate law (15) on the massless contact of a slab.
+"""Folds and jumps of the hyperbolic rate law (15) on the massless contact of a slab, and the delay that a little inertia causes.
 
 With q = sqrt(alpha / alpha_c) and alpha_c = Z / (S (muS - muD)), the resistance g(v) = Z v + S mu(v) falls up to the fold
 v1 = (q - 1) / alpha. Source: Campillo et al. 1996, section 3.
+
+With little inertia the slip rate obeys eps dv/dt = load - g(v), with a load that passes the fold at the rate b (Pa/s) and
+g = g_fold + a (v - v_fold)^2 + ... near it (a = |g''| / 2, Pa s^2/m^2). With time in units of k = (eps^2 / (a b))^(1/3) s, the
+scaled deviation from the fold obeys X' = -T - X^2. The solution that comes from the branch is X = -Ai'(-T) / Ai(-T), which diverges
+at the first zero of the Airy function Ai, T = 2.338. Source: Haberman 1979, SIAM J. Appl. Math. 37, 69.
 """
 
 from __future__ import annotations
@@ -9,8 +14,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from scipy.optimize import brentq
+
 from stickslip.foundation.errors import InputError
-from stickslip.reference.bisection import bisect
+
+AIRY_ZERO = 2.338107410459767
+"""Magnitude of the first zero of the Airy function Ai."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +86,7 @@ class HyperbolicFolds:
     @property
     def maxwell_rate(self) -> float:
         """Return the slip rate v_M of equal areas (m/s): x = alpha v_M solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
-        return bisect(lambda x: _imbalance(x, self.q), 0.0, 4.0 * self.q**2) / self.alpha
+        return float(brentq(lambda x: _imbalance(x, self.q), 0.0, 4.0 * self.q**2, xtol=1e-300)) / self.alpha
 
     @property
     def maxwell_load(self) -> float:
@@ -91,3 +100,23 @@ def _imbalance(x: float, q: float) -> float:
     if x < 0.1:
         return -sum((-x) ** k * (k + 1) / (k + 2) for k in range(1, 18)) - 0.5 * (q - 1.0) * (q + 1.0) / q**2
     return 0.5 / q**2 - (math.log1p(x) - x / (1.0 + x)) / x**2
+
+
+def fold_delay(inertia: float, curvature: float, load_rate: float) -> float:
+    """Return the delay of a jump after the load passes the fold, in the limit of small inertia.
+
+    Parameters
+    ----------
+    inertia : float
+        Contact mass eps (Pa s^2/m, which is kg/m^2); for lagged friction, Z times the time of the lag.
+    curvature : float
+        |g''| at the fold (Pa s^2/m^2).
+    load_rate : float
+        Magnitude of the rate of change of the load at the fold (Pa/s).
+
+    Returns
+    -------
+    float
+        Delay (s).
+    """
+    return float(AIRY_ZERO * (inertia**2 / (0.5 * curvature * load_rate)) ** (1.0 / 3.0))

@@ -1,0 +1,56 @@
+"""Replace numbers of a scenario by those that were typed as options of a command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from stickslip.engine_input.creep_limits import check_creep_rtol
+from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.problem.problem import Problem
+from stickslip.scenarios.scenario import Scenario, load_scenario
+from stickslip.scenarios.schema import SHORTEST_EVENT, check_events, check_rtol, check_rule, read_duration
+from stickslip.scenarios.values import read_typed
+
+Reader = Callable[[Any, str, str], Any]
+"""A function that converts what was typed, given also the name of the command and of the option for messages."""
+
+
+def load_with(command: str, scenario: str, **typed: Any) -> Scenario:
+    """Load a scenario and replace what was typed, by option, such as until="480 year"; None is not typed. Raises InputError."""
+    loaded = load_scenario(scenario)
+    readers = _readers(loaded.problem)
+    changes = {}
+    for option, value in typed.items():
+        if value is not None:
+            field, reader = readers[option]
+            changes[field] = read(reader, value, command, option)
+    return replace(loaded, **changes)
+
+
+def read(reader: Reader, value: Any, command: str, option: str, default: Any = None) -> Any:
+    """Return the value of an option, or the default if it is None. Raises InputError, which names the command and the option."""
+    return default if value is None else reader(value, command, f"--{option.replace('_', '-')}")
+
+
+def _readers(problem: Problem) -> dict[str, tuple[str, Reader]]:
+    """Return by option the field of a scenario that it replaces, and the function that reads it."""
+    return {
+        "until": ("duration", read_duration),
+        "duration": ("duration", read_duration),
+        "events": ("events", check_events),
+        "rtol": ("rtol", check_rtol),
+        "creep_rtol": ("creep_rtol", partial(check_creep_rtol, problem)),
+        "shortest_event": ("shortest_event", partial(_shortest_event, problem)),
+        "selection": ("problem", partial(_under_rule, problem)),
+    }
+
+
+def _shortest_event(problem: Problem, text: str, command: str, option: str) -> float | None:
+    return check_shortest_event(problem, read_typed(text, SHORTEST_EVENT, command, option), command, option)
+
+
+def _under_rule(problem: Problem, rule: str, command: str, option: str) -> Problem:
+    return replace(problem, selection=check_rule(rule, command, option))

@@ -1,1 +1,0 @@
-"""Closed-form solutions for the spring-block."""

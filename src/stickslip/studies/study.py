@@ -1,0 +1,92 @@
+"""What all studies share: runs that Ctrl-C ends, the time up to which runs are compared, the text of a result, and its figure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stickslip.foundation.atomic_write import write_table
+from stickslip.foundation.constants import YEAR
+from stickslip.solution.accessors import figure_of_study
+from stickslip.solution.solution import Solution
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+MAX_PIECES = 200_000
+"""Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""
+TextProgress = Callable[[str], Any]
+"""A function that is called with a line of text on the progress of a study."""
+
+
+def say_nothing(text: str) -> None:
+    """Report no progress."""
+
+
+def uninterrupted(solution: Solution) -> Solution:
+    """Return a solution that has just been computed. Raises KeyboardInterrupt if Ctrl-C ended its run."""
+    if solution.status.name == "interrupted":
+        raise KeyboardInterrupt
+    return solution
+
+
+class Study:
+    """The result of a study: a table, a text and a figure.
+
+    The figure is drawn by the module of `stickslip.figures.studies` that has the study's name.
+    """
+
+    table: Any
+    """Results as a pandas.DataFrame; its columns are described in each study."""
+
+    def save(self, path: str | Path) -> Path:
+        """Write the table as CSV and return its path; comment lines (#) before it, if there are any, say where it comes from."""
+        return write_table(Path(path), self.table, self._about())
+
+    def _about(self) -> Iterable[str]:
+        return ()
+
+    def dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        return self._figure().data(self)  # type: ignore[no-any-return]
+
+    def plot(self) -> Figure:
+        """Plot the result; the panels are described with each study in the documentation."""
+        return self._figure().draw(self.dataset())  # type: ignore[no-any-return]
+
+    def _figure(self) -> Any:
+        return figure_of_study(self)
+
+    def _lines(self) -> Iterable[str]:
+        """Return what `repr` shows below the name; empty lines are left out."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return "\n".join([f"stickslip {type(self).__name__}", *(f"  {line}" for line in self._lines() if line)])
+
+
+class RunsCompared(Study):
+    """The result of a study that compares several runs over the time that all of them cover."""
+
+    def _all_runs(self) -> tuple[Solution, ...]:
+        raise NotImplementedError
+
+    @cached_property
+    def until(self) -> float:
+        """The time (s) up to which runs are compared: the earliest end of a run."""
+        return min(run.history.span[1] for run in self._all_runs())
+
+    @property
+    def ok(self) -> bool:
+        """True if every run reached its end."""
+        return all(run.status.ok for run in self._all_runs())
+
+    @property
+    def stopped(self) -> str:
+        """The reason why the comparison ends before the duration that was asked for; "" if it does not."""
+        reasons = ", ".join(dict.fromkeys(run.status.name for run in self._all_runs() if not run.status.ok))
+        years = f" ({self.until / YEAR:.6g} years)" if self.until > 0.1 * YEAR else ""
+        return f"compared up to {self.until:.6g} s{years} only, where the first run ended ({reasons})" if reasons else ""
