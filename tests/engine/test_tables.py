@@ -7,7 +7,7 @@ are right to 1e-9 of a piece, values at them to 1e-12 of the largest in the tabl
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -23,6 +23,7 @@ from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
 from stickslip.trajectory.tables import default_event_rate
 from tests.engine.test_verified_numbers import SLAB
 from tests.long_runs.problems import RUNS
+from tests.observables.runs import with_wrong_rate
 
 F = ss.friction
 SWING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
@@ -241,8 +242,7 @@ def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: py
 def test_a_wrong_sum_would_be_seen() -> None:
     """The comparison above sees one micrometre in a metre."""
     run = ss.simulate(*CASES["events that heal"])
-    store = run.history.store._replace(rate=run.history.store.rate * (1.0 + 1e-6))
-    bent = replace(run, history=replace(run.history, store=store))
+    bent = with_wrong_rate(run, 1.0 + 1e-6)
     wanted = [slip_of(run.history, event) for event in plain_events(run.history, 0.0)]
     assert run.catalogue(0.0).slip.to_numpy() == pytest.approx(wanted, rel=1e-12, abs=0.0)
     assert bent.catalogue(0.0).slip.to_numpy() != pytest.approx(wanted, rel=1e-7, abs=0.0)

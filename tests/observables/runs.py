@@ -27,6 +27,14 @@ RUNS = {
 }
 
 
+def with_wrong_rate(run: ss.Solution, factor: float = 1.001) -> ss.Solution:
+    """Return the run with a history whose slip rates are too large by a factor."""
+    store = run.history.store
+    wrong = store._replace(pieces=store.pieces.copy())
+    wrong.rate[:] *= factor  # a view of the copied table
+    return replace(run, history=replace(run.history, store=wrong))
+
+
 def worst_imbalance(run: ss.Solution) -> float:
     """Return the largest imbalance of the energies of a run as a share of the energy released (heat at the end)."""
     energy = run.energy(np.linspace(0.0, run.duration, 41))

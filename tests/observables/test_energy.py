@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.trajectory.history import History
 from tests.engine import problems
 from tests.engine.test_against_method_of_steps import KINDS
 from tests.engine.test_verified_numbers import (
@@ -22,7 +21,7 @@ from tests.engine.test_verified_numbers import (
     slip_law_block,
     slip_law_slab,
 )
-from tests.observables.runs import worst_imbalance
+from tests.observables.runs import with_wrong_rate, worst_imbalance
 
 RUNS = {
     "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
@@ -54,10 +53,7 @@ def test_balance_closes_on_random_problems(kind: str, seed: int) -> None:
 @pytest.mark.parametrize("name", ["slab, slip law", "slab, rate law", "block, slip law"])
 def test_balance_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
-    store = run.history.store
-    wrong = store._replace(rate=store.rate * 1.001)
-    history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.duration)
-    assert worst_imbalance(replace(run, history=history)) > 1e-6
+    assert worst_imbalance(with_wrong_rate(run)) > 1e-6
 
 
 def test_energy_against_its_definition() -> None:
