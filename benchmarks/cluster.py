@@ -14,6 +14,8 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.execution.chunk import Work, run_chunk
 from stickslip.sweeps.execution.cluster import cluster, stream
@@ -26,7 +28,9 @@ EMPTY = 200
 CHUNKS, LENGTH = 4, 200_000
 """Chunks that are compared, and their members: rate-law slabs, two round trips each."""
 REPEATS = 5
-PLAN = make_plan("fig6-slab", {"friction.alpha": f"0.5..2:{CHUNKS * LENGTH}"}, quantities=["slip", "pulses"], chunk=LENGTH)
+PLAN = make_plan(
+    "fig6-slab", {"friction.alpha": np.linspace(0.5, 2.0, CHUNKS * LENGTH)}, quantities=["slip", "pulses"], chunk=LENGTH
+)
 
 
 def nothing(work: Work, values: Mapping[str, Values]) -> Mapping[str, Values]:

@@ -33,7 +33,7 @@ LIMIT = 60.0
 """Seconds after which a worker hangs."""
 BLOCK = 512
 FAILURES = ("silent change", "crash", "hang", "traceback")
-SWEEP = {"friction.alpha": "0.2..2:6"}
+SWEEP = {"friction.alpha": np.linspace(0.2, 2.0, 6)}
 
 
 def prepare(folder: Path) -> None:

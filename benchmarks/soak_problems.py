@@ -11,9 +11,8 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 EXTREME = 0.15

@@ -1,4 +1,4 @@
-"""Write the table of friction laws in laws-and-bodies.md from the registry; with --check, only compare.
+"""Write the table of friction laws in laws-and-bodies.md from `LAWS`; with --check, only compare.
 
 python docs/law_table.py
 """
@@ -8,9 +8,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.parameters import fields_of
 
 PAGE = Path(__file__).with_name("laws-and-bodies.md")
 HEADING, NEXT = "## The laws\n", "\n## "
@@ -39,7 +38,7 @@ def with_table(text: str) -> str:
     """The page with the table as the first thing under its heading."""
     before, _, rest = text.partition(HEADING)
     _, _, after = rest.partition(NEXT)
-    intro = "One row a law, written from the registry by `python docs/law_table.py`."
+    intro = "One row a law, written from `LAWS` by `python docs/law_table.py`."
     return f"{before}{HEADING}\n{intro}\n\n{table()}\n{NEXT}{after}"
 
 
@@ -48,7 +47,7 @@ def main() -> int:
     new = with_table(old)
     if "--check" in sys.argv:
         if old != new:
-            sys.stdout.write("the table of laws is not the registry's: run `python docs/law_table.py`\n")
+            sys.stdout.write("the table of laws does not agree with LAWS: run `python docs/law_table.py`\n")
         return int(old != new)
     PAGE.write_text(new, encoding="utf-8")
     return 0

@@ -35,11 +35,10 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "parameters"),
+        ("formula", "contract"),
         ("law",),
-        ("memory", "composite", "piecewise", "slopes"),
+        ("families", "composite", "piecewise"),
         ("laws", "custom"),
-        ("registry",),
     ),
     "engine": (
         ("codegen",),
@@ -54,7 +53,7 @@ ROOMS = {
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
-    "figures": (("style",), ("contact", "runs", "sweeps"), ("studies",)),
+    "figures": (("style",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (("output", "names", "overrides"), ("long_run", "options"), ("commands",), ("main",)),
 }

@@ -8,7 +8,7 @@ from typer import Context
 
 from stickslip.cli.commands.sweep import so_far
 from stickslip.cli.names import complete_design, complete_quantity, complete_vary
-from stickslip.sweeps.sweep import Report
+from stickslip.sweeps.sweep import SweepProgress
 
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
 
@@ -87,8 +87,8 @@ def test_bad_input_is_one_line(command, tmp_path: Path, arguments, said):
 
 
 def test_progress_is_one_line():
-    assert so_far(Report(0, 0, 100, float("nan"), float("nan"))) == "0 of 100 members"
-    assert so_far(Report(50, 2, 100, 12.5, 240.0)) == "50 of 100 members, 12.5 a second, 4 min left, 2 failed"
+    assert so_far(SweepProgress(0, 0, 100, float("nan"), float("nan"))) == "0 of 100 members"
+    assert so_far(SweepProgress(50, 2, 100, 12.5, 240.0)) == "50 of 100 members, 12.5 a second, 4 min left, 2 failed"
 
 
 def test_keys_quantities_and_designs_are_completed():

@@ -32,6 +32,14 @@ def test_it_draws_a_grid(command, tmp_path: Path):
     assert "<image" in drawn  # the map itself, as pixels
 
 
+def test_it_draws_words(command):
+    """Three selection rules along an axis of maps, which a parameter with two values tells apart."""
+    three = ["-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:2", "-v", "thickness=5km..10km:5"]
+    shown = command("sweep", "fig6-slab", *three, "-q", "slip", "--figure", "map.png")
+    assert (shown.code, shown.err) == (0, "")
+    assert shown.out.endswith("written: map.png\n")
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

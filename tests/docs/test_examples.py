@@ -106,7 +106,7 @@ def test_no_html() -> None:
         assert not re.search(r"</?[a-zA-Z][^>]*>|<!--", prose), page.name
 
 
-def test_the_table_of_laws_is_the_registry() -> None:
+def test_the_table_of_laws_agrees_with_the_laws() -> None:
     made = subprocess.run(
         [sys.executable, str(ROOT / "docs" / "law_table.py"), "--check"], capture_output=True, text=True, check=False
     )
@@ -118,8 +118,8 @@ def test_every_bundled_scenario_is_described() -> None:
     assert [name for name in names() if f"`{name}`" not in text] == []
 
 
-def test_a_law_is_one_file_and_one_line(tmp_path: Path) -> None:
-    """The worked example of adding-a-law.md, in a copy of the package: file, registry line, and the scenario that uses it."""
+def test_a_law_is_one_file_and_its_line_in_laws(tmp_path: Path) -> None:
+    """The worked example of adding-a-law.md, in a copy of the package: file, line in LAWS, and the scenario that uses it."""
     page = ROOT / "docs" / "adding-a-law.md"
     package = tmp_path / "stickslip"
     shutil.copytree(Path(stickslip.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
@@ -127,11 +127,11 @@ def test_a_law_is_one_file_and_one_line(tmp_path: Path) -> None:
     law = next(block.text for block in blocks if "class PowerSlipWeakening" in block.text)
     scenario = next(block.text for block in blocks if block.language == "toml")
     (package / "friction" / "laws" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
-    registry = package / "friction" / "registry.py"
-    text = registry.read_text(encoding="utf-8").replace(
+    listing = package / "friction" / "__init__.py"
+    text = listing.read_text(encoding="utf-8").replace(
         "LAWS: dict", "from stickslip.friction.laws.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
     )
-    registry.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        PowerSlipWeakening,\n", text), encoding="utf-8")
+    listing.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        PowerSlipWeakening,\n", text), encoding="utf-8")
     (tmp_path / "mine.toml").write_text(scenario, encoding="utf-8")
     for arguments, expected in ((["check", "mine.toml"], "PowerSlipWeakening: regular"), (["new", "slab"], "power-slip-weakening")):
         done = subprocess.run(

@@ -23,6 +23,7 @@ from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
 from stickslip.trajectory.tables import default_event_rate
 from tests.engine.test_verified_numbers import SLAB
 from tests.long_runs.problems import RUNS
+from tests.problems import scaled_rate
 
 F = ss.friction
 SWING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
@@ -241,7 +242,7 @@ def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: py
 def test_a_wrong_sum_would_be_seen() -> None:
     """The comparison above sees one micrometre in a metre."""
     run = ss.simulate(*CASES["events that heal"])
-    store = run.history.store._replace(rate=run.history.store.rate * (1.0 + 1e-6))
+    store = scaled_rate(run.history.store, 1.0 + 1e-6)
     bent = replace(run, history=replace(run.history, store=store))
     wanted = [slip_of(run.history, event) for event in plain_events(run.history, 0.0)]
     assert run.catalogue(0.0).slip.to_numpy() == pytest.approx(wanted, rel=1e-12, abs=0.0)

@@ -56,3 +56,11 @@ def test_labels_and_what_is_shown_of_a_long_run() -> None:
     assert block.get_xlim() == (0.0, 3.0)
     with pytest.raises(ss.InputError, match="must end after"):
         run.plot_energy(3.0, 3.0)
+
+
+def test_a_block_at_rest_can_be_drawn() -> None:
+    """All its energies are zero: there is nothing to stack."""
+    rest = ss.simulate(ss.Problem(BLOCK_PROBLEM.body, BLOCK_PROBLEM.friction, pull_rate=0.0, initial_excess=-1e6), 10.0)
+    (axes,) = energy.draw(energy.data(rest)).axes
+    assert not axes.collections
+    assert not axes.lines[0].get_ydata().any()

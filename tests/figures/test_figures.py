@@ -20,8 +20,7 @@ from stickslip.figures.contact import admissible, hysteresis, laws, regimes, res
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import plot_run
 from stickslip.figures.studies import ensemble, regularise
-from stickslip.figures.style import STYLE
-from stickslip.paper.files import image
+from stickslip.figures.style import STYLE, image
 
 mpl.use("Agg")
 

@@ -19,7 +19,7 @@ from PIL import Image
 
 import stickslip as ss
 from stickslip.figures.runs import animation, snapshots, space_time
-from stickslip.paper.files import image
+from stickslip.figures.style import image
 from tests.figures.test_figures import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM, labels
 
 mpl.use("Agg")

@@ -24,8 +24,14 @@ mpl.use("Agg")
 
 Floats = NDArray[np.float64]
 ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"
-UNITS = {ALPHA: "s/m", THICKNESS: "m", STRESS: "Pa"}
-AXES = {ALPHA: np.linspace(0.1, 2.0, 9), THICKNESS: np.geomspace(1e3, 64e3, 13), STRESS: np.array([50e6, 100e6])}
+RULES = np.array(["perfect-delay", "minimal", "maximal", "maxwell", "middle"], np.dtypes.StringDType())
+UNITS = {"run.selection": "", ALPHA: "s/m", THICKNESS: "m", STRESS: "Pa"}
+AXES = {
+    "run.selection": RULES,
+    ALPHA: np.linspace(0.1, 2.0, 9),
+    THICKNESS: np.geomspace(1e3, 64e3, 13),
+    STRESS: np.array([50e6, 100e6]),
+}
 FAILED, NOT_RUN = 10, -1
 
 
@@ -191,7 +197,7 @@ def test_samples_over_three_keys_are_drawn_over_each() -> None:
 
 @pytest.fixture(scope="module")
 def refined() -> xr.Dataset:
-    vary = {ALPHA: "0.05..2:3:log", STRESS: "50 MPa..200 MPa:3"}
+    vary = {ALPHA: np.geomspace(0.05, 2.0, 3), STRESS: np.linspace(50e6, 200e6, 3)}
     return ss.refine("fig6-slab", vary, "irregular", depth=3, quantities=["slip"], threads=1)
 
 
@@ -211,13 +217,33 @@ def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
     assert [tuple(colour) == yes for colour in known.get_facecolor()] == (middle > 19.6).tolist()
 
 
+def test_the_title_is_that_of_the_scenario(refined: xr.Dataset) -> None:
+    assert ss.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law, alpha = 1"
+    untitled = refined.assign_attrs(scenario="\n".join(refined.attrs["scenario"].splitlines()[2:]))
+    assert not untitled.attrs["scenario"].startswith("title")
+    assert ss.plot_sweep(untitled).axes[0].get_title(loc="left") == "Elastic slab, hyperbolic-rate friction"
+
+
 def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
     points = scattered(ss.plot_sweep(refined, "slip").axes[0])[-1]
     assert len(points.get_offsets()) == refined.sizes["member"]
 
 
+@pytest.mark.parametrize(("alphas", "thicknesses"), [(5, 1), (2, 5), (3, 4), (5, 2)])
+def test_words_are_an_axis_of_curves_and_of_maps(alphas: int, thicknesses: int) -> None:
+    """`sweep` returns words in numpy's own data type of text."""
+    values = np.arange(5.0 * alphas * thicknesses).reshape(5, alphas, thicknesses)
+    dataset = grid(values, "run.selection", ALPHA, THICKNESS)
+    figure = ss.plot_sweep(dataset, "answer")
+    axes = figure.axes[0]
+    assert [text.get_text() for text in axes.get_xticklabels()] == sorted(RULES.tolist())
+    if min(alphas, thicknesses) > 1:
+        first = values[:, 0, :] if alphas < thicknesses else values[:, :, 0]
+        assert meshes(figure, 1).get_array().tolist() == first[np.argsort(RULES)].T.tolist()
+
+
 def test_cuts_through_three_keys() -> None:
-    vary = {ALPHA: "0.1..0.4:3", STRESS: "50 MPa..200 MPa:3", "body.wave_speed": "2 km/s, 5 km/s"}
+    vary = {ALPHA: np.linspace(0.1, 0.4, 3), STRESS: np.linspace(50e6, 200e6, 3), "body.wave_speed": ["2 km/s", "5 km/s"]}
     figure = ss.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["wave speed 2000 m/s", "wave speed 5000 m/s"]
     for axes, speed in zip(figure.axes, (2e3, 5e3), strict=True):

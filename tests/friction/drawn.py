@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from stickslip import InputError
 from stickslip.engine.codegen.taylor_series import FormulaWriter
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
 from stickslip.friction.formula.expression import Expression
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 
 SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0), "s": (1e-3, 1.0)}
 """Plausible values by unit."""

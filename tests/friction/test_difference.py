@@ -70,6 +70,11 @@ def test_square_root_and_power_from_zero():
     assert slope.tolist() == [np.inf, 0.5]
 
 
+def test_arcsinh_of_numbers_whose_squares_overflow():
+    value, _ = difference(expression.arcsinh(1e200 * RATE) + expression.arcsinh(-1e300 * SLIP), {}, 1.0, 1.0, [0.0, 1.0])
+    np.testing.assert_allclose(value, [-np.log(2.0), np.log(2e200) - np.log(2.0)], rtol=1e-12)
+
+
 def test_unknown_parameter():
     with pytest.raises(KeyError, match="slope"):
         difference(as_expression(1.0) + Parameter("slope") * RATE, {}, 0.0, 0.0, 1.0)

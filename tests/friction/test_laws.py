@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from stickslip import ElasticSlab, Problem
 from stickslip.friction import LAWS, Coulomb, FrictionLaw
 from stickslip.friction.formula.differences import difference
-from stickslip.friction.slopes import slopes
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.scenarios.templates import template
 
@@ -100,7 +99,7 @@ def test_the_tree_is_the_formula_and_its_slopes_are_derivatives(kind: str, data:
     wiggle = 1e-4 + 1e-6 * max(abs(by_rate), abs(by_slip)) + 1e-10 * size / eps
     assert float(slope) == pytest.approx(by_rate, rel=1e-4, abs=wiggle)
     if law.piece_at(slip, rate) == i:
-        np.testing.assert_allclose(slopes(law, slip, rate), (by_slip, by_rate), rtol=1e-4, atol=wiggle)
+        np.testing.assert_allclose(law.slopes(slip, rate), (by_slip, by_rate), rtol=1e-4, atol=wiggle)
 
 
 @KINDS
@@ -114,7 +113,7 @@ def test_compiled_code_is_the_formula(kind: str, data: st.DataObject) -> None:
     out = compiled_value(law, i, reference, slip, rate)
     values = [float(law.piece_coefficient(i, *at)) for at in ((slip, rate), (reference, 0.0))]
     assert out[0] == pytest.approx(values[0] - values[1], rel=0, abs=1e-13 * (1.0 + 10.0 * max(map(abs, values))))
-    np.testing.assert_allclose(out[:0:-1], slopes(law, slip, rate), rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(out[:0:-1], law.slopes(slip, rate), rtol=1e-9, atol=1e-11)
 
 
 @KINDS

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.quantities import quantity
-from stickslip.friction.parameters import fields_of
+from stickslip.foundation.quantities import fields_of, quantity
 from stickslip.loading import HISTORIES, HoldAndSlide, LoadingHistory, PiecewiseLinear, Segment, Sinusoidal, Steps, Tone
 from stickslip.loading.contract import VARYING
 

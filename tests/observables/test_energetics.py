@@ -14,6 +14,7 @@ from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.trajectory.history import History
 from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
 from tests.observables.runs import LOSSY, RUNS
+from tests.problems import scaled_rate
 
 F = ss.friction
 COULOMB = F.Coulomb(0.8, 0.3)
@@ -42,7 +43,7 @@ def test_every_event_balances(name: str) -> None:
 
 def test_balance_notices_a_wrong_slip_rate() -> None:
     run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
-    wrong = run.history.store._replace(rate=run.history.store.rate * 1.001)
+    wrong = scaled_rate(run.history.store, 1.001)
     history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration)
     table = replace(run, history=history).energetics()
     assert (table.balance.abs() > 1e-7 * table.heat).all()

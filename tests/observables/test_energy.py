@@ -23,6 +23,7 @@ from tests.engine.test_verified_numbers import (
     slip_law_slab,
 )
 from tests.observables.runs import worst_imbalance
+from tests.problems import scaled_rate
 
 RUNS = {
     "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
@@ -55,7 +56,7 @@ def test_balance_closes_on_random_problems(kind: str, seed: int) -> None:
 def test_balance_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     store = run.history.store
-    wrong = store._replace(rate=store.rate * 1.001)
+    wrong = scaled_rate(store, 1.001)
     history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.duration)
     assert worst_imbalance(replace(run, history=history)) > 1e-6
 

@@ -11,6 +11,7 @@ import stickslip as ss
 from stickslip.trajectory.history import History
 from tests.engine.test_verified_numbers import IMPEDANCE, ROUND, SLAB, rate_law_slab
 from tests.observables.runs import LOSSY, RUNS, F
+from tests.problems import scaled_rate
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -27,7 +28,7 @@ def test_every_event_balances(name: str) -> None:
 @pytest.mark.parametrize("name", ["slab, rate law, maximal", "slab, slip law", "block, damped"])
 def test_balance_of_an_event_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
-    wrong = run.history.store._replace(rate=run.history.store.rate * 1.001)
+    wrong = scaled_rate(run.history.store, 1.001)
     run = replace(run, history=History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration))
     table = run.catalogue(energies=True)
     assert (table.balance.abs() > 1e-7 * table.released).all()

@@ -21,6 +21,7 @@ from tests.engine import problems
 from tests.engine.test_properties import few, ran
 from tests.engine.test_properties import problems as random_problems
 from tests.observables.runs import slab_of
+from tests.problems import scaled_rate
 
 Floats = NDArray[np.float64]
 ROUNDING = 1e-13
@@ -136,7 +137,7 @@ def test_the_contact(run: ss.Solution) -> None:
 def test_the_contact_notices_a_wrong_history(run: ss.Solution) -> None:
     """A slip rate that is a thousandth too large everywhere sends back another load than the contact received."""
     store = run.history.store
-    history = replace(run.history, store=store._replace(rate=store.rate * 1.001))
+    history = replace(run.history, store=scaled_rate(store, 1.001))
     error = float(contact_errors(replace(run, history=history)).stress.max())
     assert error > 1e-7 or slab_of(run).reflection == 0.0  # of a matched driver nothing comes back
 

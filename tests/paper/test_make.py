@@ -16,7 +16,7 @@ import xarray as xr
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.paper import make
 from stickslip.paper.claims import STATEMENTS
-from stickslip.paper.files import save_text
+from stickslip.paper.make import save_text
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import pytest
 
 from stickslip import ElasticSlab, Problem, SpringBlock
 from stickslip.friction import LAWS, SinusoidalSlip
-from stickslip.friction.slopes import slopes
 from stickslip.scenarios import library
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
@@ -54,7 +53,7 @@ def test_slopes_are_the_derivatives_of_the_formula(kind: str) -> None:
         step = 1e-6
         by_slip = (friction.coefficient(slip + step, rate) - friction.coefficient(slip - step, rate)) / (2 * step)
         by_rate = (friction.coefficient(slip, rate + step) - friction.coefficient(slip, rate - step)) / (2 * step)
-        np.testing.assert_allclose(slopes(friction, slip, rate), (by_slip, by_rate), rtol=1e-8, atol=1e-9)
+        np.testing.assert_allclose(friction.slopes(slip, rate), (by_slip, by_rate), rtol=1e-8, atol=1e-9)
 
 
 @pytest.mark.parametrize(("beyond", "stable"), [(2.744086e-3 - 1e-8, True), (2.744086e-3 + 1e-8, False)])

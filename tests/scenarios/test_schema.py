@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SpringBlock
 from stickslip.bodies import BODIES
-from stickslip.foundation.quantities import quantities_of, quantity
+from stickslip.foundation.quantities import Part, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.parameters import Part, fields_of
 from stickslip.scenarios import templates
 from stickslip.scenarios.entries import describe, key_of
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario

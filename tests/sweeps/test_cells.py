@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.sweeps.design.adaptive_grid import Lattice, Refined, apart, refine_cells
+from stickslip.sweeps.design.adaptive_grid import Lattice, Refined, refine_cells
 
 Floats = NDArray[np.float64]
 
@@ -127,9 +127,9 @@ def test_members_that_failed_are_no_boundary() -> None:
 
 def test_a_jump_by_a_factor_is_a_boundary_a_slope_is_not() -> None:
     lattice = Lattice((9, 9), 4)
-    found = search(lattice, lambda at: (1.0 + at[:, 1]) * np.where(at[:, 0] < 0.4, 1.0, -5.0), differ=apart(1.5))
+    found = search(lattice, lambda at: (1.0 + at[:, 1]) * np.where(at[:, 0] < 0.4, 1.0, -5.0), factor=1.5)
     assert np.abs(found.boundary[:, 0] - 0.4).max() < 1.0 / 128
-    smooth = search(lattice, lambda at: 1.0 + at[:, 1], differ=apart(1.5))
+    smooth = search(lattice, lambda at: 1.0 + at[:, 1], factor=1.5)
     assert len(smooth.points) == 81
 
 

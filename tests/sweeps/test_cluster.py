@@ -14,18 +14,23 @@ from typing import TYPE_CHECKING
 from urllib.error import HTTPError
 from urllib.request import urlopen
 
+import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.sweeps.execution.cluster import ChunksLostError, cluster, on_cluster, stream
 from stickslip.sweeps.execution.plan import Plan, make_plan
 from stickslip.sweeps.execution.security import own_security
-from stickslip.sweeps.sweep import Report, carry_out
+from stickslip.sweeps.sweep import SweepProgress, carry_out
 
 if TYPE_CHECKING:
     from distributed import Client
 
-VARY = {"friction.alpha": "0.05..2:6", "loading.far_stress_rate": "0, 1 Pa/s", "run.selection": "maxwell,perfect-delay"}
+VARY = {
+    "friction.alpha": np.linspace(0.05, 2.0, 6),
+    "loading.far_stress_rate": [0.0, "1 Pa/s"],
+    "run.selection": ["maxwell", "perfect-delay"],
+}
 """A rigid driver takes no far stress: half of the members fail."""
 
 
@@ -66,7 +71,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 def test_a_killed_worker_changes_nothing(two_workers: Client, undisturbed: dict[str, bytes], tmp_path: Path) -> None:
     killed = []
 
-    def kill_one(report: Report) -> None:
+    def kill_one(report: SweepProgress) -> None:
         if report.done >= 3 and not killed:
             killed.append(next(iter(two_workers.run(os.getpid).values())))
             os.kill(killed[0], signal.SIGKILL)
@@ -186,7 +191,7 @@ def test_the_scheduler_of_a_file(open_scheduler: str, tmp_path: Path) -> None:
 
 
 def test_a_map_is_refined_on_a_cluster(open_scheduler: str, tmp_path: Path) -> None:
-    vary = {"friction.alpha": "0.05..0.4:3", "body.normal_stress": "50 MPa..200 MPa:3"}
+    vary = {"friction.alpha": np.linspace(0.05, 0.4, 3), "body.normal_stress": np.linspace(50e6, 200e6, 3)}
     for name, where in (("here", {"threads": 1}), ("there", {"scheduler": open_scheduler})):
         found = ss.refine("fig6-slab", vary, "events", depth=2, quantities="slip", chunk=4, out=tmp_path / f"{name}.zarr", **where)
         assert found.sizes["member"] > 20

@@ -19,7 +19,8 @@ from stickslip.sweeps.sweep import carry_out, on_threads
 @pytest.mark.parametrize("series", [[], ["slip", "slip_rate"]])
 def test_cost_is_about_what_it_turns_out_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, series: list[str]) -> None:
     monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.2)
-    plan = make_plan("fig5-slab-reconstructed", ["thickness=5km..20km:10", "density=2000..3000:9"], series=series, samples=1000)
+    vary = {"thickness": np.linspace(5e3, 20e3, 10), "density": np.linspace(2e3, 3e3, 9)}
+    plan = make_plan("fig5-slab-reconstructed", vary, series=series, samples=1000)
     found, run = estimate(plan, on_threads(1)), on_threads(1)
     start = time.perf_counter()
     carry_out(plan, tmp_path / "map.zarr", run)

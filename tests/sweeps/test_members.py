@@ -24,7 +24,9 @@ RATE = load_scenario("fig6-slab")
 
 def test_a_member_is_its_own_scenario() -> None:
     dataset = ss.sweep(
-        PULSES, {"body.thickness": "5km..20km:3", "initial.excess": [0.0, 1e4]}, quantities=["slip", "pulses", "peak_rate"]
+        PULSES,
+        {"body.thickness": np.linspace(5e3, 20e3, 3), "initial.excess": [0.0, 1e4]},
+        quantities=["slip", "pulses", "peak_rate"],
     )
     for thickness in (5e3, 20e3):
         body, at = replace(PULSES.problem.body, thickness=thickness), {"body.thickness": thickness, "initial.excess": 1e4}  # type: ignore[type-var]
@@ -36,6 +38,35 @@ def test_a_member_is_its_own_scenario() -> None:
         assert float(found.peak_rate) == alone.events.peak_rate.max()
 
 
+def test_a_problem_is_varied_as_its_scenario_is() -> None:
+    vary = {"friction.alpha": np.array([0.1, 1.0]), "run.selection": ["minimal", "maxwell"]}
+    mine, bundled = ss.sweep(RATE.problem, vary, duration=RATE.duration), ss.sweep(RATE, vary)
+    for name in ("events", "slip", "peak_rate", "status"):
+        assert mine[name].values.tobytes() == bundled[name].values.tobytes(), name
+    refined = ss.refine(RATE.problem, {"friction.alpha": [0.1, 1.0]}, "events", duration=RATE.duration, depth=1)
+    assert refined.events.values.tolist() == [0.0, 1.0, 1.0]
+
+
+def rule(branches: object) -> object:
+    return branches
+
+
+@pytest.mark.parametrize(
+    ("scenario", "duration", "said"),
+    [
+        (RATE.problem, None, "sweep: a Problem needs a duration (s)"),
+        (RATE.problem, -1.0, "sweep: duration must be"),
+        (RATE, 5.0, "sweep: duration belongs to a Problem"),
+        (replace(RATE.problem, selection=rule), 5.0, "problem: [run] selection"),
+    ],
+)
+def test_what_has_no_duration_or_no_scenario_is_one_line(scenario: Any, duration: float | None, said: str) -> None:
+    with pytest.raises(ss.InputError) as told:
+        ss.sweep(scenario, {"friction.alpha": [0.1, 1.0]}, duration=duration)
+    assert str(told.value).startswith(said)
+    assert "\n" not in str(told.value)
+
+
 def test_keys_of_every_table_are_put_in_their_place() -> None:
     vary: dict[str, Any] = {
         "body.density": 2000.0,
@@ -45,7 +76,7 @@ def test_keys_of_every_table_are_put_in_their_place() -> None:
         "run.duration": 3.0,
     }
     plan = make_plan(RATE, {key: [value] for key, value in vary.items()} | {"run.selection": ["maxwell"], "run.events": [4]})
-    member = plan.work.members.scenario(vary | {"run.selection": "maxwell", "run.events": 4.0})
+    member = plan.work.member(vary | {"run.selection": "maxwell", "run.events": 4.0})
     problem = member.problem
     assert (problem.body.density, problem.pull_rate, problem.initial_load, problem.initial_excess) == (2000.0, 1e-9, 7e7, None)  # type: ignore[union-attr]
     assert (member.rtol, member.duration, member.events, problem.rule) == (1e-7, 3.0, 4, "maxwell")
@@ -54,7 +85,7 @@ def test_keys_of_every_table_are_put_in_their_place() -> None:
 
 def test_a_parameter_of_an_expression_keeps_its_unit() -> None:
     scenario = load_scenario("block-or-slab")
-    member = make_plan(scenario, "wavelength=1 km,3 m").work.members.scenario({"friction.parameters.wavelength": 1e3})
+    member = make_plan(scenario, {"wavelength": ["1 km", "3 m"]}).work.member({"friction.parameters.wavelength": 1e3})
     by_hand = read_scenario(scenario.to_toml().replace('"41.6 m"', '"1000.0 m"'), "by hand")
     assert member.problem.friction == by_hand.problem.friction != scenario.problem.friction
 
@@ -109,9 +140,9 @@ def pieces(solution: ss.Solution) -> int:
 
 
 def test_a_quantity_of_my_own() -> None:
-    dataset = ss.sweep(PULSES, "thickness=5 km,10 km", quantities=["slip", ("pieces", "1", pieces)])
+    dataset = ss.sweep(PULSES, {"thickness": ["5 km", "10 km"]}, quantities=["slip", ("pieces", "1", pieces)])
     assert dataset.pieces.values.tolist() == [
-        pieces(make_plan(PULSES, "thickness=1").work.members.scenario({"body.thickness": h}).run()) for h in (5e3, 10e3)
+        pieces(make_plan(PULSES, {"thickness": [1]}).work.member({"body.thickness": h}).run()) for h in (5e3, 10e3)
     ]
     assert dataset.pieces.attrs["units"] == "1"
 
@@ -150,7 +181,7 @@ def test_failures_are_recorded_and_stop_nobody() -> None:
 
 def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.sweeps.execution.chunk.MAX_PIECES", 600)
-    plan = make_plan(PULSES, "thickness=100 m,10 km", quantities="slip")
+    plan = make_plan(PULSES, {"thickness": [100, 10e3]}, quantities="slip")
     found = one_by_one(plan.work, plan.values(0))
     assert [MEANINGS[code] for code in found.status] == ["too_many_pieces", "finished"]
     assert found.reasons.keys() == {0}
@@ -159,7 +190,7 @@ def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.Monkey
 
 
 def test_work_goes_to_other_processes() -> None:
-    plan = make_plan(RATE, "alpha=0.1,1", quantities=[*QUANTITIES, ("mine", "1", pieces)], series=["slip"], samples=3)
+    plan = make_plan(RATE, {"alpha": [0.1, 1]}, quantities=[*QUANTITIES, ("mine", "1", pieces)], series=["slip"], samples=3)
     there: Work = pickle.loads(pickle.dumps(plan.work))
     here, copied = run_chunk(plan.work, plan.values(0)), run_chunk(there, pickle.loads(pickle.dumps(plan.values(0))))
     assert there.names == plan.work.names
@@ -173,7 +204,7 @@ def test_a_quantity_may_fail_in_any_way(error: Exception) -> None:
     def fails(solution: ss.Solution) -> float:
         raise error
 
-    dataset = ss.sweep(RATE, "alpha=1", quantities=[("mine", "1", fails)])
+    dataset = ss.sweep(RATE, {"alpha": [1]}, quantities=[("mine", "1", fails)])
     assert (dataset.status.item(), dataset.reason.item()) == (ERROR, f"{type(error).__name__}: no")
 
 
@@ -211,6 +242,6 @@ def test_bad_quantities_are_one_line(wanted: Any, said: str) -> None:
 )
 def test_bad_arguments_are_one_line(asked: dict[str, Any], said: str) -> None:
     with pytest.raises(ss.InputError) as told:
-        ss.sweep(RATE, "alpha=0.1,1", **asked)
+        ss.sweep(RATE, {"alpha": [0.1, 1]}, **asked)
     assert said in str(told.value)
     assert "\n" not in str(told.value)

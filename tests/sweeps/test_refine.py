@@ -13,11 +13,11 @@ import xarray as xr
 import stickslip as ss
 from stickslip.contact.critical import margin
 from stickslip.sweeps.results.refinement_spec import cells_of
-from stickslip.sweeps.sweep import Report
+from stickslip.sweeps.sweep import SweepProgress
 
 ALPHA, STRESS = "friction.alpha", "body.normal_stress"
 IMPEDANCE = 2800.0 * 3500.0
-FEW = {"friction.alpha": "0.05..2:3:log", STRESS: "50 MPa..200 MPa:3"}
+FEW = {"friction.alpha": np.geomspace(0.05, 2.0, 3), STRESS: np.linspace(50e6, 200e6, 3)}
 
 
 def irregular(solution: ss.Solution) -> bool:
@@ -38,7 +38,7 @@ def refine(out: Path | None = None, **options: Any) -> xr.Dataset:
 def test_the_critical_curve_to_a_ten_thousandth() -> None:
     """alpha_c = Z/(S (muS - muD)), eq. (15), over alpha and S, where it crosses a corner: 5120 x 5120 cells were it a grid."""
     low, high = np.array([0.05, 50e6]), np.array([0.0985, 200e6])
-    vary = {ALPHA: "0.05..0.0985:6", STRESS: "50 MPa..200 MPa:6"}
+    vary = {ALPHA: np.linspace(0.05, 0.0985, 6), STRESS: np.linspace(50e6, 200e6, 6)}
     found = ss.refine("fig6-slab", vary, "several", depth=10, quantities=[("several", "1", irregular)])
     cells = cells_of(found)
     below, above = (np.stack([side[ALPHA], side[STRESS]], axis=1)[cells.changes] for side in (cells.low, cells.high))
@@ -84,7 +84,7 @@ def test_a_search_that_was_stopped_goes_on(error: type[BaseException], tmp_path:
     whole = refine(tmp_path / "whole.zarr")
     out, told = tmp_path / "map.zarr", []
 
-    def stop(report: Report) -> None:
+    def stop(report: SweepProgress) -> None:
         if report.done > 20:
             raise error
 
@@ -131,7 +131,7 @@ def test_it_ends_at_the_most_members_and_says_so() -> None:
 
 def test_what_has_no_answer_says_nothing() -> None:
     """Members that are refused are kept with their reason, and nothing is refined towards them."""
-    vary = {"loading.far_stress_rate": [0.0, 1.0, 2.0], ALPHA: "0.05..2:5"}
+    vary = {"loading.far_stress_rate": [0.0, 1.0, 2.0], ALPHA: np.linspace(0.05, 2.0, 5)}
     found = ss.refine("fig6-slab", vary, "several", depth=2, quantities=[("several", "1", irregular)])
     refused = found["loading.far_stress_rate"] > 0.0
     assert (found.status.values[refused] == 10).all()
@@ -146,30 +146,32 @@ def test_a_jump_by_a_factor() -> None:
         alpha = solution.problem.friction.alpha  # type: ignore[attr-defined]
         return (1.0 + 0.1 * alpha) * (10.0 if irregular(solution) else 1.0)
 
-    found = ss.refine("fig6-slab", {ALPHA: "0.05..2:4"}, "jump", factor=5.0, depth=12, quantities=[("jump", "m", jumping)])
+    found = ss.refine(
+        "fig6-slab", {ALPHA: np.linspace(0.05, 2.0, 4)}, "jump", factor=5.0, depth=12, quantities=[("jump", "m", jumping)]
+    )
     cells = cells_of(found)
     ((low,), (high,)) = (side[ALPHA][cells.changes] for side in (cells.low, cells.high))
     assert low <= IMPEDANCE / 0.5 / 100e6 <= high
     assert high - low == pytest.approx(0.65 / 2**12, rel=1e-9)
     assert found.sizes["member"] == 4 + 12
     with pytest.raises(ss.InputError, match="slip is not a whole number: give the factor by which"):
-        ss.refine("fig6-slab", {ALPHA: "0.05..2:4"}, "slip")
+        ss.refine("fig6-slab", {ALPHA: np.linspace(0.05, 2.0, 4)}, "slip")
 
 
 @pytest.mark.parametrize(
     ("vary", "options", "message"),
     [
-        ({ALPHA: "2,1"}, {}, "friction.alpha needs two or more numbers in ascending order"),
-        ({ALPHA: "1"}, {}, "friction.alpha needs two or more numbers"),
-        ({ALPHA: "0.05..2"}, {}, "friction.alpha needs two or more numbers"),
-        ({"run.selection": "maxwell,minimal"}, {}, "run.selection needs two or more numbers"),
-        ({ALPHA: "1,2"}, {"factor": 1.0}, "factor must be above 1"),
-        ({ALPHA: "1,2"}, {"depth": -1}, "depth must be 0 or more"),
-        ({ALPHA: "1,2"}, {"depth": 2.5}, "whole numbers"),
-        ({ALPHA: "1,2"}, {"quantities": ["pulse"]}, "did you mean 'pulses'"),
+        ({ALPHA: [2, 1]}, {}, "friction.alpha needs two or more numbers in ascending order"),
+        ({ALPHA: [1]}, {}, "friction.alpha needs two or more numbers"),
+        ({ALPHA: (0.05, 2.0)}, {}, "friction.alpha must be an array or a list: a tuple"),
+        ({"run.selection": ["maxwell", "minimal"]}, {}, "run.selection needs two or more numbers"),
+        ({ALPHA: [1, 2]}, {"factor": 1.0}, "factor must be above 1"),
+        ({ALPHA: [1, 2]}, {"depth": -1}, "depth must be 0 or more"),
+        ({ALPHA: [1, 2]}, {"depth": 2.5}, "whole numbers"),
+        ({ALPHA: [1, 2]}, {"quantities": ["pulse"]}, "did you mean 'pulses'"),
     ],
 )
-def test_what_cannot_be_refined(vary: dict[str, str], options: dict[str, Any], message: str) -> None:
+def test_what_cannot_be_refined(vary: dict[str, Any], options: dict[str, Any], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         ss.refine("fig6-slab", vary, "pulses", **options)
 

@@ -21,9 +21,9 @@ from stickslip.run.session import RunInProgress
 from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
-from stickslip.sweeps.sweep import Report, carry_out, on_threads
+from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
 
-VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": "5km..20km:6"}
+VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": np.linspace(5e3, 20e3, 6)}
 """The second half fails: a rigid driver has no far stress."""
 KEPT = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
 MEMBERS, FINE = 12, 6
@@ -65,7 +65,7 @@ def test_a_store_holds_what_a_sweep_gives(tmp_path: Path, whole: dict[str, bytes
 
 
 def test_samples_and_lists_have_a_member_dimension(tmp_path: Path) -> None:
-    asked = {"vary": ["alpha=0.1..2", "run.selection=maxwell,minimal"], "design": "lhs", "members": 7, "seed": 5}
+    asked = {"vary": {"alpha": (0.1, 2.0), "run.selection": ["maxwell", "minimal"]}, "design": "lhs", "members": 7, "seed": 5}
     sweep(tmp_path / "sample.zarr", **asked)
     with xr.open_zarr(tmp_path / "sample.zarr") as found:
         assert found.slip.dims == ("member",)
@@ -79,9 +79,9 @@ class Stop:
 
     def __init__(self, after: int) -> None:
         self.after = after
-        self.reports: list[Report] = []
+        self.reports: list[SweepProgress] = []
 
-    def __call__(self, report: Report) -> None:
+    def __call__(self, report: SweepProgress) -> None:
         self.reports.append(report)
         if report.done >= self.after:
             raise KeyboardInterrupt
@@ -196,7 +196,7 @@ def test_the_command_is_stopped_at_any_moment_and_goes_on(tmp_path: Path, sent: 
         there = int((found.status != NOT_RUN).sum())
     assert 15 <= there < 150
     again = Stop(151)
-    asked = {"vary": {"friction.alpha": "0.2..2:150"}, "quantities": ["heat"], "series": []}
+    asked = {"vary": {"friction.alpha": np.linspace(0.2, 2.0, 150)}, "quantities": ["heat"], "series": []}
     assert (sweep(path, progress=again, **asked).status.values == 0).all()
     assert again.reports[0].done in (there, there - 5)  # stopped behind a status, before its checksums: run again
 
@@ -234,7 +234,7 @@ def test_a_disk_that_is_full_from_the_start_leaves_nothing(tmp_path: Path, monke
 
 
 OTHERS: list[tuple[dict[str, Any], str]] = [
-    ({"vary": VARY | {"body.thickness": "5km..20km:5"}}, "was made with other values of body.thickness"),
+    ({"vary": VARY | {"body.thickness": np.linspace(5e3, 20e3, 5)}}, "was made with other values of body.thickness"),
     ({"vary": {"friction.dynamic": [0.3]}}, "was made over loading.far_stress_rate, body.thickness (design grid)"),
     ({"quantities": ["slip"]}, "was made for other quantities (arrested, pulses, series_slip, slip)"),
     ({"samples": 6}, "was made with other samples of time"),

@@ -6,7 +6,7 @@ Slip events are reduced to numbers as soon as they are complete, and history tha
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,54 +31,21 @@ FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
 
 
 @dataclass
-class Fold:
-    """The reduction of slip events to numbers, event by event: those of `reduction.fold_events` and `reduction.fold_first`.
-
-    `recurrences` counts the recurrence times so far, and `spread` is the
-    sum of their squared deviations from the mean (s^2).
-    """
-
-    out: Reduced
-    recurrences: int = 0
-    spread: float = 0.0
-
-    def add(self, rows: pd.DataFrame) -> None:
-        """Add events, in order of time."""
-        out = self.out
-        if len(rows) and out.events == 0:
-            for name in FIRST:
-                setattr(out, f"first_{name}", rows[name].iloc[0])
-        out.events += len(rows)
-        out.pulses += rows.pulses.sum()
-        for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
-            if not rate <= out.peak_rate:  # also where no event has been counted yet, and the peak is NaN
-                out.peak_rate, out.peak_time = rate, when
-        for since in rows.recurrence.dropna():
-            self.recur(since)
-
-    def recur(self, since: float) -> None:
-        """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
-        mean = 0.0 if self.recurrences == 0 else self.out.recurrence
-        self.recurrences += 1
-        change = since - mean
-        mean += change / self.recurrences
-        self.spread += change * (since - mean)
-        self.out.recurrence = mean
-        if self.recurrences > 1:
-            self.out.recurrence_cv = math.sqrt(self.spread / (self.recurrences - 1)) / mean
-
-
-@dataclass
 class Folding:
     """The watch (`run_loop.Watch`) of a run in bounded memory: it reduces events and discards history when this is full.
 
-    `stop` is the flag that ends the whole batch.
+    Events are reduced one by one to the numbers of `reduction.fold_events` and `reduction.fold_first` in `out`.
     """
 
     stream: EventStream
-    fold: Fold
     stop: Integers
-    counted: int = field(default=0)
+    """The flag that ends the whole batch."""
+    out: Reduced
+    recurrences: int = 0
+    """Number of recurrence times so far."""
+    deviations: float = 0.0
+    """Sum of the squared deviations of the recurrence times from their mean (s^2)."""
+    counted: int = 0
     """Number of pieces whose shocks have been counted."""
 
     def look(self, run: RunInProgress, *, now: bool) -> int | None:
@@ -92,7 +59,7 @@ class Folding:
         """
         self.count_shocks(run.store, run.length)
         look = self.stream.look(run.store, run.length)
-        self.fold.add(look.table())
+        self.add(look.table())
         look.tell()
         dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
         if dropped > 0:
@@ -102,8 +69,33 @@ class Folding:
 
     def count_shocks(self, store: Store, length: int) -> None:
         """Count the shocks of the pieces that were added since the last count."""
-        self.fold.out.shocks += np.count_nonzero(store.cause[self.counted : length])
+        self.out.shocks += np.count_nonzero(store.cause[self.counted : length])
         self.counted = length
+
+    def add(self, rows: pd.DataFrame) -> None:
+        """Add events, in order of time."""
+        out = self.out
+        if len(rows) and out.events == 0:
+            for name in FIRST:
+                setattr(out, f"first_{name}", rows[name].iloc[0])
+        out.events += len(rows)
+        out.pulses += rows.pulses.sum()
+        for rate, when in zip(rows.peak_rate, rows.peak_time, strict=True):
+            if not rate <= out.peak_rate:  # also where no event has been counted yet, and the peak is NaN
+                out.peak_rate, out.peak_time = rate, when
+        for since in rows.recurrence.dropna():
+            self.add_recurrence(since)
+
+    def add_recurrence(self, since: float) -> None:
+        """Add the time (s) between the starts of two successive events to the running mean and coefficient of variation."""
+        mean = 0.0 if self.recurrences == 0 else self.out.recurrence
+        self.recurrences += 1
+        change = since - mean
+        mean += change / self.recurrences
+        self.deviations += change * (since - mean)
+        self.out.recurrence = mean
+        if self.recurrences > 1:
+            self.out.recurrence_cv = math.sqrt(self.deviations / (self.recurrences - 1)) / mean
 
 
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
@@ -118,9 +110,9 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     out[:] = np.nan
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0
-    watch = Folding(stream, Fold(reduced), stop)
+    watch = Folding(stream, stop, reduced)
     code = drive(run, scenario.duration, watch)
     watch.count_shocks(run.store, run.length)
-    watch.fold.add(stream.look(run.store, run.length).table(unknown=True))
+    watch.add(stream.look(run.store, run.length).table(unknown=True))
     fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
     return code

@@ -31,7 +31,7 @@ NO_BRANCH = "friction falls at least as fast as Z v rises at high slip rates, or
 NO_START = "the run cannot start"
 
 
-class Members(NamedTuple):
+class BatchResult(NamedTuple):
     """The results of the members of a batch, in the order of the values given.
 
     Attributes
@@ -49,7 +49,7 @@ class Members(NamedTuple):
     reason: dict[int, str]
 
 
-def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> Members:
+def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> BatchResult:
     """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
     Parameters
@@ -65,7 +65,7 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
 
     Returns
     -------
-    Members
+    BatchResult
         Quantities and status of each member. A member whose parameters are invalid gets the status BAD_PARAMETERS and a reason;
         it does not affect the others.
 
@@ -85,7 +85,7 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
     for chunk in chunks(count, threads):
         batch.queue.put(chunk)
     batch.run(threads)
-    return Members(batch.results, batch.status, batch.reason)
+    return BatchResult(batch.results, batch.status, batch.reason)
 
 
 def chunks(count: int, threads: int) -> Iterator[slice]:

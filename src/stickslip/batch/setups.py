@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
 from stickslip.batch.kernels.constants import fill_constants
-from stickslip.batch.vectorised_problem import Values, many, member, shared
+from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
@@ -85,7 +85,7 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     `group` is what the members share, if that is known already.
     """
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
-    problem = many(scenario, values)
+    problem = vectorised_problem(scenario, values)
     duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
     last_row, last_theta = split_times(duration, spread(par.row_time, count))
     constants, law = formulas(problem, group)

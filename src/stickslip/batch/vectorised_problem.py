@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
-from stickslip.foundation.quantities import LARGEST, SMALLEST, Quantity, quantities_of
+from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
 from stickslip.run.run_loop import MOST_ROUND_TRIPS, check_round_trips
 from stickslip.scenarios.scenario import Scenario
@@ -91,12 +91,16 @@ def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
     return made
 
 
-def many(scenario: Scenario, values: Values) -> Problem:
+def with_values(problem: Problem, numbers: Numbers) -> Problem:
+    """Return the problem with other numbers, which may be arrays; what follows from them is neither checked nor calculated."""
+    parts = {"body": with_numbers(problem.body, numbers.body), "friction": with_numbers(problem.friction, numbers.friction)}
+    return with_numbers(problem, parts | numbers.problem)
+
+
+def vectorised_problem(scenario: Scenario, values: Values) -> Problem:
     """Return the problem with arrays for the numbers that vary, and with `strength` and `excess` calculated from them."""
-    numbers = Numbers.of(values)
-    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
-    problem = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem)
-    home = int(pieces_at_start(problem).flat[0])
+    problem = with_values(scenario.problem, Numbers.of(values))
+    law, home = problem.friction, int(pieces_at_start(problem).flat[0])
     static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
     strength = problem.normal * static
     return with_numbers(problem, {"strength": strength, "excess": excess_of(problem, strength)})
@@ -130,16 +134,6 @@ def pieces_at_start(problem: Problem) -> Places:
 # ---- valid members and their groups -----------------------------------------------------------------------------------------
 
 
-def allowed(declared: Quantity, value: Floats) -> Booleans:
-    """Return True for the values that a quantity allows, as `Quantity.check` does for one value."""
-    fine = ~np.isnan(value) if declared.infinite else np.abs(value) <= LARGEST
-    if declared.above is not None:
-        fine &= (value > declared.above) & (value >= declared.above + SMALLEST)
-    if declared.at_least is not None:
-        fine &= value >= declared.at_least
-    return fine
-
-
 def are_fine(scenario: Scenario, values: Values) -> Booleans:
     """Return True for the members whose parameters are valid: bodies, laws, problems and scenarios check the same for one."""
     numbers = Numbers.of(values)
@@ -147,19 +141,19 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     for key, value in values.items():
         declared = declared_at(scenario, key)
         assert declared is not None
-        fine &= allowed(declared, value)
-    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
+        fine &= declared.allows(value)
+    problem = with_values(scenario.problem, numbers)
+    body, law = problem.body, problem.friction
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
     fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
     with np.errstate(all="ignore"):  # members that are refused already may overflow or divide by zero
-        row = with_numbers(scenario.problem, {"body": body, "friction": law} | numbers.problem).round_trip_time
-        fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= MOST_ROUND_TRIPS * np.asarray(row)
+        longest = MOST_ROUND_TRIPS * np.asarray(problem.round_trip_time)
+        fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= longest
     if isinstance(body, ElasticSlab):
         if body.p_wave_speed is not None:
             fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
         if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
             fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
-        problem = with_numbers(scenario.problem, numbers.problem)
         pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
         fine &= ~(pushed & np.isinf(body.driver_impedance))
     return fine
@@ -177,14 +171,13 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     The kind encodes what the members of a group have in common: whether their drivers are rigid, whether their contacts have mass,
     and the piece of the law in which they start.
     """
-    numbers, count = Numbers.of(values), len(next(iter(values.values())))
-    body, law = with_numbers(scenario.problem.body, numbers.body), with_numbers(scenario.problem.friction, numbers.friction)
-    start = pieces_at_start(with_numbers(scenario.problem, {"friction": law} | numbers.problem))
-    kind = np.broadcast_to(4 * start, (count,)).copy()
+    problem, count = with_values(scenario.problem, Numbers.of(values)), len(next(iter(values.values())))
+    kind = np.broadcast_to(4 * pieces_at_start(problem), (count,)).copy()
+    body = problem.body
     if isinstance(body, ElasticSlab):
         rigid = driven_rigidly(body)
         kind += 2 * rigid + (np.asarray(body.contact_mass) > 0.0)
-        if "driver_impedance" in numbers.body:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
+        if "body.driver_impedance" in values:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
             values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)

@@ -41,7 +41,7 @@ class Workspace(NamedTuple):
 
     @property
     def capacity(self) -> int:
-        """Return the number of pieces of history for which each lane has room."""
+        """The number of pieces of history for which each lane has room."""
         return self.store.pieces.shape[1]
 
     def ready_for(self, constants: int) -> Workspace:

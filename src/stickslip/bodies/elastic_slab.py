@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_quantities, quantity
+from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class ElasticSlab:
     )
 
     def __post_init__(self) -> None:
-        check_quantities(self)
+        check_fields(self)
         if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
             limit = self.wave_speed * math.sqrt(4 / 3)
             raise InputError(

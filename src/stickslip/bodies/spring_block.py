@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.foundation.quantities import check_quantities, quantity
+from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class SpringBlock:
     damping: float = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
-        check_quantities(self)
+        check_fields(self)
 
     @property
     def period(self) -> float:

@@ -67,10 +67,10 @@ def complete_vary(context: Context, incomplete: str) -> list[str]:
     """Return the keys that a sweep can vary in the scenario on the command line, as far as they begin with what is typed."""
     from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
-    from stickslip.sweeps.design.parameter_paths import keys_of
+    from stickslip.sweeps.design.parameter_paths import parameter_paths
 
     try:
-        found = keys_of(load_scenario(context.params["scenario"]))
-        return [f"{key.name}=" for key in found if key.name.startswith(incomplete)]
+        found = parameter_paths(load_scenario(context.params["scenario"]))
+        return [f"{one.name}=" for one in found if one.name.startswith(incomplete)]
     except (InputError, KeyError, TypeError):
         return []

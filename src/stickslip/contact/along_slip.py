@@ -14,9 +14,8 @@ import numpy as np
 
 from stickslip.contact.critical import Regime, margin
 from stickslip.contact.roots import sign_change
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction import FrictionLaw
-from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
 from stickslip.problem.problem import Problem
 
 _POINTS = 65

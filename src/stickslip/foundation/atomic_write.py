@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
+from typing_extensions import override
+
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -111,19 +113,52 @@ def sync_folder(folder: Path) -> None:
             os.close(number)
 
 
-def _locked(path: Path) -> int | None:
-    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported."""
+@contextmanager
+def held(path: Path, refusal: str) -> Iterator[None]:
+    """Reserve a folder, or the name of a file that need not exist yet, against other processes.
+
+    A folder is locked itself. For a file the lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating
+    system releases the lock when the process ends, however it ends. Raises InputError with the text `refusal` if another process
+    holds the name. If the file system does not support locks, nothing is reserved.
+    """
+    beside = None if path.is_dir() else path.with_name(f".{path.name}.lock")
+    number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    try:
+        yield
+    finally:
+        if beside is not None and number is not None:
+            beside.unlink(missing_ok=True)
+        _close(number)
+
+
+def _locked(path: Path, refusal: str = "", flags: int = os.O_RDONLY) -> int | None:
+    """Lock a file or folder and return its descriptor; return None if another process holds it or locks are not supported.
+
+    Raises InputError with the text `refusal`, if there is one, in place of returning None if another process holds it.
+    """
     try:
         import fcntl
     except ImportError:  # Windows
         return None
-    number = os.open(path, os.O_RDONLY)
+    number = os.open(path, flags, 0o666)
     try:
         fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
+    except OSError as error:
         os.close(number)
+        if refusal and isinstance(error, BlockingIOError):
+            raise InputError(refusal) from None
         return None
     return number
+
+
+def _locked_beside(lock: Path, refusal: str) -> int | None:
+    """Create and lock a file of this name, which another process may be about to remove. Returns and raises as `_locked` does."""
+    while True:
+        number = _locked(lock, refusal, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0))
+        with suppress(FileNotFoundError):
+            if number is None or os.path.samestat(os.fstat(number), lock.stat()):
+                return number
+        _close(number)  # the file was removed in between, so no other process would ever see this lock: try again
 
 
 def _close(number: int | None) -> None:
@@ -131,112 +166,54 @@ def _close(number: int | None) -> None:
         os.close(number)
 
 
-@contextmanager
-def held(path: Path, refusal: str) -> Iterator[None]:
-    """Reserve a file name against other processes, even if the file does not exist yet.
-
-    The lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating system releases the lock when the
-    process ends, however it ends. Raises InputError with the text `refusal` if another process holds the name. If the file system
-    does not support locks, nothing is reserved.
-    """
-    lock = path.with_name(f".{path.name}.lock")
-    number = _lock_of(lock, refusal)
-    try:
-        yield
-    finally:
-        if number is not None:
-            lock.unlink(missing_ok=True)
-            os.close(number)
-
-
-def _lock_of(lock: Path, refusal: str) -> int | None:
-    """Lock the file of this name, which another process may be about to remove, and return its descriptor.
-
-    Returns None if locks are not supported. Raises InputError with the text `refusal` if another process holds the lock.
-    """
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return None
-    while True:
-        number = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
-        try:
-            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            with suppress(FileNotFoundError):
-                if os.path.samestat(os.fstat(number), lock.stat()):
-                    return number
-            os.close(number)  # the file was removed in between, so no other process would ever see this lock: try again
-        except BlockingIOError:
-            os.close(number)
-            raise InputError(refusal) from None
-        except OSError:  # a file system without locks
-            os.close(number)
-            return None
-
-
-class Sink(io.RawIOBase):
+class Sink(io.FileIO):
     """A binary file for libraries that crash if a write fails: it stores the first error and reports success.
 
     Bytes that could not be written read back as zeros. Call `check` after the library has closed its file.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("w+b", buffering=0)
-        self._end, self._place = 0, 0
+        super().__init__(path, "w+b")
+        self._end = 0
         self.error: OSError | None = None
 
-    def readable(self) -> bool:
-        return True
-
-    def writable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
+    @override
     def seek(self, offset: int, whence: int = os.SEEK_SET, /) -> int:
-        self._place = offset + (0, self._place, self._end)[whence]
-        return self._place
+        if whence == os.SEEK_END:  # the apparent end: the file itself may be shorter
+            return super().seek(self._end + offset)
+        return super().seek(offset, whence)
 
-    def tell(self) -> int:
-        return self._place
-
+    @override
     def write(self, data: Any, /) -> int:
         """Write all bytes, or store the error; return the full length in both cases."""
-        view = memoryview(data).cast("B")
-        done = 0
+        view, place, done = memoryview(data).cast("B"), self.tell(), 0
         try:
             while done < len(view) and self.error is None:
-                self._file.seek(self._place + done)
-                done += self._file.write(view[done:])
+                done += super().write(view[done:])
         except OSError as error:
             self.error = error
-        self._place += len(view)
-        self._end = max(self._end, self._place)
+        self._end = max(self._end, super().seek(place + len(view)))
         return len(view)
 
+    @override
     def readinto(self, buffer: Any, /) -> int:
         """Read bytes up to the apparent end of the file; those whose write failed are zeros."""
-        view = memoryview(buffer).cast("B")
-        wanted = max(min(len(view), self._end - self._place), 0)
-        self._file.seek(self._place)
-        found = self._file.readinto(view[:wanted])
+        view, place = memoryview(buffer).cast("B"), self.tell()
+        wanted = max(min(len(view), self._end - place), 0)
+        found = super().readinto(view[:wanted]) or 0
         view[found:wanted] = bytes(wanted - found)
-        self._place += wanted
+        super().seek(place + wanted)
         return wanted
 
+    @override
     def truncate(self, size: int | None = None, /) -> int:
-        self._end = self._place if size is None else size
+        self._end = self.tell() if size is None else size
         if self.error is None:
             try:
-                self._file.truncate(self._end)
+                super().truncate(self._end)
             except OSError as error:
                 self.error = error
         return self._end
-
-    def close(self) -> None:
-        self._file.close()
-        super().close()
 
     def check(self) -> None:
         """Raise the first error that was stored, if there is one."""

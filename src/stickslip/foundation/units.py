@@ -39,23 +39,32 @@ def si_factor(unit: str, si: str) -> Fraction:
     Raises InputError for an unknown unit and for a unit of another dimension; the message is meant to follow the place of the
     fault.
     """
+    factor, dimensionality = _read_unit(unit, f"; write it like {si}")
+    target, wanted = _read_unit(si)
+    if dimensionality != wanted:
+        raise InputError(f"'{unit}' does not convert to {si}")
+    return factor / target
+
+
+def _read_unit(unit: str, hint: str = "") -> tuple[Fraction, dict[str, Any]]:
+    """Return the factor of a unit to SI base units and its powers of dimensions, by name.
+
+    Raises InputError for a unit that is unknown, and for one that cannot be read, with `hint` at the end of the message.
+    """
     import pint
 
     registry = _registry()
     try:
-        parsed = registry.parse_units(_with_one(unit))
-        target = registry.parse_units(si)
-        factor = registry.get_root_units(parsed)[0]
-        same = parsed.dimensionality == target.dimensionality
+        parsed = registry.parse_units(f"1{unit}" if unit.startswith("/") else unit)  # the parser understands 1/ m, but not / m
+        return Fraction(registry.get_root_units(parsed)[0]), dict(parsed.dimensionality)
     except pint.UndefinedUnitError as error:
         # pint looks up decibels and the like as "delta_decibel", which it does not know: no factor converts them to SI units
         name = str(error.args[0]).removeprefix("delta_")
-        raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
+        known = nearest(name, COMMON_UNITS)
+        examples = known if known.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
+        raise InputError(f"'{name}' is not a unit; {examples}") from None
     except pint.PintError:
-        raise InputError(f"'{unit}' is not a unit; write it like {si}") from None
-    if not same:
-        raise InputError(f"'{unit}' does not convert to {si}")
-    return Fraction(factor) / Fraction(registry.get_root_units(target)[0])
+        raise InputError(f"'{unit}' is not a unit{hint}") from None
 
 
 def to_si(number: float, unit: str, si: str) -> float:
@@ -75,36 +84,17 @@ def si_base(text: str) -> tuple[float, str]:
 
     Raises InputError for a text that is not a number with a unit made of whole powers of m, kg and s.
     """
-    import pint
-
     parts = split_quantity(text)
     if parts is None:
         raise InputError(
             f"{ascii(text)[:60]} is not a number with a unit" + (f" up to {LONGEST} characters" * (len(text) > LONGEST))
         )
-    registry = _registry()
-    try:
-        powers = dict(registry.parse_units(_with_one(parts[1])).dimensionality)
-    except pint.UndefinedUnitError as error:
-        name = str(error.args[0]).removeprefix("delta_")
-        raise InputError(f"'{name}' is not a unit; {_unit_hint(name)}") from None
-    except pint.PintError:
-        raise InputError(f"'{parts[1]}' is not a unit") from None
+    _, powers = _read_unit(parts[1])
     if not set(powers) <= set(_BASE) or any(power != int(power) or abs(power) > 9 for power in powers.values()):
         raise InputError(f"'{parts[1]}' is not made of whole powers of m, kg and s")
     named = sorted((_BASE[base], int(power)) for base, power in powers.items())
     si = " ".join(name if power == 1 else f"{name}^{power}" for name, power in named)
     return to_si(*parts, si), si
-
-
-def _with_one(unit: str) -> str:
-    """Return a unit that begins with a slash, such as "/ m", as "1/ m", which the unit parser understands."""
-    return f"1{unit}" if unit.startswith("/") else unit
-
-
-def _unit_hint(name: str) -> str:
-    hint = nearest(name, COMMON_UNITS)
-    return hint if hint.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
 
 
 @cache

@@ -1,12 +1,12 @@
 """Export the friction laws of the contact.
 
-The laws of the registry are exported under the names of their classes. `FromExpression`, `FromFunction` and `FromTable` make
-laws from formulas, functions and measured points of users.
+To add a law, add one file to `laws` (docs/adding-a-law.md), and here its import, its place in `LAWS` and its name in `__all__`.
+`FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users.
 """
 
-from stickslip.friction.custom.from_expression import ExpressionLaw, FromExpression
+from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
-from stickslip.friction.custom.table import FromTable, TableLaw
+from stickslip.friction.custom.table import FromTable
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.coulomb import Coulomb
 from stickslip.friction.laws.exponential_cohesive_zone import ExponentialCohesiveZone
@@ -24,30 +24,33 @@ from stickslip.friction.laws.sinusoidal_slip import SinusoidalSlip
 from stickslip.friction.laws.slip_plus_rate import SlipPlusRate
 from stickslip.friction.laws.slip_times_rate import SlipTimesRate
 from stickslip.friction.laws.velocity_strengthening import VelocityStrengthening
-from stickslip.friction.registry import LAWS
 
-__all__ = [
-    "LAWS",
-    "Coulomb",
-    "ExponentialCohesiveZone",
-    "ExponentialSlipWeakening",
-    "ExponentialStribeck",
-    "ExpressionLaw",
-    "FrictionLaw",
-    "FromExpression",
-    "FromFunction",
-    "FromTable",
-    "HyperbolicRate",
-    "LaggedFriction",
-    "LinearSlipWeakening",
-    "ParabolicSlipWeakening",
-    "PiecewiseLinearRate",
-    "PiecewiseLinearSlip",
-    "PowerStribeck",
-    "RateAndState",
-    "SinusoidalSlip",
-    "SlipPlusRate",
-    "SlipTimesRate",
-    "TableLaw",
-    "VelocityStrengthening",
-]
+LAWS: dict[str, type[FrictionLaw]] = {
+    law.kind: law
+    for law in (
+        SinusoidalSlip,
+        HyperbolicRate,
+        Coulomb,
+        LinearSlipWeakening,
+        ExponentialSlipWeakening,
+        ParabolicSlipWeakening,
+        ExponentialCohesiveZone,
+        PiecewiseLinearSlip,
+        ExponentialStribeck,
+        PowerStribeck,
+        PiecewiseLinearRate,
+        VelocityStrengthening,
+        RateAndState,
+        LaggedFriction,
+        SlipPlusRate,
+        SlipTimesRate,
+        FromExpression,
+        FromTable,
+    )
+}
+"""Every friction law by its name in scenario files."""
+
+__all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
+__all__ += ["Coulomb", "HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
+__all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
+__all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerStribeck", "SinusoidalSlip", "SlipPlusRate", "SlipTimesRate"]

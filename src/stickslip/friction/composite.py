@@ -1,4 +1,4 @@
-"""Join two laws, one of slip and one of slip rate, into one."""
+"""Define laws that are made of other laws."""
 
 from __future__ import annotations
 
@@ -8,19 +8,58 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, Literal
 
-from stickslip.foundation.errors import InputError
-from stickslip.friction.law import Formula, FrictionLaw
-from stickslip.friction.parameters import Part, declare
+from typing_extensions import override
 
-PREFIXES = ("slip_", "rate_")
-"""Prefixes of the parameters of the slip law and of the rate law, so that names of the two cannot collide."""
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Part, declare, fields_of, quantities_of
+from stickslip.friction.contract import Formula
+from stickslip.friction.law import FrictionLaw
 
 
 @dataclass(frozen=True)
-class CompositeLaw(FrictionLaw):
+class LawOfParts(FrictionLaw):
+    """A law with other laws as parts, at most one of which has knots.
+
+    The formulas know a parameter of a part by the name of its field and its own name, such as "rate_alpha", so that names of two
+    parts cannot collide.
+    """
+
+    @property
+    def parts(self) -> dict[str, FrictionLaw]:
+        """The parts by the name of their field."""
+        return {name: getattr(self, name) for name, (declared, _) in fields_of(type(self)).items() if isinstance(declared, Part)}
+
+    @override
+    def parameters(self) -> tuple[str, ...]:
+        of_parts = (f"{place}_{name}" for place, part in self.parts.items() for name in part.parameters())
+        return (*of_parts, *quantities_of(type(self)))
+
+    @override
+    def piece_values(self, i: int) -> tuple[float, ...]:
+        of_parts = (value for part in self.parts.values() for value in part.piece_values(i if part.knots else 0))
+        return (*of_parts, *(float(getattr(self, name)) for name in quantities_of(type(self))))
+
+    @override
+    def literals(self) -> dict[str, float]:
+        return {f"{place}_{name}": value for place, part in self.parts.items() for name, value in part.literals().items()}
+
+
+class PartNumbers:
+    """Give the formula of a part access to its parameters, which the whole law knows under longer names."""
+
+    def __init__(self, law: SimpleNamespace, place: str) -> None:
+        self._law, self._place = law, place
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._law, f"{self._place}_{name}")
+
+
+@dataclass(frozen=True)
+class CompositeLaw(LawOfParts):
     """A law whose friction coefficient combines the values of a slip law and a rate law.
 
-    It counts and remembers slip as its slip law does. At most one of the two parts may have knots.
+    It counts and remembers slip as its slip law does. The slip law depends on slip only, the rate law on slip rate only; neither
+    has a state, and at most one of them has knots.
     """
 
     slip: FrictionLaw = declare(Part("a law of slip"))  # noqa: RUF009 - makes a dataclass field
@@ -31,14 +70,10 @@ class CompositeLaw(FrictionLaw):
     def join(slip: Any, rate: Any) -> Any:
         """Return the friction coefficient from the values of the two parts, which are numbers or expressions."""
 
-    @property
-    def parts(self) -> tuple[FrictionLaw, FrictionLaw]:
-        """Return the slip law and the rate law."""
-        return self.slip, self.rate
-
+    @override
     def check(self) -> None:
         name = type(self).__name__
-        for part, place in zip(self.parts, ("slip", "rate"), strict=True):
+        for place, part in self.parts.items():
             if not isinstance(part, FrictionLaw):
                 raise InputError(f"{name}: {place} must be a friction law, got {type(part).__name__}")
             if part.state is not None:
@@ -50,55 +85,40 @@ class CompositeLaw(FrictionLaw):
             raise InputError(f"{name}: only one part may be piecewise, but {self.slip.kind} and {self.rate.kind} both are")
 
     @property
+    @override
     def counts(self) -> Literal["net", "path"]:  # type: ignore[override] # follows the slip law
         return self.slip.counts
 
     @property
+    @override
     def memory(self) -> Literal["all", "since-arrest"]:  # type: ignore[override] # follows the slip law
         return self.slip.memory
 
     @property
+    @override
     def knot_variable(self) -> Literal["slip", "rate"]:  # type: ignore[override] # follows the part with knots
         return (self.rate if self.rate.knots else self.slip).knot_variable
 
     @property
+    @override
     def knots(self) -> tuple[float, ...]:
         return self.slip.knots or self.rate.knots
 
     @property
+    @override
     def pieces(self) -> tuple[Formula, ...]:
         pairs = [(a, b) for a in self.slip.pieces for b in self.rate.pieces]
         made = {pair: _joined(self.join, *pair) for pair in dict.fromkeys(pairs)}
         return tuple(made[pair] for pair in pairs)
 
-    def parameters(self) -> tuple[str, ...]:
-        return tuple(prefix + name for prefix, part in zip(PREFIXES, self.parts, strict=True) for name in part.parameters())
-
-    def piece_values(self, i: int) -> tuple[float, ...]:
-        return sum((part.piece_values(i if part.knots else 0) for part in self.parts), ())
-
-    def literals(self) -> dict[str, float]:
-        laws = zip(PREFIXES, self.parts, strict=True)
-        return {prefix + name: value for prefix, part in laws for name, value in part.literals().items()}
-
     @property
+    @override
     def rate_scales(self) -> tuple[float, ...]:
         return self.rate.rate_scales
 
 
-class Prefixed:
-    """Give a part's formula access to its own parameters, which the whole law stores under prefixed names."""
-
-    def __init__(self, law: SimpleNamespace, prefix: str) -> None:
-        self._law, self._prefix = law, prefix
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._law, self._prefix + name)
-
-
 def _joined(join: Callable[[Any, Any], Any], slip: Formula, rate: Formula) -> Formula:
     def formula(law: Any, u: Any, v: Any) -> Any:
-        first, second = (Prefixed(law, prefix) for prefix in PREFIXES)
-        return join(slip(first, u, v), rate(second, u, v))
+        return join(slip(PartNumbers(law, "slip"), u, v), rate(PartNumbers(law, "rate"), u, v))
 
     return formula

@@ -3,52 +3,52 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.law import Formula, FrictionLaw
+from stickslip.friction.contract import Formula
+from stickslip.friction.law import FrictionLaw
 
 
-def along_slip(law: Any, u: Any, v: Any) -> Any:
-    """Return a cubic in slip, counted from the start of the piece."""
-    step = u - law.start
+def _line(law: Any, step: Any) -> Any:
+    """Return a linear function of the way from the start of the piece."""
+    return law.value + law.first * step
+
+
+def _cubic(law: Any, step: Any) -> Any:
+    """Return a cubic function of the way from the start of the piece."""
     return law.value + step * (law.first + step * (law.second + step * law.third))
 
 
-def along_rate(law: Any, u: Any, v: Any) -> Any:
-    """Return a cubic in slip rate, counted from the start of the piece."""
-    step = v - law.start
-    return law.value + step * (law.first + step * (law.second + step * law.third))
-
-
-def line_along_slip(law: Any, u: Any, v: Any) -> Any:
-    """Return a linear function of slip, counted from the start of the piece."""
-    return law.value + law.first * (u - law.start)
-
-
-def line_along_rate(law: Any, u: Any, v: Any) -> Any:
-    """Return a linear function of slip rate, counted from the start of the piece."""
-    return law.value + law.first * (v - law.start)
+_LINE, _CUBIC = ("start", "value", "first"), ("start", "value", "first", "second", "third")
+"""Parameters of the formulas: where the piece starts, and the coefficients in ascending order."""
+_FORMULAS: dict[tuple[tuple[str, ...], str], Formula] = {
+    (_LINE, "slip"): lambda law, u, v: _line(law, u - law.start),
+    (_LINE, "rate"): lambda law, u, v: _line(law, v - law.start),
+    (_CUBIC, "slip"): lambda law, u, v: _cubic(law, u - law.start),
+    (_CUBIC, "rate"): lambda law, u, v: _cubic(law, v - law.start),
+}
+"""Formula of a piece by its parameters and its variable."""
 
 
 @dataclass(frozen=True)
 class PiecewiseLaw(FrictionLaw):
     """A law given by points; all its pieces share one formula, each with its own `start` and its own coefficients."""
 
-    @property
-    @abstractmethod
-    def points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the ascending slips (m) or slip rates (m/s) of the points, and the friction coefficients there."""
+    coefficient_names: ClassVar[tuple[str, ...]] = _CUBIC
+    """Parameters of the formula of every piece."""
 
     @property
     @abstractmethod
-    def shape(self) -> tuple[Formula, tuple[str, ...]]:
-        """Return the formula of every piece and the names of its parameters: `start`, then coefficients in ascending order."""
+    def points(self) -> tuple[Sequence[float], Sequence[float]]:
+        """The ascending slips (m) or slip rates (m/s) of the points, and the friction coefficients there."""
 
     @abstractmethod
     def polynomials(self) -> NDArray[np.float64]:
@@ -57,6 +57,7 @@ class PiecewiseLaw(FrictionLaw):
         The variable of the polynomial is the distance from the lower end of the interval.
         """
 
+    @override
     def check(self) -> None:
         places, values = self.points
         if len(places) != len(values):
@@ -64,12 +65,12 @@ class PiecewiseLaw(FrictionLaw):
 
     @property
     def _before(self) -> bool:
-        """Return True if a piece is needed below the first point: net slip may be negative, path and slip rate may not."""
+        """True if a piece is needed below the first point: net slip may be negative, path and slip rate may not."""
         return self.points[0][0] > 0.0 or (self.counts == "net" and self.knot_variable == "slip")
 
     @cached_property
     def rows(self) -> NDArray[np.float64]:
-        """Return the values of the parameters, one row for each piece."""
+        """The values of the parameters, one row for each piece."""
         places, values = (np.array(one) for one in self.points)
         rows = np.zeros((len(places), len(self.parameters())))
         rows[:, 0], rows[:, 1] = places, values
@@ -81,27 +82,36 @@ class PiecewiseLaw(FrictionLaw):
         return rows
 
     @property
+    @override
     def pieces(self) -> tuple[Formula, ...]:
-        return (self.shape[0],) * len(self.rows)
+        return (_FORMULAS[self.coefficient_names, self.knot_variable],) * len(self.rows)
 
     @property
+    @override
     def knots(self) -> tuple[float, ...]:
-        return self.points[0] if self._before else self.points[0][1:]
+        return tuple(self.points[0] if self._before else self.points[0][1:])
 
+    @override
     def parameters(self) -> tuple[str, ...]:
-        return self.shape[1]
+        return self.coefficient_names
 
-    def literals(self) -> dict[str, float]:
-        return {}
-
+    @override
     def piece_values(self, i: int) -> tuple[float, ...]:
         return tuple(self.rows[i].tolist())
 
+    @override
     def range(self) -> tuple[float, float]:
         values = self.points[1]
         return min(values), max(values)
 
 
-def lines(places: tuple[float, ...], values: tuple[float, ...]) -> NDArray[np.float64]:
-    """Return the value at the lower end, and the slope, of the straight line between each two neighbouring points."""
-    return np.column_stack((values[:-1], np.diff(values) / np.diff(places)))
+@dataclass(frozen=True)
+class PiecewiseLinearLaw(PiecewiseLaw):
+    """A law that runs straight from point to point."""
+
+    coefficient_names = _LINE
+
+    @override
+    def polynomials(self) -> NDArray[np.float64]:
+        places, values = self.points
+        return np.column_stack((values[:-1], np.diff(values) / np.diff(places)))

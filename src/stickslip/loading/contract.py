@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.parameters import check_fields
+from stickslip.foundation.quantities import check_fields, document_fields
 
 VARYING = "m/s or Pa"
 """Unit of the varying quantity: m/s for a pull rate, Pa for a far stress."""
@@ -66,20 +66,23 @@ SILENT = Tone(0.0, 1.0, 0.0)
 class LoadingHistory(ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
-    Subclass this to add a history.
-
-    Notes
-    -----
     Before the start of the run the value equals that at the start. A run meets the breaking points of the history exactly.
 
-    A subclass is a frozen dataclass with a `kind`. To be usable in scenario files and saved runs it also declares its fields with
-    `quantity` or `declare`, has an `example`, and is listed in HISTORIES.
+    Subclass this to add a history. A subclass is a frozen dataclass with a `kind`. To be usable in scenario files and saved runs it
+    also declares its fields with `quantity` or `declare`, has an `example`, and is listed in HISTORIES. Its fields and its `source`
+    are added to its docstring.
     """
 
     kind: ClassVar[str]
     """Name of the history in scenario files and in HISTORIES."""
     example: ClassVar[dict[str, Any]]
     """Plausible values of the fields, in the form of a scenario file."""
+    source: ClassVar[str] = ""
+    """Paper from which the history is taken, if there is one."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        document_fields(cls, vars(cls).get("source", ""))
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -87,22 +90,15 @@ class LoadingHistory(ABC):
     @property
     @abstractmethod
     def segments(self) -> tuple[Segment, ...]:
-        """Return the straight parts in ascending order of time; the first begins at 0 s."""
+        """The straight parts in ascending order of time; the first begins at 0 s."""
 
     @property
     def tone(self) -> Tone:
-        """Return the sinusoid that is added to the segments; by default its amplitude is 0."""
+        """The sinusoid that is added to the segments; by default its amplitude is 0."""
         return SILENT
 
     def check(self) -> None:
-        """Raise InputError if a run cannot follow this history; only a subclass written by a user can fail.
-
-        Raises
-        ------
-        InputError
-            If the class is not a frozen dataclass with a `kind`, the segments do not begin at 0 s and ascend, a number is not
-            finite, or the frequency of the tone is not positive.
-        """
+        """Raise InputError if a run cannot follow this history; only a subclass written by a user can fail."""
         name, starts = type(self).__name__, [one.start for one in self.segments]
         if not is_dataclass(self) or type(self).__hash__ is None or not hasattr(self, "kind"):
             raise InputError(f"{name}: a loading history must be a frozen dataclass with a kind")
@@ -117,7 +113,7 @@ class LoadingHistory(ABC):
 
     @property
     def first(self) -> float:
-        """Return the value (m/s or Pa) at 0 s."""
+        """The value (m/s or Pa) at 0 s."""
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:

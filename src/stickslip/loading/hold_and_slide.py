@@ -1,44 +1,30 @@
 """Define slides with holds between them, as in laboratory slide-hold-slide tests of how friction heals."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from stickslip.foundation.quantities import Quantity, quantity
-from stickslip.friction.parameters import Series, declare
+from typing_extensions import override
+
+from stickslip.foundation.quantities import Quantity, Series, declare, quantity
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
 
 @dataclass(frozen=True)
 class HoldAndSlide(LoadingHistory):
-    """Slides of one duration at one value, with holds of given durations between them; the last slide lasts for ever.
+    """Slides of one duration at one value, with holds of given durations between them; the last slide lasts for ever."""
 
-    Parameters
-    ----------
-    slide
-        Value during a slide (m/s or Pa).
-    slide_time
-        Duration of the slide before each hold (s).
-    hold_times
-        Durations of the holds (s), shape (n,) with n >= 1.
-    hold
-        Value during a hold (m/s or Pa).
-
-    Notes
-    -----
-    Source: Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests).
-    """
-
-    kind: ClassVar[str] = "hold-and-slide"
-    example: ClassVar[dict[str, Any]] = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
+    kind = "hold-and-slide"
+    source = "Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests)"
+    example: ClassVar = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
 
     slide: float = quantity(VARYING, "value during a slide")
     slide_time: float = quantity("s", "duration of the slide before each hold", above=0)
-    hold_times: tuple[float, ...] = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
+    hold_times: Sequence[float] = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
     hold: float = quantity(VARYING, "value during a hold", default=0.0)
 
     @property
+    @override
     def segments(self) -> tuple[Segment, ...]:
         time, found = 0.0, [Segment(0.0, self.slide, 0.0)]
         for lasting in self.hold_times:

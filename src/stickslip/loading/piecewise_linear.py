@@ -1,47 +1,35 @@
 """Define a loading history that is linear between given points: ramps, and measured histories."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import ClassVar
+
+from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity
-from stickslip.friction.parameters import Series, declare
+from stickslip.foundation.quantities import Quantity, Series, declare
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
 
 @dataclass(frozen=True)
 class PiecewiseLinear(LoadingHistory):
-    """A straight line from point to point, constant before the first point and after the last.
+    """A straight line from point to point, constant before the first point and after the last."""
 
-    Parameters
-    ----------
-    times
-        Times of the points (s since the start of the run), not negative, ascending, shape (n,) with n >= 2.
-    values
-        Values at these times (m/s or Pa), shape (n,).
+    kind = "piecewise-linear"
+    example: ClassVar = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
+    columns: ClassVar = {"time": "times", "value": "values"}
 
-    Raises
-    ------
-    InputError
-        If the numbers of times and values differ, or the times do not ascend.
-    """
-
-    kind: ClassVar[str] = "piecewise-linear"
-    example: ClassVar[dict[str, Any]] = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
-    columns: ClassVar[dict[str, str]] = {"time": "times", "value": "values"}
-
-    times: tuple[float, ...] = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
-    values: tuple[float, ...] = declare(Series(Quantity(VARYING, "values at these times")))
+    times: Sequence[float] = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
+    values: Sequence[float] = declare(Series(Quantity(VARYING, "values at these times")))
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if len(self.times) != len(self.values):
-            raise InputError(f"PiecewiseLinear: {len(self.times)} times but {len(self.values)} values")
+            raise InputError(f"{type(self).__name__}: {len(self.times)} times but {len(self.values)} values")
 
     @property
+    @override
     def segments(self) -> tuple[Segment, ...]:
         points = list(zip(self.times, self.values, strict=True))
         straight = [Segment(t, v, (later - v) / (end - t)) for (t, v), (end, later) in pairwise(points)]

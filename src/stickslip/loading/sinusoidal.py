@@ -1,10 +1,10 @@
 """Define a sinusoidal loading history, for tides, pressure cycles and dynamic triggering."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
+
+from typing_extensions import override
 
 from stickslip.foundation.quantities import quantity
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
@@ -12,22 +12,10 @@ from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
 
 @dataclass(frozen=True)
 class Sinusoidal(LoadingHistory):
-    """mean + amplitude sin(2 pi t / period + phase).
+    """mean + amplitude sin(2 pi t / period + phase)."""
 
-    Parameters
-    ----------
-    mean
-        Mean value (m/s or Pa).
-    amplitude
-        Amplitude of the oscillation (m/s or Pa).
-    period
-        Period of the oscillation (s).
-    phase
-        Phase of the oscillation at the start of the run (rad).
-    """
-
-    kind: ClassVar[str] = "sinusoidal"
-    example: ClassVar[dict[str, Any]] = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}
+    kind = "sinusoidal"
+    example: ClassVar = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}
 
     mean: float = quantity(VARYING, "mean value")
     amplitude: float = quantity(VARYING, "amplitude of the oscillation")
@@ -35,9 +23,11 @@ class Sinusoidal(LoadingHistory):
     phase: float = quantity("rad", "phase of the oscillation at the start", default=0.0)
 
     @property
+    @override
     def segments(self) -> tuple[Segment, ...]:
         return (Segment(0.0, self.mean, 0.0),)
 
     @property
+    @override
     def tone(self) -> Tone:
         return Tone(self.amplitude, 2.0 * math.pi / self.period, self.phase)

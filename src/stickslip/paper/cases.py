@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import stickslip as ss
 from stickslip.problem.problem import Problem
 from stickslip.scenarios import load_scenario
 from stickslip.solution.solution import Solution
+
+T = TypeVar("T")
 
 READINGS = {
     "fig4-loop": "our run: dead load",
@@ -34,6 +38,12 @@ REFERENCE = "Campillo, Ionescu, Paumier & Renard (1996), Phys. Earth Planet. Int
 def problem(name: str) -> Problem:
     """Return the problem of a bundled case."""
     return load_scenario(name).problem
+
+
+def typed(value: object, kind: type[T]) -> T:
+    """Return a law of a case, which is known to be of this type."""
+    assert isinstance(value, kind)
+    return value
 
 
 class Runs:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import stickslip as ss
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.paper.cases import REFERENCE, Runs
 from stickslip.paper.claims import CLAIMS, STATEMENTS, Verdict
-from stickslip.paper.files import image, save_bytes, save_data, save_table, save_text
-from stickslip.paper.tables import all_tables
 
 if TYPE_CHECKING:
     from stickslip.paper.plates import Plate
@@ -44,47 +44,43 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
     -----
     The same version writes the same files, byte for byte. A file is either whole or not there.
     """
-    say = progress or (lambda _: None)
-    folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
-    runs = Runs(rtol)
-    images = make_figures(folder, runs, say)
-    verdicts = measure_claims(runs, say)
-    say("tables")
-    for name, table in all_tables(runs, verdicts).items():
-        save_table(folder / f"{name}.csv", table)
-    say("report")
-    from stickslip.paper.report import report
-
-    return save_text(folder / "report.html", report(runs, images, verdicts))
-
-
-def make_figures(folder: Path, runs: Runs, say: Callable[[str], object]) -> dict[int, bytes]:
-    """Write each figure as netCDF, PNG and SVG, and return the SVG files' bytes by the number of the figure."""
     from stickslip.paper.plates import PLATES
+    from stickslip.paper.report import report
+    from stickslip.paper.tables import all_tables
 
+    say = progress or (lambda _: None)
+    folder, runs = Path(out), Runs(rtol)
+    folder.mkdir(parents=True, exist_ok=True)
     images: dict[int, bytes] = {}
     for plate in PLATES:
         say(f"figure {plate.number} of {len(PLATES)}: {plate.title}")
-        images[plate.number] = _make_figure(folder, runs, plate)
-    return images
-
-
-def _make_figure(folder: Path, runs: Runs, plate: Plate) -> bytes:
-    dataset = plate.data(runs)
-    about = {"Conventions": "CF-1.11", "source": f"stickslip {ss.__version__}", "references": REFERENCE, "rtol": runs.rtol}
-    save_data(folder / f"figure{plate.number}.nc", dataset.assign_attrs(about, title=plate.title, comment=plate.caption))
-    figure = plate.draw(dataset)
-    save_bytes(folder / f"figure{plate.number}.png", image(figure, "png"))
-    svg = image(figure, "svg")
-    save_bytes(folder / f"figure{plate.number}.svg", svg)
-    return svg
-
-
-def measure_claims(runs: Runs, say: Callable[[str], object] = lambda _: None) -> list[Verdict]:
-    """Return a verdict on every claim, in the order of their numbers."""
-    verdicts = []
+        images[plate.number] = _make_figure(folder / f"figure{plate.number}", runs, plate)
+    verdicts: list[Verdict] = []
     for number, measure in CLAIMS.items():
         say(f"claim {number} of {len(CLAIMS)}: {STATEMENTS[number]}")
         verdicts.append(measure(runs))
-    return verdicts
+    say("tables")
+    for name, table in all_tables(runs, verdicts).items():
+        save_text(folder / f"{name}.csv", table.to_csv(index=False, lineterminator="\n"))
+    say("report")
+    return save_text(folder / "report.html", report(runs, images, verdicts))
+
+
+def _make_figure(path: Path, runs: Runs, plate: Plate) -> bytes:
+    """Write a figure as netCDF, PNG and SVG under a path without suffix, and return the bytes of the SVG file."""
+    from stickslip.figures.style import image
+    from stickslip.foundation.netcdf_file import write
+
+    dataset = plate.data(runs)
+    about = {"Conventions": "CF-1.11", "source": f"stickslip {ss.__version__}", "references": REFERENCE, "rtol": runs.rtol}
+    write(dataset.assign_attrs(about, title=plate.title, comment=plate.caption), path.with_suffix(".nc"))
+    figure = plate.draw(dataset)
+    images = {kind: image(figure, kind) for kind in ("png", "svg")}
+    for kind, content in images.items():
+        write_atomically(path.with_suffix(f".{kind}"), partial(Path.write_bytes, data=content))
+    return images["svg"]
+
+
+def save_text(path: Path, text: str) -> Path:
+    """Write text in UTF-8 with line feeds as line ends, either whole or not at all, and return the path."""
+    return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.figures.contact import hysteresis, laws, resistance, systems
 from stickslip.figures.runs import comparison
-from stickslip.friction import FrictionLaw, HyperbolicRate, SinusoidalSlip
-from stickslip.paper.cases import Runs, problem
+from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.paper.cases import Runs, problem, typed
+from stickslip.problem.parameters import parameter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,43 +32,28 @@ class Plate:
     draw: Callable[[xr.Dataset], Figure]
 
 
-def _systems(_: Runs) -> xr.Dataset:
-    return systems.data(problem("fig6-block-printed"), problem("fig6-slab"))
-
-
 def _laws(_: Runs) -> xr.Dataset:
-    slip: dict[str, FrictionLaw] = {}
-    for name in ("fig5-slab-printed", "fig5-slab-reconstructed"):
-        law = problem(name).friction
-        assert isinstance(law, SinusoidalSlip)
-        slip[rf"$\omega$ = {law.wavenumber:g} /m"] = law
-    rate: dict[str, FrictionLaw] = {}
-    for name in ("fig6-slab", "fig7-slab-critical"):
-        law = problem(name).friction
-        assert isinstance(law, HyperbolicRate)
-        rate[rf"$\alpha$ = {law.alpha:g} s/m"] = law
-    return laws.data(slip, rate, 1.3, 10.0)
+    slip = [typed(problem(f"fig5-slab-{name}").friction, SinusoidalSlip) for name in ("printed", "reconstructed")]
+    rate = [typed(problem(name).friction, HyperbolicRate) for name in ("fig6-slab", "fig7-slab-critical")]
+    slip_laws = {rf"$\omega$ = {law.wavenumber:g} /m": law for law in slip}
+    return laws.data(slip_laws, {rf"$\alpha$ = {law.alpha:g} s/m": law for law in rate}, 1.3, 10.0)
 
 
 def _sets(_: Runs) -> xr.Dataset:
     irregular = problem("fig6-slab")
-    law = irregular.friction
-    assert isinstance(law, HyperbolicRate)
     alpha = 0.5 * (uniqueness(irregular).critical_value or 0.0)
-    regular = replace(irregular, friction=replace(law, alpha=alpha))
-    titles = {"regular": rf"Regular, $\alpha$ = {alpha:g} s/m", "irregular": rf"Irregular, $\alpha$ = {law.alpha:g} s/m"}
-    return resistance.data({"regular": regular, "irregular": irregular}, 6.0, titles)
+    cases = {"regular": parameter(irregular, "alpha").put(alpha), "irregular": irregular}
+    titles = {name: rf"{name.capitalize()}, $\alpha$ = {parameter(case, 'alpha').value:g} s/m" for name, case in cases.items()}
+    return resistance.data(cases, 6.0, titles)
 
 
-def _loop(runs: Runs) -> xr.Dataset:
-    return hysteresis.data(runs.case("fig4-loop"))
+def _side_by_side(block: str, slab: str, title: str, block_end: float = SHOWN) -> Callable[[Runs], xr.Dataset]:
+    """Return the function that runs a block and a slab; `title` follows their names."""
 
-
-def _side_by_side(block: str, slab: str, titles: tuple[str, str], block_end: float = SHOWN) -> Callable[[Runs], xr.Dataset]:
     def data(runs: Runs) -> xr.Dataset:
         solutions = {"block": runs(problem(block), SHOWN), "slab": runs(problem(slab), SHOWN)}
-        ends = {"block": block_end, "slab": SHOWN}
-        return comparison.data(solutions, ends, dict(zip(solutions, titles, strict=True)))
+        titles = {"block": f"Block, {title}", "slab": f"Slab, {title}"}
+        return comparison.data(solutions, {"block": block_end, "slab": SHOWN}, titles)
 
     return data
 
@@ -78,7 +64,7 @@ PLATES = (
         "The two systems",
         "A rigid block pulled through a spring, and an elastic slab of infinite extent pulled at its far side, both on a "
         "frictional contact. Not to scale.",
-        _systems,
+        lambda _: systems.data(problem("fig6-block-printed"), problem("fig6-slab")),
         systems.draw,
     ),
     Plate(
@@ -101,7 +87,7 @@ PLATES = (
         "The rule of perfect delay, walked by one run",
         "A slab under a dead load, pushed so that the load rises and falls within one round trip. Left: its path over the "
         "set K (grey); the two ways are drawn a little apart where they share a branch. Right: the same run in time.",
-        _loop,
+        lambda runs: hysteresis.data(runs.case("fig4-loop")),
         hysteresis.draw,
     ),
     Plate(
@@ -109,7 +95,7 @@ PLATES = (
         "Block and slab under the slip law",
         "Reconstructed: ω = 50 /m and 1 mm added to D0; the block's stiffness as printed. The block slips once; the slab "
         "slips in pulses until the reflected wave arrests it at 2h/c. The block's time axis is shorter.",
-        _side_by_side("fig5-block-reconstructed-omega", "fig5-slab-reconstructed", ("Block, slip law", "Slab, slip law"), 1.2),
+        _side_by_side("fig5-block-reconstructed-omega", "fig5-slab-reconstructed", "slip law", 1.2),
         comparison.draw,
     ),
     Plate(
@@ -117,7 +103,7 @@ PLATES = (
         "Block and slab under the rate law, α = 1 s/m",
         "The slab as printed; the block with K = G × 10³ m (as printed, K = G × 10⁴ m, it has no macroscopic event). The "
         "block's slip rate is continuous, the slab's jumps at 0+ and at 2h/c.",
-        _side_by_side("fig6-block-reconstructed", "fig6-slab", (r"Block, $\alpha$ = 1 s/m", r"Slab, $\alpha$ = 1 s/m")),
+        _side_by_side("fig6-block-reconstructed", "fig6-slab", r"$\alpha$ = 1 s/m"),
         comparison.draw,
     ),
     Plate(
@@ -125,9 +111,7 @@ PLATES = (
         "Block and slab under the rate law just above the critical value, α = αc + 10⁻⁶ s/m",
         "The slab as printed: two tiny shocks with smooth acceleration between them. The block with K = G × 10³ m and the "
         "same friction only follows the driver in tiny steps, four orders slower.",
-        _side_by_side(
-            "fig7-block-critical", "fig7-slab-critical", (r"Block, $\alpha_c$ + 10$^{-6}$ s/m", r"Slab, $\alpha_c$ + 10$^{-6}$ s/m")
-        ),
+        _side_by_side("fig7-block-critical", "fig7-slab-critical", r"$\alpha_c$ + 10$^{-6}$ s/m"),
         comparison.draw,
     ),
 )

@@ -29,7 +29,7 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict])
     )
     environment.filters["number"] = number
     environment.filters["quantity"] = lambda measured: with_unit(measured.value, measured.unit)
-    counts = Counter(v.outcome for v in verdicts)
+    counts, cases = Counter(v.outcome for v in verdicts), cases_table(runs)
     return environment.get_template("report.html.j2").render(
         version=ss.__version__,
         reference=REFERENCE,
@@ -40,8 +40,8 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict])
         constants=constants(),
         plates=PLATES,
         pictures={n: "data:image/svg+xml;base64," + b64encode(svg).decode("ascii") for n, svg in images.items()},
-        cases=[list(row) for row in cases_table(runs).itertuples(index=False)],
-        headings=list(cases_table(runs).columns),
+        cases=cases.to_numpy().tolist(),
+        headings=list(cases),
     )
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+
+import pandas as pd
 
 from stickslip.paper.cases import READINGS, Runs
 from stickslip.paper.claims import Verdict
 from stickslip.paper.constants import constants
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 UNITS = {
     "start": "s",
@@ -36,24 +34,21 @@ def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFram
         "events": _stacked(runs, "events"),
         "shocks": _stacked(runs, "shocks"),
         "claims": claims_table(verdicts),
-        "constants": constants_table(),
+        "constants": pd.DataFrame(constants()),
     }
 
 
 def cases_table(runs: Runs) -> pd.DataFrame:
     """Return a table with a row for each case: what was run, and its results."""
-    import pandas as pd
-
     rows = []
     for name, reading in READINGS.items():
         solution = runs.case(name)
-        events = solution.catalogue(0.0)
         row = {
             "case": name,
             "reading": reading,
             "duration [s]": solution.duration,
             "selection rule": solution.problem.rule,
-            "largest slip rate [m/s]": events.peak_rate.max(),
+            "largest slip rate [m/s]": solution.catalogue(0.0).peak_rate.max(),
             "slip [m]": float(solution.slip(solution.duration)) - solution.problem.initial_slip,
             "events": len(solution.events),
             "shocks": len(solution.shocks),
@@ -65,33 +60,18 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 def _stacked(runs: Runs, table: str) -> pd.DataFrame:
     """Return the events or shocks of all cases in one table, with the name of the case in the first column."""
-    import pandas as pd
-
-    parts = []
-    for name in READINGS:
-        part: pd.DataFrame = getattr(runs.case(name), table).copy()
-        part.insert(0, "case", name)
-        parts.append(part)
+    parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.
-    whole = pd.concat([part for part in parts if len(part)], ignore_index=True)
+    whole = pd.concat([part.assign(case=name) for name, part in parts.items() if len(part)], ignore_index=True)
+    whole.insert(0, "case", whole.pop("case"))
     return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items()})
 
 
 def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
     """Return a table with a row for each measured number, after its claim and verdict."""
-    import pandas as pd
-
     rows = [
         (v.number, v.claim, str(v.outcome), v.reading, measured.label, measured.value, measured.unit)
         for v in verdicts
         for measured in v.measured
     ]
     return pd.DataFrame(rows, columns=["number", "claim", "verdict", "reading", "measured", "value", "unit"])
-
-
-def constants_table() -> pd.DataFrame:
-    """Return the table of constants in both readings."""
-    import pandas as pd
-
-    rows = [(c.symbol, c.meaning, c.printed, c.reconstructed, c.unit, c.note) for c in constants()]
-    return pd.DataFrame(rows, columns=["symbol", "meaning", "printed", "reconstructed", "unit", "note"])

@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity, quantities_of
-from stickslip.friction.parameters import NamedNumbers, Part, Series, fields_of
+from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
 from stickslip.problem.problem import Problem
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, Body
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, check_quantities, quantities_of, quantity
+from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT
@@ -87,7 +87,7 @@ class Problem:
         if not isinstance(self.friction, FrictionLaw):
             raise InputError(f"Problem: friction must be a friction law, got {type(self.friction).__name__}")
         self._check_varying()
-        check_quantities(self, but=self._varying)
+        check_fields(self, but=self._varying)
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity
-from stickslip.friction.custom.from_expression import named_value
-from stickslip.friction.parameters import Choice, Field, Named, NamedNumbers, Part, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, Field, Named, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.scenarios.values import describe as describe_quantity
 from stickslip.scenarios.values import read_quantity, show
 
@@ -21,7 +19,7 @@ class Source(NamedTuple):
     folder: Path | None = None
 
 
-def key_of(name: str, entry: Quantity | Field) -> str:
+def key_of(name: str, entry: Field) -> str:
     """Return the key of a field in a scenario."""
     return entry.key if isinstance(entry, NamedNumbers) else name
 
@@ -42,7 +40,7 @@ class Place(NamedTuple):
         return f"[{self.table}] {self.key}"
 
 
-def read_entry(value: Any, entry: Quantity | Field, place: Place, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
+def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
     """Return a value of a scenario in the form that its field takes, with numbers in SI.
 
     Texts, choices, and the length and order of a series are checked by the law that has the field. `law` is the function that reads
@@ -74,10 +72,10 @@ def _named(value: Any, place: Place) -> tuple[Named, ...]:
             raise InputError(f"{file}: {table} {show(name)} must be a number or a text with a unit, got {show(one)}")
         if isinstance(one, int) and abs(one) > 10**300:
             raise InputError(f"{file}: {table} {show(name)} must be a number, got a whole number beyond 1e300")
-    return tuple(named_value(name, one, f"{file}: [{place.table}]") for name, one in value.items())
+    return tuple(Named.read(name, one, f"{file}: [{place.table}]") for name, one in value.items())
 
 
-def describe(entry: Quantity | Field) -> str:
+def describe(entry: Field) -> str:
     """Return the meaning, the unit and the range of a field as text for users."""
     if isinstance(entry, Quantity):
         return describe_quantity(entry)
@@ -100,7 +98,7 @@ def to_table(owner: Any) -> dict[str, Any]:
     return table
 
 
-def _written(value: Any, entry: Quantity | Field) -> Any:
+def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
     return to_table(value) if isinstance(entry, Part) else value

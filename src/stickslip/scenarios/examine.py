@@ -12,9 +12,8 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, Text, fields_of
 from stickslip.loading import LoadingHistory
 from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.parameters import LARGEST_SERIES
+from stickslip.foundation.quantities import LARGEST_SERIES
 from stickslip.problem.problem import MAY_VARY
 from stickslip.scenarios.values import show
 

@@ -6,7 +6,7 @@ A new law or body enters the schema by being registered. pydantic checks names a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, replace
+from dataclasses import MISSING, replace
 from functools import cache, partial
 from typing import Annotated, Any
 
@@ -14,11 +14,10 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from stickslip.bodies import BODIES
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity, quantities_of
+from stickslip.foundation.quantities import Field as Declared
+from stickslip.foundation.quantities import Part, Quantity, Series, fields_of, quantities_of
 from stickslip.friction import LAWS
-from stickslip.friction.law import StateVariable
-from stickslip.friction.parameters import Field as LawField
-from stickslip.friction.parameters import Part, Series, fields_of
+from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import MAY_VARY, Problem
@@ -74,7 +73,7 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     return found | {"state": (remembered, None)} if table == "initial" else found
 
 
-def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity | LawField, Any]]:
+def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Declared, Any]]:
     """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history."""
     if not has_kind(table):
         return dict(quantities_in(table, kind, state))
@@ -88,7 +87,7 @@ def has_kind(table: str) -> bool:
     return table in KINDS or "." in table
 
 
-def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
+def in_unit(entry: Declared, unit: str) -> Declared:
     """Return the declaration of a field with the unit of the quantity that varies, if it is a value of a loading history."""
     if isinstance(entry, Series) and entry.item.unit == VARYING:
         return replace(entry, item=replace(entry.item, unit=unit))
@@ -96,7 +95,7 @@ def in_unit(entry: Quantity | LawField, unit: str) -> Quantity | LawField:
 
 
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
-    return {f.name: (f.metadata["quantity"], f.default) for f in fields(kind) if "quantity" in f.metadata}
+    return {name: (entry, default) for name, (entry, default) in fields_of(kind).items() if isinstance(entry, Quantity)}
 
 
 def _of_body(declared: Quantity, body: type) -> Quantity:
@@ -133,7 +132,7 @@ def _checked_by(check: Callable[[Any, str, str], Any]) -> Callable[[Any, Place],
     return lambda value, place: check(value, place.source.file, str(place))
 
 
-def _read_entry(declared: Quantity | LawField, value: Any, place: Place) -> Any:
+def _read_entry(declared: Declared, value: Any, place: Place) -> Any:
     """Return a value converted and checked for its field; a table in place of a number that may vary is a loading history."""
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):

@@ -8,7 +8,6 @@ import math
 from stickslip.bodies import SpringBlock, as_block, as_slab
 from stickslip.contact.rules.loop import first_rate
 from stickslip.friction import RateAndState
-from stickslip.friction.slopes import slopes
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.reference.slab.growth_rate import growth_rate
@@ -64,7 +63,7 @@ def stability_of(problem: Problem) -> str:
     body, law = problem.body, problem.friction
     if isinstance(law, RateAndState):
         return _steady_sliding(problem, law)
-    by_slip, by_rate = slopes(law, problem.law_slip)
+    by_slip, by_rate = law.slopes(problem.law_slip)
     if not body.has_waves:
         return _block_stability(as_block(body), by_slip, by_rate)
     number = -problem.normal * by_slip / body.stiffness

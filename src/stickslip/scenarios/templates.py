@@ -8,9 +8,9 @@ from dataclasses import MISSING
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.law import StateVariable
-from stickslip.friction.parameters import NamedNumbers, Part, fields_of
+from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library

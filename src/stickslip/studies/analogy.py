@@ -22,7 +22,6 @@ from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
 from stickslip.foundation.errors import InputError
-from stickslip.friction.slopes import slopes
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.studies.study import Study, uninterrupted
@@ -189,7 +188,7 @@ def weakening(problem: Problem) -> dict[str, float]:
     The keys are "weakening_slip" and "weakening_rate".
     """
     body = as_slab(problem.body)
-    by_slip, _ = slopes(problem.friction, problem.law_slip)
+    by_slip, _ = problem.friction.slopes(problem.law_slip)
     massless = replace(problem, body=replace(body, contact_mass=0.0))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}
 

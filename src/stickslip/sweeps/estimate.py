@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.sweeps.execution.chunk import nothing
+from stickslip.sweeps.execution.chunk import ChunkResult
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.store import ResultStore
@@ -56,8 +56,8 @@ def estimate(plan: Plan, run: Runner, at_once: int = 1) -> Estimate:
         if took >= LONG_ENOUGH or wanted == size:
             # Time the sample again: the first time may include compilation, or the work of another program.
             took = min(took, _timed(plan, run, members, at_once)[0])
-        if took >= LONG_ENOUGH or wanted == size:
-            break
+            if took >= LONG_ENOUGH or wanted == size:
+                break
         wanted = min(2 * wanted, size)
     sampled = len(members)
     seconds = took / sampled * size + plan.chunks * _writing(plan)
@@ -81,7 +81,7 @@ def _timed(plan: Plan, run: Runner, members: NDArray[np.intp], at_once: int) -> 
 
 def _writing(plan: Plan) -> float:
     """Return the wall-clock time (s) of storing a chunk, measured in memory; the second time, as the first may do extra work."""
-    store, kept = ResultStore.in_memory(plan), nothing(plan.work, len(plan.members(0)))
+    store, kept = ResultStore.in_memory(plan), ChunkResult.empty(plan.work, len(plan.members(0)))
     for values in kept.results.values():
         values[...] = np.random.default_rng(0).random(values.shape)
     for _ in range(2):

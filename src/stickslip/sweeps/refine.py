@@ -17,17 +17,18 @@ import numpy as np
 import xarray as xr
 
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.scenario import Scenario, load_scenario
+from stickslip.problem.problem import Problem
+from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
-from stickslip.sweeps.design.design import MEMBER, Design, axes_of
-from stickslip.sweeps.design.parameter_paths import Key
+from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
+from stickslip.sweeps.design.parameter_paths import ParameterPath
 from stickslip.sweeps.design.quantities import DEFAULT, Summary, Wanted, quantities_named
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
-from stickslip.sweeps.execution.plan import Plan, make_plan
+from stickslip.sweeps.execution.plan import Plan, make_plan, scenario_to_vary
 from stickslip.sweeps.results.layout import REASON, STATUS, attributes
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, Recipe
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 from stickslip.sweeps.results.store import open_store, publish, writing
-from stickslip.sweeps.sweep import Progress, Runner, carry_out, check_out, runner_of
+from stickslip.sweeps.sweep import ProgressCallback, Runner, carry_out, check_out, runner_of
 
 DEPTH = 6
 """Default number of halvings: the finest cells are 1/64 of the coarse step along each axis."""
@@ -42,10 +43,11 @@ class _StoppedError(Exception):
 
 
 def refine(
-    scenario: Scenario | str,
+    scenario: Problem | Scenario | str | Path,
     vary: Any,
     quantity: str,
     *,
+    duration: float | None = None,
     depth: int = DEPTH,
     factor: float | None = None,
     most: int = MOST_MEMBERS,
@@ -55,7 +57,7 @@ def refine(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk: int | None = None,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
 ) -> xr.Dataset:
     """Run a coarse grid, then halve its cells up to `depth` times wherever a quantity differs around them.
 
@@ -63,10 +65,9 @@ def refine(
 
     Parameters
     ----------
-    scenario : Scenario or str
-        A scenario, the path of a scenario file, or a bundled name.
-    vary : str, sequence of str, or mapping
-        Axes of the coarse grid, as for `stickslip.sweep`, each of two or more numbers in ascending order.
+    vary : mapping
+        Axes of the coarse grid, as for `stickslip.sweep`, each of two or more numbers in ascending order. Between three or more
+        numbers in equal ratios (`numpy.geomspace`) steps are halved into equal ratios, otherwise into equal parts.
     quantity : str
         Name of the quantity whose changes are sought. It must be a whole number unless `factor` is given. Members that failed, or
         that have no such number (NaN), cause no refinement.
@@ -76,7 +77,7 @@ def refine(
         If given (above 1), halve the cells around which the quantity differs by more than this factor, or in sign.
     most : int
         Largest number of members. The search ends early rather than exceed it.
-    quantities, out, threads, workers, scheduler, chunk, progress
+    scenario, duration, quantities, out, threads, workers, scheduler, chunk, progress
         As for `stickslip.sweep`. Until the store `out` (.zarr) is complete, the rounds are kept beside it in a folder of the same
         name with the suffix .rounds. If a search was stopped or killed, the same call continues it.
 
@@ -92,11 +93,11 @@ def refine(
     InputError
         For anything that cannot be used, as for `stickslip.sweep`.
     """
-    chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
+    chosen = scenario_to_vary(scenario, duration)
     axes, kept = axes_of(chosen, vary, "refine: vary"), _with(quantities, quantity)
-    recipe = Recipe.of(quantity, axes, [one.name for one in kept], depth, factor, most)
-    keys = tuple(axis.key for axis in axes)
-    search = _Search(recipe, keys, lambda design: make_plan(chosen, design, quantities=kept, chunk=chunk))
+    spec = RefinementSpec.of(quantity, axes, [one.name for one in kept], depth=depth, factor=factor, most=most)
+    parameters = tuple(axis.parameter for axis in axes)
+    search = _Search(spec, parameters, lambda design: make_plan(chosen, design, quantities=kept, chunk=chunk))
     place = None if out is None else check_out(Path(out), "refine: out")
     if place is not None and place.exists():
         found = search.there(place)
@@ -116,20 +117,23 @@ def _with(quantities: Iterable[Wanted], name: str) -> tuple[Summary, ...]:
 class _Search:
     """A search in rounds, each of which is a sweep over a list of members."""
 
-    recipe: Recipe
-    keys: tuple[Key, ...]
+    spec: RefinementSpec
+    parameters: tuple[ParameterPath, ...]
     plan: Callable[[Design], Plan]
     rounds: list[xr.Dataset] = field(default_factory=list)
 
-    def carried_out(self, place: Path | None, run: Runner, progress: Progress | None) -> xr.Dataset:
+    def carried_out(self, place: Path | None, run: Runner, progress: ProgressCallback | None) -> xr.Dataset:
         """Run every round and return their members together. When all rounds are done, store them at `place`, if there is one."""
-        folder = None if place is None else _made(_rounds_of(place))
+        folder = None if place is None else _rounds_of(place)
+        if folder is not None:
+            with writing(folder):
+                folder.mkdir(exist_ok=True)
 
         def evaluate(points: Integers) -> Floats:
             return self.round(points, None if folder is None else folder / f"{len(self.rounds):03d}.zarr", run, progress)
 
         try:
-            complete = refine_cells(self.recipe.lattice, evaluate, self.recipe.differ, self.recipe.most).complete
+            complete = refine_cells(self.spec.lattice, evaluate, self.spec.factor, self.spec.most).complete
         except _StoppedError:
             return self.together(complete=False)
         if place is None or folder is None:
@@ -139,20 +143,20 @@ class _Search:
         shutil.rmtree(folder)
         return self.there(place)
 
-    def round(self, points: Integers, out: Path | None, run: Runner, progress: Progress | None) -> Floats:
+    def round(self, points: Integers, out: Path | None, run: Runner, progress: ProgressCallback | None) -> Floats:
         """Run the members at the given points and return the quantity of each."""
         found = carry_out(self.plan(self.members(points)), out, run, self.beyond(progress))
-        level = xr.Variable(MEMBER, self.recipe.lattice.levels(points), {"long_name": "how often the coarse grid was halved"})
+        level = xr.Variable(MEMBER, self.spec.lattice.levels(points), {"long_name": "how often the coarse grid was halved"})
         self.rounds.append(found.assign_coords({LEVEL: level}).load())
         if (found.status == NOT_RUN).any():
             raise _StoppedError
-        return _answers(found[self.recipe.quantity], self.recipe.factor)
+        return _answers(found[self.spec.quantity], self.spec.factor)
 
     def members(self, points: Integers) -> Design:
         """Return the members at the given points as a design of the kind "list"."""
-        return Design("list", self.keys, self.recipe.values(points))
+        return Design(LIST, self.parameters, self.spec.values(points))
 
-    def beyond(self, tell: Progress | None) -> Progress | None:
+    def beyond(self, tell: ProgressCallback | None) -> ProgressCallback | None:
         """Return a progress callback that adds the members of all earlier rounds to the counts of the present round."""
         if tell is None:
             return None
@@ -166,11 +170,11 @@ class _Search:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Return the attributes that record the origin of the members: those of a sweep, and the recipe of the search."""
-        lattice = self.recipe.lattice
+        """The attributes that record the origin of the members: those of a sweep, and the specification of the search."""
+        lattice = self.spec.lattice
         coarse = attributes(self.plan(self.members(lattice.grid(lattice.coarse))))
-        design = json.dumps({"design": "refined", "keys": list(self.recipe.columns)})
-        return coarse | {"design": design, ATTRIBUTE: str(self.recipe)}
+        design = json.dumps({"design": REFINED, "keys": list(self.spec.columns)})
+        return coarse | {"design": design, ATTRIBUTE: str(self.spec)}
 
     def there(self, place: Path) -> xr.Dataset:
         """Open the store at `place`. Raises InputError if it belongs to another search."""
@@ -178,7 +182,7 @@ class _Search:
         for name, ours in self.attributes.items():
             if found.attrs.get(name) != ours:
                 raise InputError(f"{place}: was made with another {name}: use the same settings as before, or choose another name")
-        return found[[*self.recipe.kept, STATUS, REASON]]
+        return found[[*self.spec.kept, STATUS, REASON]]
 
 
 def _answers(found: xr.DataArray, factor: float | None) -> Floats:
@@ -192,9 +196,3 @@ def _answers(found: xr.DataArray, factor: float | None) -> Floats:
 
 def _rounds_of(place: Path) -> Path:
     return place.with_suffix(".rounds")
-
-
-def _made(folder: Path) -> Path:
-    with writing(folder):
-        folder.mkdir(exist_ok=True)
-    return folder

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
+from stickslip.sweeps.design.design import check_whole
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
 from stickslip.sweeps.execution.chunk import ChunkResult, Work, run_chunk
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-class Report(NamedTuple):
+class SweepProgress(NamedTuple):
     """The progress of a sweep.
 
     `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
@@ -39,15 +41,16 @@ class Report(NamedTuple):
     left: float
 
 
-Progress = Callable[[Report], object]
+ProgressCallback = Callable[[SweepProgress], object]
 Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
 """A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
 
 
 def sweep(
-    scenario: Scenario | str,
+    scenario: Problem | Scenario | str | Path,
     vary: Any,
     *,
+    duration: float | None = None,
     design: str = "grid",
     members: int | None = None,
     seed: int = 0,
@@ -59,21 +62,25 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk: int | None = None,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
 ) -> xr.Dataset:
     """Run a scenario with varied parameters and collect summary quantities of every run in a dataset with units.
 
     Parameters
     ----------
-    scenario : Scenario or str
-        A scenario, the path of a scenario file, or a bundled name.
-    vary : mapping, str, sequence of str, pandas.DataFrame or pathlib.Path
-        A mapping from keys of the scenario to "LOW..HIGH:POINTS" (followed by ":log" for equal ratios), to "VALUE,VALUE,...", or
-        to a list of values, which are numbers in SI or texts with units. The same may be given as texts "KEY=...". A DataFrame, or
-        the `Path` of a CSV file, has one member in each row.
+    scenario : Problem, Scenario, str or pathlib.Path
+        A problem, a scenario, the path of a scenario file, or a bundled name.
+    vary : mapping, pandas.DataFrame or pathlib.Path
+        A mapping from parameters, named by their place in a scenario file ("friction.alpha", or "alpha" where that is clear), to
+        an array, a list or a pint quantity array of their values. Numbers are in SI. A list may also hold texts with units
+        ("10 km"), or words ("run.selection": ["minimal", "maximal"]). A DataFrame, or the `Path` of a CSV file, has one member in
+        each row.
+    duration : float, optional
+        Latest end of the runs (s). A problem needs it; a scenario has its own.
     design : {"grid", "random", "lhs"}
-        "grid" runs every combination, with one dimension for each key. "random" and "lhs" (Latin hypercube) draw members between
-        LOW and HIGH.
+        "grid" runs every combination, with one dimension for each parameter. "random" and "lhs" (Latin hypercube) draw members:
+        a tuple (LOW, HIGH) in place of values stands for all numbers between the two, (LOW, HIGH, "log") for the same spread
+        evenly in the logarithm, and from an array or a list one of the values is drawn.
     members : int, optional
         Number of members of the designs "random" and "lhs".
     seed : int
@@ -96,7 +103,7 @@ def sweep(
     chunk : int, optional
         Number of members in a chunk: at most this many, because a chunk is a block of the design.
     progress : callable, optional
-        Function that is called with a `Report` after each chunk.
+        Function that is called with a `SweepProgress` after each chunk.
 
     Returns
     -------
@@ -107,11 +114,12 @@ def sweep(
     Raises
     ------
     InputError
-        For anything that cannot be used: a key, a value, a quantity, or an `out` that belongs to another sweep.
+        For anything that cannot be used: a parameter, a value, a quantity, or an `out` that belongs to another sweep.
     """
     plan = make_plan(
         scenario,
         vary,
+        duration=duration,
         design=design,
         members=members,
         seed=seed,
@@ -143,7 +151,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
         yield on_cluster(client), max(sum(client.nthreads().values()), 1)
 
 
-def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progress | None = None) -> xr.Dataset:
+def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: ProgressCallback | None = None) -> xr.Dataset:
     """Run the chunks of a plan that are missing in its store, and return the dataset. Raises InputError for an unusable store."""
     store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
     tally = Tally(store, progress)
@@ -178,8 +186,8 @@ def on_threads(threads: int | None) -> Runner:
 
     Raises InputError.
     """
-    if threads is not None and not (isinstance(threads, int) and threads > 0):
-        raise InputError(f"sweep: threads must be a whole number above 0, got {threads!r}")
+    if threads is not None:
+        check_whole(threads, 1, "sweep: threads must be a whole number above 0")
     return lambda work, chunks: ((chunk, run_chunk(work, values, threads)) for chunk, values in chunks)
 
 
@@ -195,7 +203,7 @@ def check_out(path: Path, what: str = "sweep: out") -> Path:
 class Tally:
     """A counter of the members done, which reports progress after each chunk."""
 
-    def __init__(self, store: ResultStore, tell: Progress | None) -> None:
+    def __init__(self, store: ResultStore, tell: ProgressCallback | None) -> None:
         before = Counter(store.status.ravel().tolist())
         self.members = store.plan.design.size
         self.done = self.members - before[NOT_RUN]
@@ -217,4 +225,4 @@ class Tally:
         took = time.monotonic() - self.started
         new = self.done - self.before
         rate = new / took if new else float("nan")
-        self.tell(Report(self.done, self.failed, self.members, rate, (self.members - self.done) / rate))
+        self.tell(SweepProgress(self.done, self.failed, self.members, rate, (self.members - self.done) / rate))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -16,82 +16,65 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.sweeps.estimate import Estimate
+    from stickslip.sweeps.design.axis import Axis
     from stickslip.sweeps.execution.plan import Plan
-    from stickslip.sweeps.sweep import Report, Runner
+    from stickslip.sweeps.sweep import SweepProgress
+
+
+def _option(text: str, *names: str, **more: Any) -> Any:
+    """Declare an option whose default the help does not show."""
+    return typer.Option(*names, help=text, show_default=False, **more)
+
+
+ScenarioName = Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)]
+VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
+Vary = Annotated[list[str] | None, _option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]
+TABLE_HELP = "Members from a table instead (.csv): one column per key, one row per member."
+Table = Annotated[Path | None, _option(TABLE_HELP, "--list")]
+DesignKind = Annotated[
+    str, typer.Option(help="grid, or samples between LOW and HIGH: random, lhs.", autocompletion=complete_design)
+]
+Members = Annotated[int | None, _option("How many samples.", "--members", "-m")]
+Seed = Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")]
+QUANTITY_HELP = "Quantity to keep of each run; may be repeated."
+Quantities = Annotated[list[str] | None, _option(QUANTITY_HELP, "--quantity", "-q", autocompletion=complete_quantity)]
+Series = Annotated[str, _option("Curves over time to be kept too: slip,slip_rate,traction,load.")]
+Samples = Annotated[int, typer.Option(help="Times of such a curve.")]
+Out = Annotated[Path | None, _option("Save the results as they come (a folder, .zarr).", "--out", "-o")]
+Threads = Annotated[int | None, _option("Threads (default: all cores).")]
+Chunk = Annotated[int | None, _option("Members that are run and saved together (default: 1/64 of all).")]
+Workers = Annotated[int | None, _option("Processes of a dask cluster to be started here, instead of threads.")]
+Scheduler = Annotated[str | None, _option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
+REFINE_HELP = "Refine the map where this quantity changes."
+Refine = Annotated[str | None, _option(REFINE_HELP, autocompletion=complete_quantity, metavar="QUANTITY")]
+Depth = Annotated[int, typer.Option(help="With --refine: how often cells are halved.")]
+Factor = Annotated[float | None, _option("With --refine: look for jumps by more than this factor.")]
+FIGURE_HELP = "Draw the first quantity, or the one that is refined (.png, .pdf or .svg)."
+Figure = Annotated[Path | None, _option(FIGURE_HELP, "--figure", "-f")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk, and stop.")]
 
 
 def sweep(
-    scenario: Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--vary",
-            "-v",
-            help="KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key.",
-            autocompletion=complete_vary,
-            show_default=False,
-        ),
-    ] = None,
-    table: Annotated[
-        Path | None,
-        typer.Option(
-            "--list", help="Members from a table instead (.csv): one column per key, one row per member.", show_default=False
-        ),
-    ] = None,
-    design: Annotated[
-        str, typer.Option(help="grid, or samples between LOW and HIGH: random, lhs.", autocompletion=complete_design)
-    ] = "grid",
-    members: Annotated[int | None, typer.Option("--members", "-m", help="How many samples.", show_default=False)] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")] = 0,
-    quantity: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--quantity",
-            "-q",
-            help="Quantity to keep of each run; may be repeated.",
-            autocompletion=complete_quantity,
-            show_default=False,
-        ),
-    ] = None,
-    series: Annotated[
-        str, typer.Option(help="Curves over time to be kept too: slip,slip_rate,traction,load.", show_default=False)
-    ] = "",
-    samples: Annotated[int, typer.Option(help="Times of such a curve.")] = 200,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Save the results as they come (a folder, .zarr).", show_default=False)
-    ] = None,
-    threads: Annotated[int | None, typer.Option(help="Threads (default: all cores).", show_default=False)] = None,
-    chunk: Annotated[
-        int | None,
-        typer.Option(help="Members that are run and saved together (default: 1/64 of all).", show_default=False),
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option(help="Processes of a dask cluster to be started here, instead of threads.", show_default=False)
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Run on the dask cluster at HOST:PORT, or of a scheduler file.", show_default=False)
-    ] = None,
-    refine: Annotated[
-        str | None,
-        typer.Option(
-            help="Refine the map where this quantity changes.",
-            autocompletion=complete_quantity,
-            show_default=False,
-            metavar="QUANTITY",
-        ),
-    ] = None,
-    depth: Annotated[int, typer.Option(help="With --refine: how often cells are halved.")] = 6,
-    factor: Annotated[
-        float | None, typer.Option(help="With --refine: look for jumps by more than this factor.", show_default=False)
-    ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option(
-            "--figure", "-f", help="Draw the first quantity, or the one that is refined (.png, .pdf or .svg).", show_default=False
-        ),
-    ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk, and stop.")] = False,
+    scenario: ScenarioName,
+    *,
+    vary: Vary = None,
+    table: Table = None,
+    design: DesignKind = "grid",
+    members: Members = None,
+    seed: Seed = 0,
+    quantity: Quantities = None,
+    series: Series = "",
+    samples: Samples = 200,
+    out: Out = None,
+    threads: Threads = None,
+    chunk: Chunk = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    refine: Refine = None,
+    depth: Depth = 6,
+    factor: Factor = None,
+    figure: Figure = None,
+    dry_run: DryRun = False,
 ) -> None:
     """Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
 
@@ -115,11 +98,47 @@ def sweep(
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.files import check_target
-    from stickslip.cli.output.sweep_summary import show_estimate, show_sweep
-    from stickslip.sweeps.design.quantities import DEFAULT
+    from stickslip.cli.output.sweep_summary import show_sweep
+    from stickslip.scenarios.scenario import load_scenario
+    from stickslip.sweeps.design.axis_text import typed_axes
     from stickslip.sweeps.execution.plan import make_plan
-    from stickslip.sweeps.sweep import check_out, runner_of
+
+    _check_files(vary, table, out, figure)
+    if refine is not None and (table or design != "grid" or series or dry_run):
+        raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
+    chosen = load_scenario(scenario)
+    axes = typed_axes(chosen, vary or (), "--vary")
+    plan = make_plan(
+        chosen,
+        table or axes,
+        design=design,
+        members=members,
+        seed=seed,
+        quantities=_kept(quantity, refine),
+        series=[name.strip() for name in series.split(",") if name.strip()],
+        samples=samples,
+        chunk=chunk,
+        where="--list" if table else "--vary",
+    )
+    resources: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
+    with _losses():
+        if refine is not None:
+            search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
+            plan, found = _refined(plan, axes, search | resources)
+        elif dry_run:
+            _show_estimate(plan, resources)
+            return
+        else:
+            found = _found(plan, out, resources)
+    if figure is not None:
+        _draw(found, refine or plan.work.names[0], figure)
+    raise typer.Exit(show_sweep(plan, found, out, figure))
+
+
+def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, figure: Path | None) -> None:
+    """Raise InputError unless either axes or a table are given, and all files can be written."""
+    from stickslip.cli.output.files import check_target
+    from stickslip.sweeps.sweep import check_out
 
     if (table is None) == (not vary):
         raise InputError(f"sweep: needs either --vary or --list, got {'both' if vary else 'neither'}")
@@ -127,34 +146,14 @@ def sweep(
         check_out(out, "--out")
     if figure is not None:
         check_target(figure, "--figure", (".png", ".pdf", ".svg"))
-    if refine is not None and (table or design != "grid" or series or dry_run):
-        raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
-    plan = make_plan(
-        scenario,
-        table or vary,
-        design=design,
-        members=members,
-        seed=seed,
-        quantities=_kept(quantity or DEFAULT, refine),
-        series=[name.strip() for name in series.split(",") if name.strip()],
-        samples=samples,
-        chunk=chunk,
-        where="--list" if table else "--vary",
-    )
-    with _losses():
-        if refine is not None:
-            where: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
-            search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
-            plan, found = _refined(plan, vary, search | where)
-        else:
-            with runner_of(threads, workers, scheduler) as (run, at_once):
-                if dry_run:
-                    show_estimate(plan, _estimated(plan, run, at_once))
-                    return
-                found = _found(plan, out, run)
-    if figure is not None:
-        _draw(found, refine or plan.work.names[0], figure)
-    raise typer.Exit(show_sweep(plan, found, out, figure))
+
+
+def _kept(wanted: list[str] | None, refined: str | None) -> list[str]:
+    """Return the quantities to keep, with the one by which the map is refined."""
+    from stickslip.sweeps.design.quantities import DEFAULT
+
+    kept = wanted or DEFAULT
+    return [*kept, *([refined] if refined and refined not in kept else [])]
 
 
 @contextmanager
@@ -169,40 +168,45 @@ def _losses() -> Iterator[None]:
         raise typer.Exit(1) from None
 
 
-def _kept(wanted: Sequence[str], refined: str | None) -> list[str]:
-    """Return the quantities to keep, with the one by which the map is refined."""
-    return [*wanted, *([refined] if refined and refined not in wanted else [])]
-
-
-def _estimated(plan: Plan, run: Runner, at_once: int) -> Estimate:
+def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
     from stickslip.cli.output.show import progress_to
+    from stickslip.cli.output.sweep_summary import show_estimate
     from stickslip.sweeps.estimate import estimate
+    from stickslip.sweeps.sweep import runner_of
 
-    with progress_to(f"{plan.scenario.name}: timing a sample"):
-        return estimate(plan, run, at_once)
+    with runner_of(**resources) as (run, at_once):
+        with progress_to(f"{plan.scenario.name}: timing a sample"):
+            found = estimate(plan, run, at_once)
+        show_estimate(plan, found)
 
 
-def _found(plan: Plan, out: Path | None, run: Runner) -> xr.Dataset:
+@contextmanager
+def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
+    """Provide a function that shows the progress of a sweep in one line."""
     from stickslip.cli.output.show import progress_to
-    from stickslip.sweeps.sweep import carry_out
 
     with progress_to(f"{plan.scenario.name}:") as tell:
-        return carry_out(plan, out, run, lambda report: tell(so_far(report)))
+        yield lambda progress: tell(so_far(progress))
 
 
-def _refined(plan: Plan, vary: list[str] | None, options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:
+def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> xr.Dataset:
+    from stickslip.sweeps.sweep import carry_out, runner_of
+
+    with runner_of(**resources) as (run, _), _progress_of(plan) as tell:
+        return carry_out(plan, out, run, tell)
+
+
+def _refined(plan: Plan, axes: list[Axis], options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:
     """Return the plan of all members of a refined map, and their results."""
-    from stickslip.cli.output.show import progress_to
-    from stickslip.sweeps.design.design import Design
+    from stickslip.sweeps.design.design import REFINED, Design
     from stickslip.sweeps.refine import COMPLETE, refine
 
-    with progress_to(f"{plan.scenario.name}:") as tell:
-        kept = plan.work.quantities
-        found = refine(plan.scenario, vary, quantities=kept, progress=lambda report: tell(so_far(report)), **options)
+    with _progress_of(plan) as tell:
+        found = refine(plan.scenario, axes, quantities=plan.work.quantities, progress=tell, **options)
     if not found.attrs[COMPLETE]:
         typer.echo(f"stickslip: the refinement ended after {found.sizes['member']} members: the map is not complete", err=True)
-    keys = plan.design.keys
-    return replace(plan, design=Design("refined", keys, tuple(found[key.name].values for key in keys))), found
+    columns = tuple(found[name].values for name in plan.design.names)
+    return replace(plan, design=Design(REFINED, plan.design.parameters, columns)), found
 
 
 def _draw(dataset: xr.Dataset, quantity: str, figure: Path) -> None:
@@ -211,11 +215,11 @@ def _draw(dataset: xr.Dataset, quantity: str, figure: Path) -> None:
     plot_sweep(dataset, quantity, figure)
 
 
-def so_far(report: Report) -> str:
+def so_far(progress: SweepProgress) -> str:
     """Format the progress of a sweep in one line."""
     from stickslip.cli.output.show import about_time, number
 
-    parts = [f"{report.done} of {report.members} members"]
-    if report.rate > 0.0:
-        parts += [f"{number(report.rate, 3)} a second", f"{about_time(report.left)} left"]
-    return ", ".join([*parts, *([f"{report.failed} failed"] if report.failed else [])])
+    parts = [f"{progress.done} of {progress.members} members"]
+    if progress.rate > 0.0:
+        parts += [f"{number(progress.rate, 3)} a second", f"{about_time(progress.left)} left"]
+    return ", ".join([*parts, *([f"{progress.failed} failed"] if progress.failed else [])])

@@ -52,7 +52,7 @@ def show_sweep(plan: Plan, dataset: xr.Dataset, *written: Path | None) -> int:
 
 def _say_what(plan: Plan) -> None:
     screen = titled(plan.scenario)
-    screen.print(f"{plan.design} over {', '.join(key.name for key in plan.design.keys)}", soft_wrap=True)
+    screen.print(f"{plan.design} over {', '.join(plan.design.names)}", soft_wrap=True)
 
 
 def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.ndarray[tuple[int], np.dtype[np.object_]]) -> None:

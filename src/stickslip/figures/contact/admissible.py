@@ -9,10 +9,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILLION, letter, panels, quantity, styled
+from stickslip.figures.contact.resistance import draw_branches
+from stickslip.figures.panels import letter, panels
+from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -60,10 +61,8 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
     contact = uniqueness(problem)
     g = contact.resistance
     if g is None:
-        raise InputError(
-            "figure of the set K: the slip rate does not follow from the load alone (inertia or a state variable):"
-            " there is no set K to draw"
-        )
+        why = "the slip rate does not follow from the load alone (inertia or a state variable)"
+        raise InputError(f"figure of the set K: {why}: there is no set K to draw")
     path = _path(solution, g.strength)
     ends = [rate for b in contact.branches for rate in (b.rate_from, b.rate_to) if np.isfinite(rate)]
     rates = np.union1d(np.linspace(0.0, _fastest(contact, path["path_slip_rate"].values), _POINTS), ends)
@@ -79,7 +78,7 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
     }
     place = f" at a slip of {g.law_slip:.6g} m" if problem.friction.depends_on_slip else ""
-    coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s")}
+    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}
     title = f"Set K: {type(problem.friction).kind} friction{place}, {contact.regime}"
     attributes = {"title": title, "rule": contact.rule}
     return xr.Dataset(contents | path, coords=coordinates, attrs=attributes)
@@ -95,7 +94,7 @@ def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
     }
 
 
-def _fastest(contact: Uniqueness, path: NDArray[np.float64]) -> float:
+def _fastest(contact: Uniqueness, path: Floats) -> float:
     """Return the end of the axis of slip rates (m/s), beyond every fold, every jump and the run.
 
     If none of them has a slip rate above 0, it is a quarter of strength / impedance, the natural scale of the slip rate.
@@ -109,18 +108,7 @@ def _fastest(contact: Uniqueness, path: NDArray[np.float64]) -> float:
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `data` returned.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure; pyplot does not know it, save it with its `savefig`.
-    """
+    """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards."""
     figure, grid = panels(1, 1, (5.4, 4.2))
     axes = grid[0, 0]
     strength = float(dataset["strength"])
@@ -139,7 +127,7 @@ def draw(dataset: xr.Dataset) -> Figure:
     _draw_path(axes, dataset, height)
     fastest = float(dataset["slip_rate"][-1])
     axes.set(
-        xlabel="slip rate $v$ (m/s)",
+        xlabel=label(dataset["slip_rate"]),
         ylabel=r"load $\beta$ minus static strength (Pa)" if near else r"load $\beta$ (MPa)",
         xlim=(-fastest if backwards else -0.04 * fastest, fastest),
         ylim=(float(height(low)), float(height(high))),
@@ -160,25 +148,18 @@ def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> Non
     """Draw stick (vertical) and the stable, unstable and flat parts of the curve, or their mirror image for sign -1."""
     rate, excess, kind = (dataset[name].values for name in ("slip_rate", "excess", "kind"))
     stick = height(np.array([-float(dataset["strength"]), 0.0]), sign)
-    axes.plot([0.0, 0.0], stick, color=GREY, linewidth=3.0, label="stick" if sign > 0 else None)
-    shown = ((1, "slip, stable", BLUE, "-"), (-1, "slip, unstable", VERMILLION, "--"), (0, "slip, continuum", PURPLE, "-"))
-    for which, name, colour, style in shown:
-        chosen = kind == which
-        if not chosen.any():
-            continue
-        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
-            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
-        values = np.where(chosen, height(excess, sign), np.nan)
-        axes.plot(sign * rate, values, color=colour, linewidth=3.0, linestyle=style, label=name if sign > 0 else None)
+    look: dict[str, Any] = {"linewidth": 3.0} if sign > 0 else {"linewidth": 3.0, "label": None}
+    axes.plot([0.0, 0.0], stick, **{"color": GREY, "label": "stick"} | look)
+    draw_branches(axes, sign * rate, height(excess, sign), kind, **look)
 
 
 def _draw_jumps(axes: Axes, dataset: xr.Dataset, height: Height) -> None:
     arrow = {"arrowstyle": "-|>", "color": GREEN, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-    for k, (before, after, excess) in enumerate(dataset["jump"].values.tolist()):
+    for before, after, excess in dataset["jump"].values.tolist():
         level = float(height(excess))
         axes.annotate("", (after, level), (before, level), arrowprops=arrow)
-        if k == 0:
-            axes.plot([], [], color=GREEN, linewidth=1.2, label=f"jump, {dataset.attrs['rule']}")
+    if dataset.sizes["jumps"]:
+        axes.plot([], [], color=GREEN, linewidth=1.2, label=f"jump, {dataset.attrs['rule']}")
 
 
 def _draw_path(axes: Axes, dataset: xr.Dataset, height: Height) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, quantity, shown, styled, zero_line
+from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
@@ -27,9 +27,9 @@ def data(solution: Solution) -> xr.Dataset:
     turn = int(np.argmax(load))
     background = resistance.data({CASE: solution.problem}, float(rate.max()))
     run = {
-        "run_time": quantity("run_time", time, "time", "t", "s"),
-        "run_slip_rate": quantity("run_time", rate, "slip rate", "v", "m/s"),
-        "run_load": quantity("run_time", load, "load", r"\beta", "Pa"),
+        "run_time": curve_quantity("run_time", time, "time"),
+        "run_slip_rate": curve_quantity("run_time", rate, "slip_rate"),
+        "run_load": curve_quantity("run_time", load, "load"),
         "run_turn": xr.Variable((), turn, {"long_name": "index at which the load turns from rising to falling"}),
     }
     return background.assign(run).assign_attrs(title="The rule of perfect delay")
@@ -68,25 +68,14 @@ def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     axes.legend(loc="lower right")
 
 
-def _arrows(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+def _arrows(axes: Axes, x: Floats, y: Floats, colour: str) -> None:
     """Draw arrow heads in the middle of the jump, and halfway along the slipping and the sticking part of the path."""
     jump = int(np.argmax(np.abs(np.diff(x))))
-    for first, last in ((jump, jump + 1), *_middles(jump, x.size)):
-        axes.annotate(
-            "",
-            _between(x, y, first, last, 0.6),
-            _between(x, y, first, last, 0.4),
-            arrowprops={"arrowstyle": "-|>", "color": colour},
-        )
-
-
-def _middles(jump: int, size: int) -> list[tuple[int, int]]:
-    halves = [(0, jump), (jump + 1, size - 1)]
-    return [(low + 2 * (high - low) // 5, low + 3 * (high - low) // 5) for low, high in halves if high - low > 10]
-
-
-def _between(x: NDArray[np.float64], y: NDArray[np.float64], first: int, last: int, share: float) -> tuple[float, float]:
-    return float(x[first] + share * (x[last] - x[first])), float(y[first] + share * (y[last] - y[first]))
+    halves = [(low, high) for low, high in ((0, jump), (jump + 1, x.size - 1)) if high - low > 10]
+    middles = [(low + 2 * (high - low) // 5, low + 3 * (high - low) // 5) for low, high in halves]
+    for first, last in ((jump, jump + 1), *middles):
+        tail, head = ((x[first] + share * (x[last] - x[first]), y[first] + share * (y[last] - y[first])) for share in (0.4, 0.6))
+        axes.annotate("", head, tail, arrowprops={"arrowstyle": "-|>", "color": colour})
 
 
 def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:

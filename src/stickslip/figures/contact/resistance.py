@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,11 +12,15 @@ from matplotlib.figure import Figure
 
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled
+from stickslip.figures.panels import letter, panels
+from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, Floats, curve_quantity, label, quantity, shown, styled
 from stickslip.problem.problem import Problem
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
+
+BRANCHES = {1: ("slip, stable", BLUE, "-"), -1: ("slip, unstable", VERMILLION, "--"), 0: ("slip, continuum", PURPLE, "-")}
+"""Legend, colour and line style of the parts of the curve: 1 stable, -1 unstable, 0 a continuum of solutions."""
 
 
 def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
@@ -28,19 +33,16 @@ def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[s
     contents: dict[str, xr.Variable] = {}
     for name, problem in problems.items():
         g = resistance(problem)
-        contents[f"{name}_resistance"] = quantity("slip_rate", g.strength + g.excess(rates), "load", r"\beta", "Pa")
-        slope = xr.Variable("slip_rate", g.slope(rates), {"long_name": "slope of the resistance", "units": "Pa s/m"})
-        contents[f"{name}_slope"] = slope
+        slope = {"long_name": "slope of the resistance", "units": "Pa s/m"}
+        contents[f"{name}_resistance"] = curve_quantity("slip_rate", g.strength + g.excess(rates), "load")
+        contents[f"{name}_slope"] = xr.Variable("slip_rate", g.slope(rates), slope)
         contents[f"{name}_strength"] = quantity((), g.strength, "static strength", r"\mu_S S", "Pa")
-        for point, (rate, load) in corners(problem, largest_rate).items():
+        for point, place in corners(problem, largest_rate).items():
             where = {"long_name": f"point {point}: slip rate (m/s), load (Pa)", "units": "m/s, Pa"}
-            contents[f"{name}_point_{point}"] = xr.Variable("coordinate", [rate, load], where)
-    attributes = {
-        "title": "The set K",
-        "cases": list(problems),
-        "case_titles": [(titles or {}).get(name, name) for name in problems],
-    }
-    coordinates = {"slip_rate": quantity("slip_rate", rates, "slip rate", "v", "m/s"), "coordinate": ["slip_rate", "load"]}
+            contents[f"{name}_point_{point}"] = xr.Variable("coordinate", list(place), where)
+    shown_as = [(titles or {}).get(name, name) for name in problems]
+    attributes = {"title": "The set K", "cases": list(problems), "case_titles": shown_as}
+    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate"), "coordinate": ["slip_rate", "load"]}
     return xr.Dataset(contents, coords=coordinates, attrs=attributes)
 
 
@@ -82,31 +84,34 @@ def draw(dataset: xr.Dataset) -> Figure:
 def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False) -> None:
     """Draw the branches of K: stick (vertical), stable slip and unstable slip; `quiet` draws them in grey, as a background."""
     rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"])
-    strength = float(shown(dataset[f"{case}_strength"]))
-    rising = dataset[f"{case}_slope"].values > 0
-    colours = (GREY, GREY, GREY) if quiet else (INK, BLUE, VERMILLION)
-    width = 1.0 if quiet else 1.8
-    axes.plot([0, 0], [0, strength], color=colours[0], linewidth=width, label=None if quiet else "stick")
-    axes.plot(rate, np.where(rising, load, np.nan), color=colours[1], linewidth=width, label=None if quiet else "slip, stable")
-    if not rising.all():
-        # Extend the unstable part to the first rising point: the curve then has no gap.
-        falling = ~rising | np.roll(~rising, 1)
-        text = None if quiet else "slip, unstable"
-        axes.plot(rate, np.where(falling, load, np.nan), color=colours[2], linewidth=width, linestyle="--", label=text)
+    kind = np.where(dataset[f"{case}_slope"].values > 0, 1, -1)
+    look: dict[str, Any] = {"color": GREY, "linewidth": 1.0, "label": None} if quiet else {"linewidth": 1.8}
+    axes.plot([0, 0], [0, float(shown(dataset[f"{case}_strength"]))], **{"color": INK, "label": "stick"} | look)
+    draw_branches(axes, rate, load, kind, **look)
     axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
+
+
+def draw_branches(axes: Axes, rate: Floats, load: Floats, kind: Any, **look: Any) -> None:
+    """Draw the stable, unstable and flat parts of a curve, told apart by `kind`; `look` replaces colours, widths and labels."""
+    for which, (name, colour, style) in BRANCHES.items():
+        chosen = kind == which
+        if not chosen.any():
+            continue
+        if which != 1:  # extend each part to the first point of its neighbours: the curve then has no gap
+            chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
+        axes.plot(rate, np.where(chosen, load, np.nan), **{"color": colour, "linestyle": style, "label": name} | look)
 
 
 def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, int]) -> None:
     """Draw the points O to E of an irregular case and the levels of its folds; `moved` replaces offsets of names (in points)."""
     offsets = OFFSETS | moved
-    found = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
+    points = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
+    found = {point: (rate, load / 1e6) for point, (rate, load) in points.items()}
     low, high = axes.get_ylim()
     for point, (rate, load) in found.items():
-        if not low <= load / 1e6 <= high:
-            continue
-        axes.plot(rate, load / 1e6, "o", markersize=3.5, color=INK, zorder=5, clip_on=False)
-        axes.annotate(point, (rate, load / 1e6), offsets[point], textcoords="offset points", fontsize=9, fontweight="bold")
-    for start, end in (("A", "B"), ("D", "C")):
-        if found:
-            level = found[start][1] / 1e6
-            axes.plot([found[start][0], found[end][0]], [level, level], color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+        if low <= load <= high:
+            axes.plot(rate, load, "o", markersize=3.5, color=INK, zorder=5, clip_on=False)
+            axes.annotate(point, (rate, load), offsets[point], textcoords="offset points", fontsize=9, fontweight="bold")
+    for start, end in (("A", "B"), ("D", "C")) if found else ():
+        (left, level), (right, _) = found[start], found[end]
+        axes.plot([left, right], [level, level], color=GREY, linewidth=0.8, linestyle=":", zorder=0)

@@ -15,8 +15,9 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, narrow, places, seen, snapshots
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, letter, styled, zero_line
+from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, places, snapshots
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, narrow, styled
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
@@ -54,10 +55,10 @@ def _ffmpeg() -> str | None:
 def data(readings: Readings, start: float | None = None, end: float | None = None, frames: int | None = None) -> xr.Dataset:
     """Return the field at the time of each frame (default 150 frames), and the contact, from `start` to `end` (s), in SI.
 
-    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Raises InputError for a block, for times outside
-    the run, and for fewer than two frames.
+    The default interval is that of `choose_interval`. Raises InputError for a block, for times outside the run, and for fewer than
+    two frames.
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     frames = FRAMES if frames is None else frames
     if frames < 2:
         raise InputError(f"animation: needs at least 2 frames, got {frames}")
@@ -76,14 +77,15 @@ def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND
     path = Path(path)
     check_animation(path, "animation:")
     figure = _Film(figsize=SIZE, dpi=DPI, layout="constrained")
-    move, moving = _stage(figure, dataset)
+    move, moving = _draw_stage(figure, dataset)
     figure.keep_still(moving)
-    frames = dataset.sizes["time"]
+    frames, codec = dataset.sizes["time"], CODECS[path.suffix.lower()]
+    ffmpeg: Any = {"animation.ffmpeg_path": _ffmpeg()} if codec else {}
+    options: Any = {"codec": codec, "extra_args": ["-pix_fmt", "yuv420p"]}
+    writer: AbstractMovieWriter = FFMpegWriter(fps=per_second, **options) if codec else PillowWriter(fps=per_second)
 
     def render(draft: Path) -> None:
-        suffix = path.suffix.lower()
-        writer = _writer(suffix, per_second)
-        with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg()} if CODECS[suffix] else {}), writer.saving(figure, str(draft), DPI):
+        with mpl.rc_context(ffmpeg), writer.saving(figure, str(draft), DPI):
             for n in range(frames):
                 move(n)
                 writer.grab_frame()
@@ -91,12 +93,6 @@ def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND
                     progress(n + 1, frames)
 
     return write_atomically(path, render)
-
-
-def _writer(suffix: str, per_second: int) -> AbstractMovieWriter:
-    if suffix == ".gif":
-        return PillowWriter(fps=per_second)
-    return FFMpegWriter(fps=per_second, codec=CODECS[suffix], extra_args=["-pix_fmt", "yuv420p"])
 
 
 class _Film(Figure):
@@ -123,30 +119,28 @@ class _Film(Figure):
 def frame(dataset: xr.Dataset, n: int) -> Figure:
     """Return the n-th frame as a figure, counted from 0."""
     figure = Figure(figsize=SIZE, layout="constrained")
-    move, _ = _stage(figure, dataset)
+    move, _ = _draw_stage(figure, dataset)
     move(n)
     return figure
 
 
-def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
+def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw the film's panels; return a function that moves them to the n-th frame, and the list of artists that it changes."""
     scales = Scales(dataset)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
     unit, size = length_unit(float(np.abs(dataset.displacement).max()))
-    profiles = (
-        (axes["A"], dataset.displacement.values / size, f"displacement ({unit})", BLUE),
-        (axes["B"], scales.stresses(dataset.stress.values), scales.name_stress("shear stress"), VERMILLION),
-    )
-    lines = [_profile(panel, dataset, values, text, colour, scales) for panel, values, text, colour in profiles]
+    displacement, stress = dataset.displacement.values / size, scales.stresses(dataset.stress.values)
+    lines = [_draw_profile(axes["A"], dataset, displacement, BLUE), _draw_profile(axes["B"], dataset, stress, VERMILLION)]
+    axes["A"].set_xlabel(f"displacement ({unit})")
+    axes["B"].set(xlabel=scales.name_stress("shear stress"), ylabel="")
     axes["B"].tick_params(labelleft=False)
-    axes["B"].set_ylabel("")
     marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
     letter(axes["C"], dataset.attrs["title"])
     clock = axes["A"].set_title(" ")
 
     def move(n: int) -> None:
         now = float(dataset.time.values[n]) / scales.time
-        for line, (_, values, _, _) in zip(lines, profiles, strict=True):
+        for line, values in zip(lines, (displacement, stress), strict=True):
             line.set_xdata(values[n])
         for mark in marks:
             mark.set_xdata([now, now])
@@ -155,36 +149,34 @@ def _stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], 
     return move, [*lines, *marks, clock]
 
 
-def _profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, text: str, colour: str, scales: Scales) -> Any:
+def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: str) -> Any:
     """Set up axes whose limits hold every frame, and return the line that moves; the first frame stays, dotted."""
+    scales = Scales(dataset)
+    places = dataset.x.values / scales.place
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
-    panel.set_xlabel(text)
     scales.set_places(panel, dataset)
     panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False)
-    panel.plot(values[0], dataset.x.values / scales.place, color=GREY, linewidth=0.8, linestyle=":")
-    (line,) = panel.plot(values[0], dataset.x.values / scales.place, color=colour)
+    panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":")
+    (line,) = panel.plot(values[0], places, color=colour)
     return line
 
 
 def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
     """Draw the curves of the contact, and return the vertical lines that mark the present moment in each panel."""
-    time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values
-    slip = slip - slip[0]
+    time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values - dataset.contact_slip.values[0]
     unit, size = length_unit(float(np.abs(slip).max()))
     curves = (
         (slip / size, f"slip ({unit})", BLUE),
         (dataset.contact_slip_rate.values, "slip rate\n(m/s)", GREEN),
         (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress("traction")), VERMILLION),
     )
-    marks = []
     for panel, (values, text, colour) in zip(panels, curves, strict=True):
         panel.plot(time, values, color=colour)
-        panel.set_ylabel(text)
-        panel.set_xlim(time[0], time[-1])
+        panel.set(ylabel=text, xlim=time[[0, -1]])
         panel.tick_params(labelbottom=panel is panels[-1])
-        marks.append(panel.axvline(time[0], color=INK, linewidth=0.8))
+    marks = [panel.axvline(time[0], color=INK, linewidth=0.8) for panel in panels]
     zero_line(panels[1])
     panels[-1].set_xlabel(scales.clock)
     return marks

@@ -3,26 +3,44 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, quantity, styled, time_unit, zero_line
+from stickslip.figures.panels import count_ticks, leave_empty, letter, set_scale, zero_line
+from stickslip.figures.runs.slab_panels import last_large_event
+from stickslip.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    VERMILLION,
+    WIDE,
+    Floats,
+    curve_label,
+    curve_quantity,
+    length_unit,
+    quantity,
+    spans_decades,
+    styled,
+    system_title,
+    time_unit,
+)
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.solution import Solution
 
-Floats = NDArray[np.float64]
-
 CLOSE = 1e-3
 """The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
-WIDE = 100.0
-"""Positive values that span more than this factor, and counts above this number, are drawn on a logarithmic axis."""
+ZOOMS = {
+    "run": ("B  the run", "slip", "time $t$"),
+    "window": ("C  the event", "event_slip", "since its start"),
+    "close": ("D  its start", "event_slip", "since its start"),
+}
+"""Title, curve and name of the time axis of the three zooms, by the prefix of their variables."""
 
 
 def data(solution: Solution, event: int | None = None) -> xr.Dataset:
@@ -51,50 +69,27 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     table = solution.events
     if table.empty:
         raise InputError("catalogue figure: the run has no slip event")
-    slips = table.slip.to_numpy(float)
-    chosen = int(np.flatnonzero(slips >= 0.99 * slips.max())[-1]) if event is None else event
+    chosen = last_large_event(table.slip.to_numpy(float)) if event is None else event
     window = solution.window(chosen)
     lasting = window.shown[1] / 1.1
     near = solution.window(chosen, before=0.25 * CLOSE * lasting, after=CLOSE * lasting)
-    contents: dict[str, Any] = {}
-    for name, text, units in (
-        ("start", "start of the event", "s"),
-        ("slip", "slip", "m"),
-        ("recurrence", "recurrence time", "s"),
-    ):
-        contents[name] = quantity("event", table[name].to_numpy(float), text, "", units)
-    for name, (time, slip) in (
-        ("run", solution.curve("slip")),
-        ("window", window.curve("event_slip")),
-        ("close", near.curve("event_slip")),
-    ):
-        contents[f"{name}_time"] = quantity(f"{name}_point", time, "time", "t", "s")
-        contents[f"{name}_slip"] = quantity(f"{name}_point", slip, "slip", "u", "m")
-    contents["horizon"] = quantity((), _horizon(solution), "predictability horizon", "", "s")
+    about = {"start": ("start of the event", "s"), "slip": ("slip", "m"), "recurrence": ("recurrence time", "s")}
+    contents = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
+    for name, readings in (("run", solution), ("window", window), ("close", near)):
+        time, slip = readings.curve("slip" if name == "run" else "event_slip")
+        contents[f"{name}_time"] = curve_quantity(f"{name}_point", time, "time")
+        contents[f"{name}_slip"] = curve_quantity(f"{name}_point", slip, "slip")
+    # After the horizon only statistics mean anything.
+    horizon = predictability(solution).horizon if is_followed(solution.problem) else math.inf
+    contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
-    title = f"{type(solution.problem.body).kind.replace('-', ' ')}, {type(solution.problem.friction).kind} friction"
-    return xr.Dataset(contents, attrs={"title": f"{title}: {len(table)} slip event{'s' if len(table) > 1 else ''}"})
-
-
-def _horizon(solution: Solution) -> float:
-    """Return the predictability horizon (s), after which only statistics mean anything; inf if there is none or it is not known."""
-    return predictability(solution).horizon if is_followed(solution.problem) else math.inf
+    count = f"{len(table)} slip event{'s' if len(table) > 1 else ''}"
+    return xr.Dataset(contents, attrs={"title": f"{system_title(solution.problem)}: {count}"})
 
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
-    """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `data` returned.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure; pyplot does not know it, save it with its `savefig`.
-    """
+    """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map."""
     figure = Figure(figsize=(7.6, 7.2), layout="constrained")
     axes = figure.subplot_mosaic("AAA;BCD;EFG")
     _draw_time_line(axes["A"], dataset)
@@ -102,131 +97,94 @@ def draw(dataset: xr.Dataset) -> Figure:
     _draw_distribution(axes["E"], dataset["slip"].values)
     recurrence = dataset["recurrence"].values
     recurrence = recurrence[np.isfinite(recurrence)]
-    _draw_recurrence(axes["F"], recurrence)
-    _draw_return_map(axes["G"], recurrence)
+    for name, title, needed, draw_times in (
+        ("F", "F  recurrence times", 1, _draw_recurrence),
+        ("G", "G  return map", 2, _draw_return_map),
+    ):
+        letter(axes[name], title)
+        if len(recurrence) < needed:
+            leave_empty(axes[name], f"needs {needed + 1} events")
+        else:
+            unit, size = time_unit(float(recurrence.max()))
+            draw_times(axes[name], recurrence / size, unit)
     return figure
 
 
 def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
-    start, slip = dataset["start"].values, dataset["slip"].values
-    end = float(dataset["run_time"].values[-1])
-    unit, size = time_unit(end)
-    low = 0.5 * slip.min() if _wide(slip) else 0.0
-    axes.vlines(start / size, low, slip, color=BLUE, linewidth=0.9)
-    axes.plot(start / size, slip, "o", color=BLUE, markersize=3)
-    chosen = int(dataset["chosen"])
-    axes.plot(start[chosen] / size, slip[chosen], "o", color=VERMILLION, markersize=6, markerfacecolor="none")
-    horizon = float(dataset["horizon"])
+    slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
+    unit, size = time_unit(float(dataset["run_time"].values[-1]))
+    start, end = dataset["start"].values / size, float(dataset["run_time"].values[-1]) / size
+    low = 0.5 * slip.min() if wide else 0.0
+    axes.vlines(start, low, slip, color=BLUE, linewidth=0.9)
+    axes.plot(start, slip, "o", color=BLUE, markersize=3)
+    chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
+    axes.plot(start[chosen], slip[chosen], "o", color=VERMILLION, markersize=6, markerfacecolor="none")
     if horizon < end:
-        axes.axvspan(horizon / size, 1.02 * end / size, color=GREY, alpha=0.15, linewidth=0.0)
+        axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
         text, side = " shaded: beyond the predictability horizon ", "right" if horizon > 0.5 * end else "left"
-        axes.annotate(text, (horizon / size, 0.02), xycoords=("data", "axes fraction"), ha=side, color=INK)
-    axes.set_yscale("log" if _wide(slip) else "linear")
+        axes.annotate(text, (horizon, 0.02), xycoords=("data", "axes fraction"), ha=side, color=INK)
+    set_scale(axes, "y", wide)
     axes.set_ylim(bottom=low)
-    axes.set_xlim(-0.02 * end / size, 1.02 * end / size)
-    axes.set_xlabel(f"time $t$ ({unit})")
-    axes.set_ylabel("slip (m)")
+    axes.set(xlim=(-0.02 * end, 1.02 * end), xlabel=curve_label("time", unit), ylabel="slip (m)")
     letter(axes, f"A  {dataset.attrs['title']}")
 
 
 def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
-    chosen, local = int(dataset["chosen"]), "since its start"
-    shown = (("run", "B  the run", "time $t$"), ("window", "C  the event", local), ("close", "D  its start", local))
-    for axes, (name, title, what) in zip(panels, shown, strict=True):
+    for axes, (name, (title, curve, clock)) in zip(panels, ZOOMS.items(), strict=True):
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        unit, size = time_unit(float(np.ptp(time)))
-        power = _power(float(np.ptp(slip)))
-        axes.plot(time / size, slip / power, color=GREEN)
-        axes.set_xlabel(f"{what} ({unit})")
-        kind = "slip $u$" if name == "run" else "slip in the event"
-        axes.set_ylabel(f"{kind} ({_metres(power)})")
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), length_unit(float(np.ptp(slip)))
+        axes.plot(time / size, slip / metres, color=GREEN)
+        if name == "run":
+            axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
+        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         zero_line(axes)
         letter(axes, title)
-    unit, size = time_unit(float(np.ptp(dataset["run_time"].values)))
-    panels[0].axvline(float(dataset["start"].values[chosen]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
 
 
 def _draw_distribution(axes: Axes, slip: Floats) -> None:
     """Draw the number of events whose slip is at least x, against x."""
-    ordered = np.sort(slip)
-    many = len(slip) > WIDE
-    smallest = ordered[0] if _wide(slip) else 0.0
+    ordered, many, wide = np.sort(slip), len(slip) > WIDE, spans_decades(slip)
+    smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)
-    axes.set_xscale("log" if _wide(slip) else "linear")
-    axes.set_yscale("log" if many else "linear")
+    set_scale(axes, "x", wide)
+    set_scale(axes, "y", many)
     if not many:
         axes.set_ylim(bottom=0.0)
-        axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
-    if not _wide(slip):
+        count_ticks(axes)
+    if not wide:
         axes.set_xlim(0.0, 1.15 * ordered[-1])
-    axes.set_xlabel("slip (m)")
-    axes.set_ylabel("number of events with slip ≥ $x$")
+    axes.set(xlabel="slip $x$ (m)", ylabel="number of events with slip ≥ $x$")
     letter(axes, "E  slip")
 
 
-def _draw_recurrence(axes: Axes, recurrence: Floats) -> None:
-    letter(axes, "F  recurrence times")
-    if _too_few(axes, recurrence, 1):
-        return
-    unit, size = time_unit(float(recurrence.max()))
-    times = recurrence / size
+def _draw_recurrence(axes: Axes, times: Floats, unit: str) -> None:
+    """Draw a histogram of recurrence times, given in `unit`, with their mean and their coefficient of variation."""
     bins = min(max(int(np.sqrt(4 * len(times))), 5), 60)
-    edges = np.geomspace(times.min(), times.max(), bins + 1) if _wide(times) else np.linspace(0.0, 1.15 * times.max(), bins + 1)
+    wide = spans_decades(times)
+    edges = np.geomspace(times.min(), times.max(), bins + 1) if wide else np.linspace(0.0, 1.15 * times.max(), bins + 1)
     counts, _ = np.histogram(times, edges)
     axes.stairs(counts, edges, fill=True, color=BLUE)
     if counts.max() > WIDE:
-        axes.set_yscale("log")
-        axes.set_ylim(0.5, 4.0 * counts.max())
+        axes.set(yscale="log", ylim=(0.5, 4.0 * counts.max()))
     else:
         axes.set_ylim(0.0, 1.25 * counts.max())
-        axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
+        count_ticks(axes)
     axes.axvline(float(times.mean()), color=VERMILLION, linewidth=1.0)
-    axes.set_xscale("log" if _wide(times) else "linear")
-    axes.set_xlabel(f"recurrence time ({unit})")
-    axes.set_ylabel("events")
+    set_scale(axes, "x", wide)
+    axes.set(xlabel=f"recurrence time ({unit})", ylabel="events")
     if len(times) > 1:
-        variation = times.std(ddof=1) / times.mean()
-        text = axes.text(
-            0.03, 0.97, f"coefficient of variation {variation:.2g}", transform=axes.transAxes, va="top", color=VERMILLION
-        )
-        text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 1.0})
+        text = f"coefficient of variation {times.std(ddof=1) / times.mean():.2g}"
+        behind = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+        axes.text(0.03, 0.97, text, transform=axes.transAxes, va="top", color=VERMILLION, bbox=behind)
 
 
-def _draw_return_map(axes: Axes, recurrence: Floats) -> None:
-    letter(axes, "G  return map")
-    if _too_few(axes, recurrence, 2):
-        return
-    unit, size = time_unit(float(recurrence.max()))
-    times = recurrence / size
+def _draw_return_map(axes: Axes, times: Floats, unit: str) -> None:
+    """Draw each recurrence time, given in `unit`, against the one before it."""
     axes.plot(times[:-1], times[1:], "o", color=INK, markersize=2.5, alpha=0.7)
-    low, high = (0.5 * times.min(), 2.0 * times.max()) if _wide(times) else (0.0, 1.15 * times.max())
-    for scale, limits in ((axes.set_xscale, axes.set_xlim), (axes.set_yscale, axes.set_ylim)):
-        scale("log" if _wide(times) else "linear")
-        limits(low, high)
-    axes.plot([low, high], [low, high], color=GREY, linewidth=0.8, zorder=0)
-    axes.set_aspect("equal")
-    axes.set_xlabel(f"recurrence time ({unit})")
-    axes.set_ylabel(f"next recurrence time ({unit})")
-
-
-def _too_few(axes: Axes, recurrence: Floats, needed: int) -> bool:
-    """Return True, and say so in the panel, if there are fewer recurrence times than needed."""
-    if len(recurrence) >= needed:
-        return False
-    axes.set_axis_off()
-    axes.text(0.5, 0.5, f"needs {needed + 1} events", transform=axes.transAxes, ha="center", color=GREY)
-    return True
-
-
-def _wide(values: Floats) -> bool:
-    return bool(values.min() > 0.0 and values.max() > WIDE * values.min())
-
-
-def _power(length: float) -> float:
-    """Return the size (m) of the unit in which a length is readable: m, mm, µm or nm."""
-    return next((size for size in (1.0, 1e-3, 1e-6) if length > 0.5 * size), 1e-9)
-
-
-def _metres(size: float) -> str:
-    return {1.0: "m", 1e-3: "mm", 1e-6: "µm", 1e-9: "nm"}[size]
+    wide = spans_decades(times)
+    limits = (0.5 * times.min(), 2.0 * times.max()) if wide else (0.0, 1.15 * times.max())
+    set_scale(axes, "xy", wide)
+    axes.plot(limits, limits, color=GREY, linewidth=0.8, zorder=0)
+    axes.set(xlim=limits, ylim=limits, aspect="equal")
+    axes.set(xlabel=f"recurrence time ({unit})", ylabel=f"next recurrence time ({unit})")

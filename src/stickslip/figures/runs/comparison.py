@@ -9,18 +9,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from stickslip.figures.runs.curves import Name, nearly_flat
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, label, letter, panels, quantity, shown, styled, zero_line
+from stickslip.figures.panels import letter, panels, zero_line
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled
 
 if TYPE_CHECKING:
+    from stickslip.solution.evaluation import Curve
     from stickslip.solution.solution import Solution
 
-DASHED: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (4, 2))}
-"""Look of the load's line."""
-COLOURS = (BLUE, VERMILLION)
-ROWS: tuple[Name, ...] = ("slip", "slip_rate", "traction", "load")
+ROWS: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Curves of each run, in SI; the panel of traction shows the load too."""
 
 
@@ -31,24 +28,15 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
     """
     contents: dict[str, xr.Variable] = {}
     for name, solution in solutions.items():
-        unit = solution.problem.load_unit
-        force, load = ("traction", "load") if unit == "Pa" else ("friction force", "spring force")
-        meaning = {
-            "slip": ("slip", "u", "m"),
-            "slip_rate": ("slip rate", "v", "m/s"),
-            "traction": (force, r"\tau", unit),
-            "load": (load, r"\beta", unit),
-        }
+        body, along = solution.problem.body, f"{name}_time"
         for row in ROWS:
             time, values = solution.curve(row, 0.0, ends[name])
-            contents[f"{name}_{row}"] = quantity(f"{name}_time", values, *meaning[row])
-        contents[f"{name}_time"] = quantity(f"{name}_time", time, "time", "t", "s")
-        body = solution.problem.body
+            contents[f"{name}_{row}"] = curve_quantity(along, values, row, solution.problem.load_unit)
+        contents[along] = curve_quantity(along, time, "time")
         if body.has_waves:
             contents[f"{name}_two_way_time"] = quantity((), body.round_trip_time, "two-way travel time 2h/c", "R", "s")
     shown_as = [(titles or {}).get(name, name) for name in solutions]
-    attributes = {"title": "Runs side by side", "systems": list(solutions), "system_titles": shown_as}
-    return xr.Dataset(contents, attrs=attributes)
+    return xr.Dataset(contents, attrs={"title": "Runs side by side", "systems": list(solutions), "system_titles": shown_as})
 
 
 @styled
@@ -56,14 +44,14 @@ def draw(dataset: xr.Dataset) -> Figure:
     """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
     figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), sharex="col")
-    for column, (name, title) in enumerate(zip(names, titles, strict=True)):
-        _draw_column(axes[:, column], dataset, name, COLOURS[column % 2])
-        letter(axes[0, column], f"{'abcdef'[column]}   {title}")
+    for k, (name, title) in enumerate(zip(names, titles, strict=True)):
+        _draw_column(axes[:, k], dataset, name, LINE_COLOURS[k % 2])
+        letter(axes[0, k], f"{'abcdef'[k]}   {title}")
     figure.align_ylabels()
     return figure
 
 
-def _draw_column(column: NDArray[Any], dataset: xr.Dataset, name: str, colour: str) -> None:
+def _draw_column(column: Any, dataset: xr.Dataset, name: str, colour: str) -> None:
     time = dataset[f"{name}_time"]
     for panel, row in zip(column[:2], ROWS, strict=False):
         values = dataset[f"{name}_{row}"]
@@ -71,34 +59,31 @@ def _draw_column(column: NDArray[Any], dataset: xr.Dataset, name: str, colour: s
         panel.set_ylabel(label(values))
         zero_line(panel)
     _draw_stress(column[2], dataset, name, colour)
-    span = float(time[-1] - time[0])
-    column[2].set(xlabel=label(time), xlim=(float(time[0]) - 0.03 * span, float(time[-1])))
-    for panel in column:
-        _mark_echo(panel, dataset, name, named=panel is column[0])
+    first, last = float(time[0]), float(time[-1])
+    column[2].set(xlabel=label(time), xlim=(first - 0.03 * (last - first), last))
+    if f"{name}_two_way_time" in dataset:
+        _mark_echo(column, float(dataset[f"{name}_two_way_time"]))
 
 
 def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str) -> None:
     """Draw friction and load, as changes from the initial load if they hardly change."""
     time, friction, load = (dataset[f"{name}_{row}"] for row in ("time", "traction", "load"))
-    text, symbol = friction.attrs["long_name"], friction.attrs["symbol"]
+    text, heights = label(friction), (shown(load), shown(friction))
     if nearly_flat(friction.values, load.values):
-        start = float(load[0])
-        panel.plot(shown(time), load.values - start, color=INK, **DASHED, label=load.attrs["long_name"])
-        panel.plot(shown(time), friction.values - start, color=colour, label=text)
-        panel.set_ylabel(f"{text} change\n${symbol}-\\beta(0)$ ({friction.attrs['units']})")
-    else:
-        panel.plot(shown(time), shown(load), color=INK, **DASHED, label=load.attrs["long_name"])
-        panel.plot(shown(time), shown(friction), color=colour, label=text)
-        panel.set_ylabel(label(friction))
+        about, start = friction.attrs, float(load[0])
+        text = f"{about['long_name']} change\n${about['symbol']}-\\beta(0)$ ({about['units']})"
+        heights = load.values - start, friction.values - start
+    dashed: dict[str, Any] = {"color": INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
+    for variable, values, look in zip((load, friction), heights, (dashed, {"color": colour}), strict=True):
+        panel.plot(shown(time), values, label=variable.attrs["long_name"], **look)
+    panel.set_ylabel(text)
     zero_line(panel)
     panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2, borderaxespad=0.0)
 
 
-def _mark_echo(panel: Axes, dataset: xr.Dataset, name: str, named: bool) -> None:
-    if f"{name}_two_way_time" not in dataset:
-        return
-    at = float(dataset[f"{name}_two_way_time"])
-    panel.axvline(at, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-    if named:
-        where: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
-        panel.annotate("2h/c", (at, 1.0), (0, 2), ha="center", fontsize=8, color=GREY, **where)
+def _mark_echo(column: Any, at: float) -> None:
+    """Mark the return of the first echo, at 2h/c, in every panel."""
+    for panel in column:
+        panel.axvline(at, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+    where: dict[str, Any] = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+    column[0].annotate("2h/c", (at, 1.0), (0, 2), ha="center", fontsize=8, color=GREY, **where)

@@ -9,8 +9,23 @@ import xarray as xr
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
-from stickslip.figures.runs.slab_panels import seen, sheet
-from stickslip.figures.style import BLUE, GREEN, INK, PURPLE, SKY, VERMILLION, letter, quantity, readable, styled, time_unit
+from stickslip.figures.panels import letter, sheet
+from stickslip.figures.runs.slab_panels import choose_interval
+from stickslip.figures.style import (
+    BLUE,
+    GREEN,
+    INK,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    clock,
+    curve_quantity,
+    quantity,
+    readable,
+    styled,
+    system_title,
+    time_unit,
+)
 from stickslip.observables.energy.balance import energies
 
 if TYPE_CHECKING:
@@ -37,7 +52,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     readings : Readings
         A run, or a window on one.
     start, end : float, optional
-        The interval (s); by default the one that `figures.runs.slab_panels.seen` chooses.
+        The interval (s); by default that of `choose_interval`.
 
     Returns
     -------
@@ -52,20 +67,19 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     InputError
         For times outside the run, and if the waves inside the slab are not known (a leap over creep).
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))
-    body = readings.problem.body
-    unit = "J/m²" if body.has_waves else "J"
-    parts = {name: values - values[0] for name, values in found.items() if name in ("radiated", "damped", "heat", "work")}
+    unit = "J/m²" if readings.problem.body.has_waves else "J"
+    parts = {name: found[name] - found[name][0] for name in ("radiated", "damped", "heat")}
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
-    total = parts["elastic"][0] + parts["kinetic"][0] + parts["work"] + parts["radiated"]
+    work = found["work"] - found["work"][0]
+    total = parts["elastic"][0] + parts["kinetic"][0] + work + parts["radiated"]
     contents = {name: quantity("time", parts[name], text, "", unit) for name, (text, _) in PARTS.items()}
     contents["total"] = quantity("time", total, "initial energy plus work of the driver", "", unit)
-    clock = "time since the event began" if "event_slip" in readings.curves else "time $t$"
-    title = f"{type(body).kind.replace('-', ' ').capitalize()}, {type(readings.problem.friction).kind} friction"
-    return xr.Dataset(contents, {"time": quantity("time", time, "time", "t", "s")}, {"title": title, "clock": clock})
+    attributes = {"title": system_title(readings.problem), "clock": clock(readings)}
+    return xr.Dataset(contents, {"time": curve_quantity("time", time, "time")}, attributes)
 
 
 @styled
@@ -80,17 +94,15 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     figure = sheet(figure, (6.4, 3.8))
     axes: Any = figure.subplots()
     unit, size = readable(float(dataset.total.max()), dataset.total.attrs["units"])
-    clock, second = time_unit(float(np.ptp(dataset.time.values)))
+    time_name, second = time_unit(float(np.ptp(dataset.time.values)))
     time = dataset.time.values / second
-    drawn = [name for name in PARTS if dataset[name].values.any()]
-    areas = [dataset[name].values / size for name in drawn]
-    axes.stackplot(
-        time, *areas, labels=[PARTS[name][0] for name in drawn], colors=[PARTS[name][1] for name in drawn], linewidth=0.0
-    )
-    axes.plot(
-        time, dataset.total.values / size, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=dataset.total.attrs["long_name"]
-    )
-    axes.set(xlabel=f"{dataset.attrs['clock']} ({clock})", ylabel=f"energy ({unit})", xlim=(time[0], time[-1]), ylim=(0.0, None))
+    drawn = {name: look for name, look in PARTS.items() if dataset[name].values.any()}
+    if drawn:
+        texts, colours = zip(*drawn.values(), strict=True)
+        axes.stackplot(time, *(dataset[name].values / size for name in drawn), labels=texts, colors=colours, linewidth=0.0)
+    dashed: Any = {"color": INK, "linewidth": 1.0, "linestyle": (0, (4, 2))}
+    axes.plot(time, dataset.total.values / size, label=dataset.total.attrs["long_name"], **dashed)
+    axes.set(xlabel=f"{dataset.attrs['clock']} ({time_name})", ylabel=f"energy ({unit})", xlim=time[[0, -1]], ylim=(0.0, None))
     handles, names = axes.get_legend_handles_labels()
     # Reversed, the legend has the order of the stack.
     figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)

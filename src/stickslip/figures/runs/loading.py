@@ -6,11 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
-from stickslip.figures.style import INK, PALE, readable, zero_line
+from stickslip.figures.panels import zero_line
+from stickslip.figures.style import INK, PALE, Floats, readable
 from stickslip.loading import LoadingHistory
-from stickslip.problem.problem import MAY_VARY, Problem
+from stickslip.problem.problem import MAY_VARY
 from stickslip.solution.evaluation import Readings
 
 PERIODS = 60.0
@@ -19,15 +19,10 @@ POINTS = 32
 """Points in a period of a tone, enough for a smooth line."""
 
 
-def varying(problem: Problem) -> str:
-    """Return the name of the problem's field that varies in time, or an empty string if none does."""
-    return next((name for name in MAY_VARY if isinstance(getattr(problem, name), LoadingHistory)), "")
-
-
 def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size: float) -> None:
     """Draw the varying field from `start` to `end` (s since the epoch of the readings), against time in units of `size` (s)."""
-    name = varying(readings.problem)
-    history: LoadingHistory = getattr(readings.problem, name)
+    fields = {name: getattr(readings.problem, name) for name in MAY_VARY}
+    name, history = next((name, field) for name, field in fields.items() if isinstance(field, LoadingHistory))
     row, offset = readings.history.epoch
     begun = row * readings.history.row_time + offset
     tone, swing = history.tone, abs(history.tone.amplitude)
@@ -47,7 +42,7 @@ def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size
     panel.set_ylabel(f"{name.replace('_', ' ')}\n({unit})")
 
 
-def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[Floats, Floats]:
     """Return times (s since t = 0) and values of the straight segments between two times, with both limits at jumps.
 
     The points are dense enough to add a tone that makes the given number of `turns` between the two times.

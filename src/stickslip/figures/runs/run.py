@@ -8,12 +8,25 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from stickslip.figures.runs.curves import nearly_flat
+from stickslip.figures.panels import letter, zero_line
 from stickslip.figures.runs.loading import draw_loading
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, letter, readable, styled, time_unit, zero_line
-from stickslip.solution.evaluation import Curve, Readings
+from stickslip.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    VERMILLION,
+    Floats,
+    clock,
+    curve_label,
+    nearly_flat,
+    readable,
+    styled,
+    system_title,
+    time_unit,
+)
+from stickslip.solution.evaluation import Readings
 
 MANY = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
@@ -28,43 +41,30 @@ def plot_run(solution: Readings, start: float | None = None, end: float | None =
     """
     start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
     unit, size = time_unit(end - start)
-    of_event = "event_slip" in solution.curves
-    axes: Any = _sheet(solution)
-    drawn: tuple[tuple[Axes, Curve, str], ...] = ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN))
-    for panel, name, colour in drawn:
+    varies = solution.problem.varies
+    heights = [3, 3, 3, 2] if varies else [1, 1, 1]
+    figure = pyplot.figure(figsize=(6.4, 6.8 if varies else 5.6), layout="constrained")
+    axes: Any = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    for panel, name, colour in ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN)):
         time, values = solution.curve(name, start, end)
+        if name == "slip_rate" and not solution.problem.friction.sticks:
+            # A contact that never sticks slips at widely different rates.
+            panel.set_yscale("log")
+            values = np.where(values != 0.0, np.abs(values), np.nan)
         panel.plot(time / size, values, color=colour)
+        panel.set_ylabel(curve_label(name))
     _draw_stress(axes[2], solution, start, end, size)
-    if solution.problem.varies:
+    if varies:
         draw_loading(axes[3], solution, start, end, size)
-    if not solution.problem.friction.sticks:
-        _draw_every_size(axes[1], *solution.curve("slip_rate", start, end), size)
     for panel in axes[:3]:
         if panel.get_yscale() == "linear":
             zero_line(panel)
         for at in _shock_times(solution, start, end):
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
-    axes[0].set_ylabel("slip in the event (m)" if of_event else "slip $u$ (m)")
-    axes[1].set_ylabel("slip rate $v$ (m/s)")
-    axes[-1].set_xlabel(f"time since the event began ({unit})" if of_event else f"time $t$ ({unit})")
-    letter(axes[0], title or _title(solution))
-    figure: Figure = axes[0].figure
+    axes[-1].set_xlabel(f"{clock(solution)} ({unit})")
+    letter(axes[0], title or system_title(solution.problem))
     figure.align_ylabels()
     return figure
-
-
-def _sheet(solution: Readings) -> Any:
-    """Return the panels of a new figure: three, and a fourth of less height if the loading varies."""
-    heights = [3, 3, 3, 2] if solution.problem.varies else [1, 1, 1]
-    figure = pyplot.figure(figsize=(6.4, 6.8 if solution.problem.varies else 5.6), layout="constrained")
-    return figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-
-
-def _draw_every_size(panel: Axes, time: NDArray[np.float64], rate: NDArray[np.float64], size: float) -> None:
-    """Draw the magnitude of the slip rate on a logarithmic axis: a contact that never sticks slips at widely different rates."""
-    panel.clear()
-    speed = np.abs(rate)
-    panel.semilogy(time / size, np.where(speed > 0.0, speed, np.nan), color=GREEN)
 
 
 def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size: float) -> None:
@@ -81,13 +81,7 @@ def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size
     panel.legend(loc="best")
 
 
-def _shock_times(solution: Readings, start: float, end: float) -> NDArray[np.float64]:
+def _shock_times(solution: Readings, start: float, end: float) -> Floats:
     times = np.asarray(solution.shocks["time"], dtype=float)
     times = times[(times >= start) & (times <= end)]
     return times if times.size <= MANY else times[:0]
-
-
-def _title(solution: Readings) -> str:
-    problem = solution.problem
-    body = type(problem.body).kind.replace("-", " ").capitalize()
-    return f"{body}, {type(problem.friction).kind} friction"

@@ -11,20 +11,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from stickslip.figures.runs.curves import nearly_flat
-from stickslip.figures.style import length_unit, quantity, readable, time_unit
+from stickslip.figures.style import (
+    Floats,
+    clock,
+    curve_quantity,
+    length_unit,
+    nearly_flat,
+    quantity,
+    readable,
+    system_title,
+    time_unit,
+)
 from stickslip.foundation.errors import InputError
 from stickslip.observables.field import slab_of
 from stickslip.solution.solution import Solution
-from stickslip.solution.window import Window
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Curve, Readings
-
-Floats = NDArray[np.float64]
 
 LONG = 50
 """Of a run over more round trips than this, only the time around one slip event is shown: waves could not be seen otherwise."""
@@ -32,7 +36,7 @@ ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
 
 
-def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
+def choose_interval(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
     """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
 
     The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a
@@ -43,28 +47,22 @@ def seen(readings: Readings, start: float | None, end: float | None) -> tuple[Re
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):
-            chosen = int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
-            readings = readings.window(chosen, before=0.25 * round_trip)
+            readings = readings.window(last_large_event(slips), before=0.25 * round_trip)
             end = min(readings.shown[1] + round_trip, readings.history.span[1])
-    start, end = (given if given is not None else edge for given, edge in zip((start, end), readings.shown, strict=True))
+    start, end = readings.shown[0] if start is None else start, readings.shown[1] if end is None else end
     if not start < end:
         raise InputError(f"figure: must end after it starts, at {start:g} s; got {end:g} s")
     return readings, start, end
 
 
-def run_of(readings: Readings) -> Solution:
-    """Return the run itself, also if a window on it is given."""
-    run = readings.solution if isinstance(readings, Window) else readings
-    assert isinstance(run, Solution)
-    return run
+def last_large_event(slips: Floats) -> int:
+    """Return the row number of the last event whose slip is at least 99 % of the largest."""
+    return int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
 
 
 def about(readings: Readings) -> dict[str, Any]:
     """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
-    problem = readings.problem
-    clock = "time since the event began" if "event_slip" in readings.curves else "time $t$"
-    title = f"Elastic slab, {type(problem.friction).kind} friction"
-    return {"title": title, "clock": clock, "thickness": slab_of(readings.problem).thickness}
+    return {"title": system_title(readings.problem), "clock": clock(readings), "thickness": slab_of(readings.problem).thickness}
 
 
 def places(readings: Readings, count: int) -> Floats:
@@ -115,36 +113,16 @@ def _slope(displacement: Floats, step: Floats, axis: int, middle: Floats, size: 
 
 def axes_variables(time: Floats, x: Floats) -> dict[str, xr.Variable]:
     """Return the coordinates `time` (s) and `x` (m) of a dataset."""
-    return {"time": quantity("time", time, "time", "t", "s"), "x": quantity("x", x, "distance from the contact", "x", "m")}
+    return {"time": curve_quantity("time", time, "time"), "x": quantity("x", x, "distance from the contact", "x", "m")}
 
 
 def contact_variables(readings: Readings, start: float, end: float, names: Sequence[Curve]) -> dict[str, xr.Variable]:
     """Return the named curves of the contact against `contact_time` (s), in SI, with both limits at every shock."""
-    about: dict[str, tuple[str, str, str]] = {
-        "slip": ("slip", "u", "m"),
-        "event_slip": ("slip in the event", "u", "m"),
-        "slip_rate": ("slip rate", "v", "m/s"),
-        "traction": ("traction", r"\tau", "Pa"),
-    }
     contents: dict[str, xr.Variable] = {}
     for name in names:
         time, values = readings.curve(name, start, end)
-        shown_as = "slip" if name == "event_slip" else name
-        contents[f"contact_{shown_as}"] = quantity("contact_point", values, *about[name])
-    return contents | {"contact_time": quantity("contact_point", time, "time", "t", "s")}
-
-
-def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
-    """Return a figure of this size (inches) to draw on: the given one, or a new one that pyplot does not know."""
-    figure = Figure() if figure is None else figure
-    figure.set_size_inches(*size)
-    figure.set_layout_engine("constrained")
-    return figure
-
-
-def narrow(text: str) -> str:
-    """Return a label in two lines, with the unit in the second, for narrow panels."""
-    return text if "\n" in text else text.replace(" (", "\n(")
+        contents[f"contact_{name.removeprefix('event_')}"] = curve_quantity("contact_point", values, name)
+    return contents | {"contact_time": curve_quantity("contact_point", time, "time")}
 
 
 class Scales:

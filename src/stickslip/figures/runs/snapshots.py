@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps, pyplot
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from stickslip.figures.runs.slab_panels import Scales, about, places, seen, sheet, snapshots
-from stickslip.figures.style import label, length_unit, letter, styled
+from stickslip.figures.panels import letter, sheet
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, places, snapshots
+from stickslip.figures.style import label, length_unit, styled
 from stickslip.observables.field import slab_of
 
 if TYPE_CHECKING:
@@ -25,11 +25,11 @@ COUNT, PLACES = 6, 1500
 def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
     """Return the field at the given times (s), in SI.
 
-    The default is six times over the first round trip of the interval that `figures.runs.slab_panels.seen` chooses, or from the
-    start of the event if it chooses a window. Raises InputError for a block, and for times outside the run.
+    The default is six times over the first round trip of the interval of `choose_interval`, or from the start of the event if that
+    is a window. Raises InputError for a block, and for times outside the run.
     """
     if times is None:
-        readings, start, end = seen(readings, None, None)
+        readings, start, end = choose_interval(readings, None, None)
         start = max(start, 0.0) if "event_slip" in readings.curves else start
         # 0.35, and not 0.5: fronts on their way back would else lie where others were on their way out.
         shares = (np.arange(COUNT) + 0.35) / COUNT
@@ -51,21 +51,19 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     figure = sheet(figure, (7.6, 3.8))
     axes: Any = figure.subplots(1, 3, sharey=True)
     unit, size = length_unit(float(np.abs(dataset.displacement).max()))
-    drawn = (dataset.displacement.values / size, dataset.velocity.values, scales.stresses(dataset.stress.values))
     since = dataset.displacement.attrs["long_name"].replace(" ", f" ({unit})\n", 1)
-    texts = (since, label(dataset.velocity), scales.name_stress(r"shear stress $\sigma$"))
-    for panel, values in zip(axes, drawn, strict=True):
-        _draw_lines(panel, dataset, values, scales)
-    for panel, text in zip(axes, texts, strict=True):
+    drawn = (
+        (since, dataset.displacement.values / size),
+        (label(dataset.velocity), dataset.velocity.values),
+        (scales.name_stress(r"shear stress $\sigma$"), scales.stresses(dataset.stress.values)),
+    )
+    colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, dataset.sizes["time"]))
+    for panel, (text, values) in zip(axes, drawn, strict=True):
+        for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
+            panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.4g}")
         panel.set_xlabel(text)
         scales.set_places(panel, dataset, named=panel is axes[0])
     letter(axes[0], dataset.attrs["title"])
     lines, names = axes[0].get_legend_handles_labels()
     figure.legend(lines, names, title=scales.clock.replace("since ", "since\n"), loc="outside right upper", alignment="left")
     return figure
-
-
-def _draw_lines(panel: Axes, dataset: xr.Dataset, values: np.ndarray, scales: Scales) -> None:
-    colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, len(values)))
-    for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
-        panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.4g}")

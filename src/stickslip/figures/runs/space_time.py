@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from matplotlib import pyplot
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stickslip.figures.panels import letter, sheet, zero_line
 from stickslip.figures.runs.run import MANY
-from stickslip.figures.runs.slab_panels import Floats, Scales, about, contact_variables, means, narrow, places, run_of, seen, sheet
-from stickslip.figures.style import GREEN, INK, VERMILLION, label, letter, quantity, styled, zero_line
+from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, means, places
+from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled
 from stickslip.observables.field import slab_of
+from stickslip.solution.solution import Solution
+from stickslip.solution.window import Window
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
@@ -28,10 +30,10 @@ FAINT = 0.1
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
     """Return field, contact and characteristics from `start` to `end` (s), in SI.
 
-    The default interval is the one that `figures.runs.slab_panels.seen` chooses. Each characteristic is a line of corners in time
-    and x, padded with NaN. Raises InputError for a block, and for times outside the run.
+    The default interval is that of `choose_interval`. Each characteristic is a line of corners in time and x, padded with NaN.
+    Raises InputError for a block, and for times outside the run.
     """
-    readings, start, end = seen(readings, start, end)
+    readings, start, end = choose_interval(readings, start, end)
     body = slab_of(readings.problem)
     contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
@@ -51,7 +53,9 @@ def _origins(readings: Readings, start: float, end: float) -> Floats:
     characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
     """
     history, round_trip = readings.history, slab_of(readings.problem).two_way_time
-    events = run_of(readings).events
+    run = readings.solution if isinstance(readings, Window) else readings
+    assert isinstance(run, Solution)
+    events = run.events
     begin = history.seconds(events.start_row.to_numpy(), events.start_offset.to_numpy(float))
     shocks = shocks_table(history, start - round_trip, end).time.to_numpy(float)
     times = np.sort(np.concatenate([shocks, begin, begin + events.duration.to_numpy(float)]))
@@ -89,50 +93,30 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     scales = Scales(dataset)
     figure = sheet(figure, (7.2, 7.4))
     axes: Any = figure.subplots(4, 1, sharex=True, height_ratios=(2.2, 2.2, 1.0, 1.0))
-    velocity = dataset.velocity.values
+    velocity, stress = dataset.velocity.values, scales.stresses(dataset.stress.values)
     largest = float(np.abs(velocity).max()) or 1.0
-    rates: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
-    images = (
-        (axes[0], velocity, "velocity\n(m/s)", rates),
-        (
-            axes[1],
-            scales.stresses(dataset.stress.values),
-            narrow(scales.name_stress("shear stress")),
-            {"cmap": "viridis"},
-        ),
-    )
-    for panel, values, text, colours in images:
-        image = panel.imshow(values.T, origin="lower", aspect="auto", extent=_edges(dataset, scales), **colours)
-        figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
-        _draw_fronts(panel, dataset, scales)
-        scales.set_places(panel, dataset)
-    _draw_contact(axes[2:], dataset, scales)
+    _draw_image(axes[0], dataset, velocity, "velocity\n(m/s)", cmap="RdBu_r", vmin=-largest, vmax=largest)
+    _draw_image(axes[1], dataset, stress, narrow(scales.name_stress("shear stress")), cmap="viridis")
+    time = dataset.contact_time.values / scales.time
+    axes[2].plot(time, dataset.contact_slip_rate, color=GREEN)
+    axes[2].set_ylabel(narrow(label(dataset.contact_slip_rate)))
+    zero_line(axes[2])
+    axes[3].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
+    axes[3].set(ylabel=narrow(scales.name_stress(r"traction $\tau$")), xlabel=scales.clock, xlim=time[[0, -1]])
     letter(axes[0], dataset.attrs["title"])
     figure.align_ylabels()
     return figure
 
 
-def _edges(dataset: xr.Dataset, scales: Scales) -> tuple[float, float, float, float]:
-    """Return the edges of the images, in the units drawn: first and last time, contact and driver."""
-    time = dataset.time.values
-    half = 0.5 * (time[1] - time[0])
-    return (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, dataset.attrs["thickness"] / scales.place
-
-
-def _draw_fronts(panel: Axes, dataset: xr.Dataset, scales: Scales) -> None:
-    places = dataset.front_x.values / scales.place
+def _draw_image(panel: Any, dataset: xr.Dataset, values: Floats, text: str, **colours: Any) -> None:
+    """Draw values over time and x, with a scale of colours and the characteristics."""
+    scales, time = Scales(dataset), dataset.time.values
+    half, thickness = 0.5 * (time[1] - time[0]), dataset.attrs["thickness"]
+    edges = (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, thickness / scales.place
+    image = panel.imshow(values.T, origin="lower", aspect="auto", extent=edges, **colours)
+    panel.figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
     # White dashes on a dark line can be seen on light and on dark parts of the image.
     for times in dataset.front_time.values:
-        panel.plot(times / scales.time, places, color=INK, linewidth=0.6)
-        panel.plot(times / scales.time, places, color="white", linewidth=0.6, linestyle=(0, (4, 4)))
-
-
-def _draw_contact(panels: Any, dataset: xr.Dataset, scales: Scales) -> None:
-    time = dataset.contact_time.values / scales.time
-    panels[0].plot(time, dataset.contact_slip_rate, color=GREEN)
-    panels[0].set_ylabel(narrow(label(dataset.contact_slip_rate)))
-    panels[1].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
-    panels[1].set_ylabel(narrow(scales.name_stress(r"traction $\tau$")))
-    panels[1].set_xlabel(scales.clock)
-    panels[1].set_xlim(time[0], time[-1])
-    zero_line(panels[0])
+        for look in ({"color": INK}, {"color": "white", "linestyle": (0, (4, 4))}):
+            panel.plot(times / scales.time, dataset.front_x.values / scales.place, linewidth=0.6, **look)
+    scales.set_places(panel, dataset)

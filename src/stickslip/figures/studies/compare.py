@@ -8,38 +8,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from stickslip.figures.runs.curves import nearly_flat
-from stickslip.figures.style import (
-    BLUE,
-    GREEN,
-    INK,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    label,
-    letter,
-    panels,
-    quantity,
-    shown,
-    styled,
-    time_unit,
-    zero_line,
-)
+from stickslip.figures.panels import letter, panels, zero_line
+from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, label, nearly_flat, quantity, shown, styled, time_unit
 from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
     from stickslip.studies.compare import Comparison
 
-COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 """Line styles; the next one is taken when all colours are used up."""
 APART = 20.0
 """If the durations differ by more than this factor, each run is drawn against time divided by its own duration."""
-WIDE = 300.0
+FAR_APART = 300.0
 """If the largest slips or slip rates of the runs differ by more than this factor, the axis is logarithmic."""
 MARGIN = 1.25
 """A run is drawn up to this multiple of the end of its last event, so that the rest after it is seen."""
@@ -59,37 +41,19 @@ def data(study: Comparison) -> xr.Dataset:
     spans = {name: _span(run) if event is None else views[name].shown for name, run in runs.items()}
     lengths = [end - start for start, end in spans.values()]
     shares = max(lengths) > APART * min(lengths)
-    forces = {run.problem.load_unit for run in runs.values()}
+    mixed = len({run.problem.load_unit for run in runs.values()}) > 1
     contents: dict[str, xr.Variable] = {}
     for k, name in enumerate(runs):
-        contents |= _run(f"run{k}", views[name], spans[name], shares, mixed=len(forces) > 1)
+        contents |= _run(f"run{k}", views[name], spans[name], shares=shares, mixed=mixed)
+    units = [(length, *time_unit(length)) for length in lengths]
     attributes = {
         "title": "Runs side by side",
         "runs": list(runs),
-        "spans": [_span_text(*span) for span in spans.values()],
+        "spans": [f"{length / size:.4g} {unit}" for length, unit, size in units],
         "shares": int(shares),
         "local": int(event is not None),
     }
     return xr.Dataset(contents, attrs=attributes)
-
-
-def _run(key: str, view: Readings, span: tuple[float, float], shares: bool, mixed: bool) -> dict[str, xr.Variable]:
-    problem = view.problem
-    slip: Curve = "event_slip" if "event_slip" in view.curves else "slip"
-    origin = 0.0 if slip == "event_slip" else problem.initial_slip
-    force = "traction" if problem.load_unit == "Pa" else "friction force"
-    stress = ("friction", r"\tau/S", "1") if mixed else (force, r"\tau", problem.load_unit)
-    contents = {}
-    for row, curve in zip(ROWS, (slip, "slip_rate", "traction"), strict=True):
-        time, values = view.curve(curve, *span)
-        along = ("share of the time drawn", "t", "1") if shares else ("time", "t", "s")
-        contents[f"{key}_{row}_time"] = quantity(
-            f"{key}_{row}_time", (time - span[0]) / (span[1] - span[0]) if shares else time, *along
-        )
-        scaled = {"slip": values - origin, "slip_rate": values, "traction": values / (problem.normal if mixed else 1.0)}[row]
-        meaning = {"slip": ("slip", "u-u_0", "m"), "slip_rate": ("slip rate", "v", "m/s"), "traction": stress}[row]
-        contents[f"{key}_{row}"] = quantity(f"{key}_{row}_time", scaled, *meaning)
-    return contents
 
 
 def _span(run: Solution) -> tuple[float, float]:
@@ -104,75 +68,74 @@ def _span(run: Solution) -> tuple[float, float]:
     return 0.0, min(end, MARGIN * float(events.end.iloc[-1]))
 
 
-def _span_text(start: float, end: float) -> str:
-    unit, size = time_unit(end - start)
-    return f"{(end - start) / size:.4g} {unit}"
+def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, mixed: bool) -> dict[str, xr.Variable]:
+    """Return the curves of one run and their times, with `key` as prefix of the variables."""
+    problem, contents = view.problem, {}
+    slip: Curve = "event_slip" if "event_slip" in view.curves else "slip"
+    for row, curve in zip(ROWS, (slip, "slip_rate", "traction"), strict=True):
+        along = f"{key}_{row}_time"
+        time, values = view.curve(curve, *span)
+        if row == "slip":
+            slipped = values if slip == "event_slip" else values - problem.initial_slip
+            contents[f"{key}_{row}"] = quantity(along, slipped, "slip", "u-u_0", "m")
+        elif row == "traction" and mixed:
+            contents[f"{key}_{row}"] = quantity(along, values / problem.normal, "friction", r"\tau/S", "1")
+        else:
+            contents[f"{key}_{row}"] = curve_quantity(along, values, row, problem.load_unit)
+        part = (time - span[0]) / (span[1] - span[0])
+        contents[along] = (
+            quantity(along, part, "share of the time drawn", "t", "1") if shares else curve_quantity(along, time, "time")
+        )
+    return contents
 
 
 @styled
 def draw(dataset: xr.Dataset) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
     figure, grid = panels(len(ROWS), 1, (6.4, 6.4), sharex=True)
-    names = [str(name) for name in np.atleast_1d(dataset.attrs["runs"])]
+    names, spans = (np.atleast_1d(dataset.attrs[key]).astype(str).tolist() for key in ("runs", "spans"))
+    shares = dataset.attrs["shares"]
+    times = [dataset[f"run{k}_slip_time"].values for k in range(len(names))]
+    unit, size = ("1", 1.0) if shares else time_unit(max(float(np.ptp(time)) for time in times))
     for axes, row in zip(grid[:, 0], ROWS, strict=True):
-        _draw_row(axes, dataset, row, len(names))
-    spans = np.atleast_1d(dataset.attrs["spans"])
-    texts = [f"{name} ({span})" if dataset.attrs["shares"] else name for name, span in zip(names, spans, strict=True)]
-    handles = grid[0, 0].get_lines()[: len(names)]
-    figure.legend(handles, texts, loc="outside lower center", ncols=2 if len(texts) > 1 else 1)
+        _draw_row(axes, dataset, row, size)
+    texts = [f"{name} ({span})" for name, span in zip(names, spans, strict=True)] if shares else names
+    figure.legend(grid[0, 0].get_lines()[: len(names)], texts, loc="outside lower center", ncols=2 if len(texts) > 1 else 1)
     letter(grid[0, 0], dataset.attrs["title"])
-    grid[-1, 0].set_xlabel(_time_label(dataset))
+    since = " since each event began" if dataset.attrs["local"] else ""
+    grid[-1, 0].set_xlabel(f"time{since}" + (", as a share of each run's own (see legend)" if shares else f" $t$ ({unit})"))
     figure.align_ylabels()
     return figure
 
 
-def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, count: int) -> None:
-    _, size = _time_unit(dataset)
-    drawn = [dataset[f"run{k}_{row}"] for k in range(count)]
+def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, size: float) -> None:
+    """Draw one curve of every run, against time in units of `size` (s)."""
+    drawn = [dataset[f"run{k}_{row}"] for k in range(np.size(dataset.attrs["runs"]))]
     flat = row == "traction" and nearly_flat(*(values.values for values in drawn))
     for k, values in enumerate(drawn):
-        line = {"color": COLOURS[k % len(COLOURS)], "linestyle": DASHES[k // len(COLOURS) % len(DASHES)]}
+        look = {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k // len(LINE_COLOURS) % len(DASHES)]}
         heights = values.values - values.values[0] if flat else shown(values)
         # Later lines are thinner, so that runs with the same curve all stay visible.
-        axes.plot(dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **line)
-    text, symbol = label(drawn[0]), drawn[0].attrs["symbol"]
-    if row != "traction" and _far_apart([float(np.abs(values).max()) for values in drawn]):
-        _make_logarithmic(axes)
-        text = text.replace(f"${symbol}$", f"$|{symbol}|$")
+        axes.plot(dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
+    about, text = drawn[0].attrs, label(drawn[0])
+    tops = [top for values in drawn if (top := float(np.abs(values).max())) > 0.0]
+    if row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops):
+        _make_logarithmic(axes, min(tops), max(tops))
+        text = text.replace(f"${about['symbol']}$", f"$|{about['symbol']}|$")
     else:
         zero_line(axes)
-    unit = f" ({drawn[0].attrs['units']})" if drawn[0].attrs["units"] != "1" else ""
-    axes.set_ylabel(f"change of {drawn[0].attrs['long_name']}\n${symbol}$ from its start{unit}" if flat else text)
+    if flat:
+        text = f"change of {about['long_name']}\n" + axis_text(f"${about['symbol']}$ from its start", "", about["units"])
+    axes.set_ylabel(text)
 
 
-def _far_apart(sizes: list[float]) -> bool:
-    moving = [size for size in sizes if size > 0.0]
-    return len(moving) > 1 and max(moving) > WIDE * min(moving)
+def _make_logarithmic(axes: Axes, least: float, most: float) -> None:
+    """Replace the lines by magnitudes on a logarithmic axis; zeros (rest) are not drawn.
 
-
-def _make_logarithmic(axes: Axes) -> None:
-    """Replace the lines by magnitudes on a logarithmic axis.
-
-    It begins two decades below the smallest of the runs' largest values; zeros (rest) are not drawn.
+    `least` and `most` are the smallest and the largest of the runs' largest values. The axis begins two decades below the first.
     """
-    tops = []
     for line in axes.get_lines():
-        values: NDArray[Any] = np.abs(np.asarray(line.get_ydata(), float))
-        tops.append(values.max())
+        values = np.abs(np.asarray(line.get_ydata(), float))
         line.set_ydata(np.where(values > 0.0, values, np.nan))
     axes.set_yscale("log")
-    axes.set_ylim(1e-2 * min(top for top in tops if top > 0.0), 3.0 * max(tops))
-
-
-def _time_unit(dataset: xr.Dataset) -> tuple[str, float]:
-    if dataset.attrs["shares"]:
-        return "1", 1.0
-    times = [dataset[name].values for name in dataset.variables if str(name).endswith("_slip_time")]
-    return time_unit(max(float(np.ptp(time)) for time in times))
-
-
-def _time_label(dataset: xr.Dataset) -> str:
-    since = " since each event began" if dataset.attrs["local"] else ""
-    if dataset.attrs["shares"]:
-        return f"time{since}, as a share of each run's own (see legend)"
-    return f"time{since} $t$ ({_time_unit(dataset)[0]})"
+    axes.set_ylim(1e-2 * least, 3.0 * most)

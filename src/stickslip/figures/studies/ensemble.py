@@ -10,20 +10,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, letter, quantity, styled, time_unit
+from stickslip.figures.panels import count_ticks, leave_empty, letter, set_scale
+from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, WIDE, curve_quantity, quantity, styled, time_unit
 
 if TYPE_CHECKING:
     from stickslip.studies.ensemble import Ensemble
 
-Floats = NDArray[np.float64]
-
-WIDE, CLOSE = 100.0, 3.0
-"""Slips that span more than `WIDE`, and spreads of starts that span more than `CLOSE`, are drawn on a logarithmic axis.
-
-So are numbers of events above `WIDE`.
-"""
+CLOSE = 3.0
+"""Spreads of starts that span more than this factor are drawn on a logarithmic axis."""
+GROWTH = {"growth": "median of the members", "least": "least", "most": "most", "predicted": "running maximum of the prediction"}
+"""Curves of the growth of the disturbance, by column of the study."""
+SHARED = {"members": "1", "start_spread": "s", "slip_spread": "m", "recurrence_spread": "s", "amplification": "1"}
+"""Units of what is known of the events that members share, by column of the study."""
 
 
 def data(study: Ensemble) -> xr.Dataset:
@@ -67,18 +66,16 @@ def _events(study: Ensemble) -> dict[str, xr.Variable]:
 
 
 def _growth(study: Ensemble) -> dict[str, xr.Variable]:
-    growth = study.growth
-    texts = {"growth": "median of the members", "least": "least", "most": "most", "predicted": "running maximum of the prediction"}
-    contents = {name: quantity("time", growth[name].to_numpy(float), f"growth, {text}", "", "1") for name, text in texts.items()}
-    contents["small"] = xr.Variable("time", growth.small.to_numpy(np.int8), {"long_name": "whether the separation is small"})
-    return contents | {"time": quantity("time", growth.time.to_numpy(float), "time", "t", "s")}
+    table = study.growth
+    contents = {name: quantity("time", table[name].to_numpy(float), f"growth, {text}", "", "1") for name, text in GROWTH.items()}
+    contents["small"] = xr.Variable("time", table.small.to_numpy(np.int8), {"long_name": "whether the separation is small"})
+    return contents | {"time": curve_quantity("time", table.time.to_numpy(float), "time")}
 
 
 def _shared(study: Ensemble) -> dict[str, xr.Variable]:
-    units = {"recurrence": "s", "start_spread": "s", "slip_spread": "m", "recurrence_spread": "s"}
     return {
-        f"shared_{name}": quantity("shared", study.table[name].to_numpy(float), name.replace("_", " "), "", units.get(name, "1"))
-        for name in ("members", "start_spread", "slip_spread", "recurrence_spread", "amplification")
+        f"shared_{name}": quantity("shared", study.table[name].to_numpy(float), name.replace("_", " "), "", unit)
+        for name, unit in SHARED.items()
     }
 
 
@@ -110,19 +107,16 @@ def _draw_time_lines(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     for of, colour in ((same == 1, BLUE), (same == 0, VERMILLION)):
         axes.plot(start[of] / size, member[of], color=colour, **style)
     _draw_horizons(axes, dataset, size)
-    count = dataset.sizes["member"]
-    axes.set_ylim(count + 0.6, -0.6)
-    axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
+    axes.set_ylim(dataset.sizes["member"] + 0.6, -0.6)
+    count_ticks(axes, 6)
     axes.set_ylabel("member (0: undisturbed)")
-    letter(
-        axes,
-        "A  slip events: " + ("shared with member 0 (blue), not shared (red)" if (same == 0).any() else "shared by all members"),
-    )
+    shared = "shared with member 0 (blue), not shared (red)" if (same == 0).any() else "shared by all members"
+    letter(axes, f"A  slip events: {shared}")
 
 
 def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     time = np.append(0.0, dataset["time"].values) / size
-    growth, least, most, predicted = (np.append(1.0, dataset[name].values) for name in ("growth", "least", "most", "predicted"))
+    growth, least, most, predicted = (np.append(1.0, dataset[name].values) for name in GROWTH)
     floor = np.finfo(float).tiny
     axes.fill_between(time, np.maximum(least, floor), np.maximum(most, floor), color=SKY, alpha=0.4, linewidth=0.0)
     axes.plot(time, np.where(growth > 0.0, growth, np.nan), color=BLUE, label="measured")
@@ -134,9 +128,8 @@ def _draw_growth(axes: Axes, dataset: xr.Dataset, size: float) -> None:
         axes.axhline(lost, color=GREY, linewidth=0.8, linestyle=":")
         axes.annotate("a tenth of the load's range", (0.0, lost), (4, 2), at, "offset points", color=INK)
     _draw_horizons(axes, dataset, size)
-    axes.set_yscale("log")
     positive = np.concatenate([values[values > 0.0] for values in (growth, least[1:])])
-    axes.set_ylim(0.3 * float(positive.min()), 10.0 * max(lost, float(growth.max())))
+    axes.set(yscale="log", ylim=(0.3 * float(positive.min()), 10.0 * max(lost, float(growth.max()))))
     axes.set_ylabel("separation of loads\n(times the disturbance)")
     axes.legend(loc="lower right")
     letter(axes, "B  growth of the disturbance")
@@ -156,19 +149,18 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
     slip, member = dataset["slip"].values, dataset["of_member"].values
     letter(axes, "C  slips")
     if not slip.size:
-        axes.set_axis_off()
+        leave_empty(axes)
         return
     for i in range(dataset.sizes["member"], -1, -1):
         ordered = np.sort(slip[member == i])
         colour, width = (SKY, 0.8) if i else (INK, 1.2)
         axes.step(ordered, np.arange(len(ordered), 0, -1), where="pre", color=colour, linewidth=width)
-    smallest = slip[slip > 0.0].min(initial=slip.max())
-    axes.set_xscale("log" if slip.max() > WIDE * smallest else "linear")
-    if axes.get_xscale() == "linear":
+    wide = slip.max() > WIDE * slip[slip > 0.0].min(initial=slip.max())
+    set_scale(axes, "x", wide)
+    if not wide:
         axes.set_xlim(0.0, 1.1 * slip.max())
-    axes.set_yscale("log" if (member == 0).sum() > WIDE else "linear")
-    axes.set_xlabel("slip (m)")
-    axes.set_ylabel("number of events with slip ≥ $x$")
+    set_scale(axes, "y", (member == 0).sum() > WIDE)
+    axes.set(xlabel="slip $x$ (m)", ylabel="number of events with slip ≥ $x$")
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
@@ -177,8 +169,7 @@ def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
     number, there = np.arange(1, len(spread) + 1), spread > 0.0
     letter(axes, "D  spread of starts")
     if not there.any():
-        axes.set_axis_off()
-        axes.text(0.5, 0.5, "none above rounding", transform=axes.transAxes, ha="center", color=GREY)
+        leave_empty(axes, "none above rounding")
         return
     complete = dataset["shared_members"].values == dataset.sizes["member"]
     for of, colour in ((there & complete, BLUE), (there & ~complete, VERMILLION)):
@@ -188,5 +179,4 @@ def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
     else:
         axes.set_ylim(0.0, 1.5 * spread[there].max())
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
-    axes.set_xlabel("event")
-    axes.set_ylabel("root mean square (s)")
+    axes.set(xlabel="event", ylabel="root mean square (s)")

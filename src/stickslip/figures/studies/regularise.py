@@ -8,18 +8,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILLION, label, letter, quantity, shown, styled, zero_line
+from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:
-    from stickslip.solution.solution import Solution
     from stickslip.studies.regularise import Regularisation
 
-RULE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
-"""Colours of the rules whose errors are drawn."""
 SHADES = ("#C6DBEF", "#85BCDC", "#3F8FC5", "#0B559F")
 """Colours of the runs, darkest for the smallest size; no more runs than colours are drawn."""
 CASE = "contact"
@@ -83,22 +80,19 @@ def _around_jump(dataset: xr.Dataset, study: Regularisation, jump: int) -> xr.Da
 
 
 def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], window: tuple[float, float], at: float) -> xr.Dataset:
+    """Return the dataset with the exact answer and the runs drawn; their times count from `at` (s)."""
     contents: dict[str, xr.Variable] = {}
-    for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
-        contents |= _curves(name, run, window, at)
-    return dataset.assign(contents).assign_attrs(drawn=drawn)
-
-
-def _curves(name: str, run: Solution, window: tuple[float, float], at: float) -> dict[str, xr.Variable]:
-    (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
     meaning = ("time after the jump", "t - t_J") if at else ("time", "t")
-    return {
-        f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
-        f"{name}_rate": quantity(f"{name}_time", rate, "slip rate", "v", "m/s"),
-        f"{name}_load": quantity(f"{name}_time", load, "load", r"\beta", "Pa"),
-        f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
-        f"{name}_slip": quantity(f"{name}_slip_time", slip, "slip", "u", "m"),
-    }
+    for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
+        (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
+        contents |= {
+            f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
+            f"{name}_rate": curve_quantity(f"{name}_time", rate, "slip_rate"),
+            f"{name}_load": curve_quantity(f"{name}_time", load, "load"),
+            f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
+            f"{name}_slip": curve_quantity(f"{name}_slip_time", slip, "slip"),
+        }
+    return dataset.assign(contents).assign_attrs(drawn=drawn)
 
 
 @styled
@@ -126,22 +120,21 @@ def draw(dataset: xr.Dataset) -> Figure:
 
 
 def _draw_errors(axes: Axes, dataset: xr.Dataset) -> None:
-    size = shown(dataset["size"])
+    size, errors = shown(dataset["size"]), dataset["error"].values
     for i, rule in enumerate(np.atleast_1d(dataset.attrs["rules"])):
-        values = np.where(dataset["error"].values[i] > 0.0, dataset["error"].values[i], np.nan)
-        axes.loglog(size, values, "o-", color=RULE_COLOURS[i % 4], markersize=3.5, label=f"difference from {rule}")
-    axes.loglog(
-        size, shown(dataset["change"]), "o--", color=GREY, markersize=3, linewidth=1.0, label="difference from the previous size"
-    )
+        values = np.where(errors[i] > 0.0, errors[i], np.nan)
+        axes.loglog(size, values, "o-", color=LINE_COLOURS[i % 4], markersize=3.5, label=f"difference from {rule}")
+    grey: Any = {"color": GREY, "markersize": 3, "linewidth": 1.0}
+    axes.loglog(size, shown(dataset["change"]), "o--", label="difference from the previous size", **grey)
     if dataset.attrs["tends"] and dataset.attrs["order_points"]:
-        _draw_slope(axes, size, dataset["error"].values[int(dataset.attrs["target_row"])], float(dataset.attrs["order"]))
+        _draw_slope(axes, size, errors[int(dataset.attrs["target_row"])], float(dataset.attrs["order"]))
     axes.set(xlabel=label(dataset["size"]), ylabel=label(dataset["error"]))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * (high / low) ** 0.08)
     axes.legend(loc="best", fontsize=7.5)
 
 
-def _draw_slope(axes: Axes, size: NDArray[np.float64], error: NDArray[np.float64], order: float) -> None:
+def _draw_slope(axes: Axes, size: Floats, error: Floats, order: float) -> None:
     """Draw a triangle below the errors of the smallest sizes whose slope is the fitted order."""
     right, left = size[-3], size[-1]
     low = 0.45 * error[-1]

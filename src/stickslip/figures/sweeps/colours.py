@@ -14,16 +14,13 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREY, ORANGE, PALE
+from stickslip.figures.style import BLUE, GREY, LIGHT_BLUE, ORANGE, PALE, Floats
 from stickslip.figures.sweeps.varied import Shown
-
-Floats = NDArray[np.float64]
 
 FEW = 10
 """Up to this number of different whole numbers, each has its own colour in a key; more are drawn with a scale."""
-TWO = ("#D6E6F4", ORANGE)
+TWO = (LIGHT_BLUE, ORANGE)
 """Colours of no and yes, or of the numbers of a quantity that takes only two."""
 FAILED, HATCH = "#EDEDED", "////"
 """Background of a map, and its hatch, where members failed."""
@@ -39,7 +36,7 @@ class Colours:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Return the colour arguments of `pcolormesh` and `scatter`."""
+        """The colour arguments of `pcolormesh` and `scatter`."""
         return {"cmap": self.cmap, "norm": self.norm}
 
     def of(self, value: float) -> Any:

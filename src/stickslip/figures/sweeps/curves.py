@@ -8,16 +8,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
-from stickslip.figures.style import BLUE, GREEN, GREY, PURPLE, VERMILLION, letter, panels
+from stickslip.figures.panels import count_ticks, letter, panels
+from stickslip.figures.style import GREY, LINE_COLOURS, Floats
 from stickslip.figures.sweeps.varied import Shown, scaled, shown, value_text
 
-Floats = NDArray[np.float64]
-
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE)
-MOST_CURVES = len(_COLOURS)
+MOST_CURVES = 4
 """A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""
 SEPARATE = 40
 """Members of a curve are marked by dots up to this number; more would run together."""
@@ -39,9 +35,9 @@ def draw_curves(dataset: xr.Dataset) -> Figure:
         look: dict[str, Any] = {"marker": marker, "markersize": 3.0, "linestyle": "none" if across.words else "-"}
         if quantity.is_whole:
             look["drawstyle"] = "steps-mid"
-        axes.plot(across.values[order], row[order], color=_COLOURS[k], label=text, **look)
+        axes.plot(across.values[order], row[order], color=LINE_COLOURS[k], label=text, **look)
     for k, state in enumerate(states):
-        mark_failed(axes, across.values[state == 2], _COLOURS[k] if others else GREY)
+        mark_failed(axes, across.values[state == 2], LINE_COLOURS[k] if others else GREY)
     across.show(axes, "x")
     show_ordinate(axes, quantity)
     handles, texts = axes.get_legend_handles_labels()
@@ -68,5 +64,5 @@ def show_ordinate(axes: Axes, quantity: Shown) -> None:
     elif quantity.is_wide:
         axes.set_yscale("log")
     elif quantity.is_whole:
-        axes.yaxis.set_major_locator(MaxNLocator(6, integer=True))
+        count_ticks(axes, 6)
     axes.set_ylabel(quantity.title)

@@ -1,4 +1,4 @@
-"""Figure of a sweep as maps: a quantity over two varied keys, side by side for some values of a third."""
+"""Figures of a sweep as maps over two keys, side by side for some values of a third: of a grid, or the cells of a refined map."""
 
 from __future__ import annotations
 
@@ -8,46 +8,80 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from stickslip.figures.style import PALE, letter, panels
+from stickslip.figures.panels import letter, panels
+from stickslip.figures.style import INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
-from stickslip.figures.sweeps.varied import Shown, scaled, shown, value_text
+from stickslip.figures.sweeps.members import axes_of, draw_members
+from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown, value_text
+from stickslip.sweeps.results.refinement_spec import RefinedMap, RefinementSpec, cells_of
 
 PANELS = 9
 """Largest number of maps side by side; more would be too small to read."""
+Draw = Callable[[Axes, int], None]
+"""A function that draws a map; it receives its axes and the index of the value of the third key."""
 
 
 def draw_maps(dataset: xr.Dataset) -> Figure:
     """Draw the first key along x and the second along y; of three keys, the one with the fewest values gives the separate maps."""
     quantity = shown(dataset)
-    colours, title = colours_of(quantity), str(dataset.attrs.get("title", ""))
-    lengths = {str(name): length for name, length in quantity.values.sizes.items()}
-    if len(lengths) == 2:
+    colours, lengths = colours_of(quantity), quantity.values.sizes
+    third = dataset[min(lengths, key=lambda name: lengths[name])] if len(lengths) == 3 else None
+
+    def draw_one(axes: Axes, k: int) -> None:
+        at = {} if third is None else {third.name: k}
+        _draw_map(axes, dataset, replace(quantity, values=quantity.values.isel(at), state=quantity.state.isel(at)), colours)
+
+    return _draw_all(dataset, quantity, colours, third, draw_one)
+
+
+def draw_cells(dataset: xr.Dataset) -> Figure:
+    """Draw the cells over two varied keys, or cuts through them at some coarse values of a third.
+
+    For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
+    """
+    spec = RefinementSpec.read(dataset)
+    names = list(spec.columns)
+    if dataset.attrs["quantity"] != spec.quantity or len(names) not in (2, 3):
+        return draw_members(dataset)
+    quantity, cells, places = shown(dataset), cells_of(dataset), axes_of(dataset)
+    colours, third = colours_of(quantity, cells.answer), None
+    if len(names) == 3:
+        third = xr.DataArray(spec.columns[names[2]], name=names[2], attrs=dataset[names[2]].attrs)
+
+    def draw_one(axes: Axes, k: int) -> None:
+        cut = cells if third is None else cells.at(names[2], float(third[k]))
+        _draw_cells(axes, quantity, colours, cut, places)
+
+    boundary = [Patch(facecolor=INK, label="boundary")] if cells.changes.any() else []
+    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary)
+
+
+def _draw_all(
+    dataset: xr.Dataset, quantity: Shown, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *more: Artist
+) -> Figure:
+    """Draw one map, or one for each of some values of a third key, and explain the colours; `more` entries end the key."""
+    title = str(dataset.attrs.get("title", ""))
+    if third is None:
         figure, grid = panels(1, 1, (5.4, 4.4))
-        draw_map(grid[0, 0], dataset, quantity, colours)
+        draw_one(grid[0, 0], 0)
         letter(grid[0, 0], title)
     else:
-        third = dataset[min(lengths, key=lambda name: lengths[name])]
-
-        def draw_one(axes: Axes, k: int) -> None:
-            one = quantity.values.isel({third.name: k}), quantity.state.isel({third.name: k})
-            draw_map(axes, dataset, replace(quantity, values=one[0], state=one[1]), colours)
-
-        figure, grid = side_by_side(third, draw_one)
+        figure, grid = _side_by_side(third, draw_one)
         figure.suptitle(title, fontsize=9.5, fontweight="bold")
-    explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity))
+    explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity), *more)
     return figure
 
 
-def side_by_side(third: xr.DataArray, draw_one: Callable[[Axes, int], None]) -> tuple[Figure, NDArray[Any]]:
-    """Return a figure with a panel for each value of a key, or for `PANELS` of them evenly chosen, and its axes.
-
-    `draw_one` draws a panel; it receives its axes and the index of the value.
-    """
+def _side_by_side(third: xr.DataArray, draw_one: Draw) -> tuple[Figure, NDArray[Any]]:
+    """Return a figure with a panel for each value of a key, or for `PANELS` of them evenly chosen, and its axes."""
     chosen = np.unique(np.linspace(0, third.size - 1, min(third.size, PANELS)).round().astype(int))
     columns = min(len(chosen), 3)
     rows = -(-len(chosen) // columns)
@@ -65,10 +99,9 @@ def side_by_side(third: xr.DataArray, draw_one: Callable[[Axes, int], None]) -> 
     return figure, grid
 
 
-def draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours) -> None:
-    """Draw one map, with members that have no such number in pale grey and those not run in white."""
-    names = [str(name) for name in quantity.values.dims]
-    x, y = (scaled(dataset[name]) for name in names)
+def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours) -> None:
+    """Draw one map of a grid, with members that have no such number in pale grey and those not run in white."""
+    x, y = (scaled(dataset[str(name)]) for name in quantity.values.dims)
     columns, rows = np.argsort(x.values), np.argsort(y.values)
     values, state = (part.values[columns][:, rows].T for part in (quantity.values, quantity.state))
     prepare(axes, quantity)
@@ -78,3 +111,20 @@ def draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours)
     axes.pcolormesh(*edges, np.ma.masked_invalid(values), rasterized=True, **colours.options)
     x.show(axes, "x")
     y.show(axes, "y")
+
+
+def _draw_cells(axes: Axes, quantity: Shown, colours: Colours, cells: RefinedMap, places: dict[str, Scaled]) -> None:
+    """Draw cells as rectangles; those in which the answer changes come last and have a line, so that the smallest can be seen."""
+    prepare(axes, quantity)
+    if not quantity.has(2):
+        axes.set_facecolor(PALE)
+    x, y = ((cells.low[name] / one.size, cells.high[name] / one.size) for name, one in list(places.items())[:2])
+    corners: Any = np.stack([np.stack([x[i], y[j]], axis=1) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
+    there = np.isfinite(cells.answer)
+    answers = colours.cmap(colours.norm(cells.answer[there]))
+    for chosen, colour, width in ((there, answers, 0.2), (cells.changes, INK, 0.8)):
+        look: Any = {"facecolors": colour, "edgecolors": "face", "linewidths": width, "rasterized": True}
+        axes.add_collection(PolyCollection(corners[chosen], **look))
+    for which, one in zip("xy", places.values(), strict=False):
+        getattr(axes, f"set_{which}lim")(one.values.min(), one.values.max())
+        one.show(axes, which)

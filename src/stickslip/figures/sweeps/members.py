@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 
 import xarray as xr
@@ -11,11 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stickslip.figures.style import BLUE, GREY, PALE, letter, panels
-from stickslip.figures.sweeps.colours import Colours, colours_of, explain
+from stickslip.figures.panels import letter, panels
+from stickslip.figures.style import BLUE, GREY, PALE
+from stickslip.figures.sweeps.colours import colours_of, explain
 from stickslip.figures.sweeps.curves import mark_failed, show_ordinate
 from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, Recipe
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 SIZE = 12.0
 """Area of a point (in square points, as `scatter` takes it)."""
@@ -25,17 +25,16 @@ def draw_members(dataset: xr.Dataset) -> Figure:
     """Draw coloured points over two varied keys; for any other number of keys, draw the quantity against each key in turn."""
     quantity, places = shown(dataset), list(axes_of(dataset).values())
     if len(places) == 2:
-        colours = colours_of(quantity)
         figure, grid = panels(1, 1, (5.4, 4.4))
-        _draw_points(grid[0, 0], quantity, colours, places)
-        crosses = Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed", markersize=4.0)
-        explain(figure, list(grid.flat), colours, quantity, *([crosses] if quantity.has(2) else []))
+        _draw_points(grid[0, 0], quantity, *places)
     else:
         columns = min(len(places), 3)
         rows = -(-len(places) // columns)
         figure, grid = panels(rows, columns, (max(2.6 * columns + 1.0, 5.4), max(2.6 * rows + 0.4, 3.8)), sharey=True)
         for axes, across in zip(grid.flat, places, strict=False):
-            _draw_over(axes, quantity, across)
+            axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=3.0, rasterized=True)
+            mark_failed(axes, across.values[quantity.state.values == 2])
+            across.show(axes, "x")
         for axes in list(grid.flat)[len(places) :]:
             axes.set_axis_off()
         for axes in grid[:, 0]:
@@ -51,22 +50,20 @@ def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
     if ATTRIBUTE not in dataset.attrs:
         return found
     # The values themselves do not tell: members crowd where the answer changes.
-    logarithmic = dict(zip(names, Recipe.read(dataset).logarithmic, strict=True))
+    logarithmic = dict(zip(names, RefinementSpec.read(dataset).logarithmic, strict=True))
     return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 
-def _draw_points(axes: Axes, quantity: Shown, colours: Colours, places: Sequence[Scaled]) -> None:
-    x, y = places
-    values, state = quantity.values.values, quantity.state.values
+def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled) -> None:
+    """Draw a point for each member in the colour of its number, and explain the colours."""
+    colours, values, state = colours_of(quantity), quantity.values.values, quantity.state.values
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)
     there = state == 0
     axes.scatter(x.values[there], y.values[there], c=values[there], s=SIZE, linewidths=0.0, rasterized=True, **colours.options)
     x.show(axes, "x")
     y.show(axes, "y")
-
-
-def _draw_over(axes: Axes, quantity: Shown, across: Scaled) -> None:
-    axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=3.0, rasterized=True)
-    mark_failed(axes, across.values[quantity.state.values == 2])
-    across.show(axes, "x")
+    crosses = Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed", markersize=4.0)
+    figure = axes.figure
+    assert isinstance(figure, Figure)
+    explain(figure, [axes], colours, quantity, *([crosses] if quantity.has(2) else []))

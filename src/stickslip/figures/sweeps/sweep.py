@@ -5,16 +5,16 @@ The dataset of a grid has one dimension for each varied key; those of samples, l
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stickslip.figures.style import styled
-from stickslip.figures.sweeps.cells import draw_cells
+from stickslip.figures.style import name_system, styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
-from stickslip.figures.sweeps.maps import draw_maps
+from stickslip.figures.sweeps.maps import draw_cells, draw_maps
 from stickslip.figures.sweeps.members import draw_members
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
@@ -73,8 +73,15 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
         raise InputError(f"plot_sweep: a grid of {len(drawn[name].dims)} keys: select some values first, dataset.sel(KEY=VALUE)")
     if not drawn[name].dims:
         raise InputError("plot_sweep: nothing is varied in this sweep, it has one member")
-    title = str(dataset.attrs.get("title", "")).removeprefix("stickslip sweep: ")
-    return drawn.assign_attrs(dataset.attrs, quantity=name, title=title)
+    return drawn.assign_attrs(dataset.attrs, quantity=name, title=_title(dataset))
+
+
+def _title(dataset: xr.Dataset) -> str:
+    """Return the title of the scenario, or its body and friction law if it has none."""
+    scenario = tomllib.loads(dataset.attrs.get("scenario", ""))
+    if not scenario:
+        return str(dataset.attrs.get("title", "")).removeprefix("stickslip sweep: ")
+    return str(scenario.get("title") or name_system(scenario["body"]["kind"], scenario["friction"]["kind"]))
 
 
 def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:

@@ -65,7 +65,7 @@ def scaled(variable: xr.DataArray, name: str = "") -> Scaled:
     """Return a varied key in a readable unit, under `name` if it is given; its values decide whether the axis is logarithmic."""
     name = name or str(variable.name)
     if not np.issubdtype(variable.dtype, np.number):
-        words, places = np.unique(variable.values.astype(str), return_inverse=True)
+        words, places = np.unique(np.array(variable.values.tolist(), str), return_inverse=True)
         return Scaled(places.astype(float), name, words=tuple(words.tolist()))
     values = np.asarray(variable.values, float)
     known = np.abs(values[np.isfinite(values)])

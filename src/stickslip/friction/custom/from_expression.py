@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from typing_extensions import override
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import quantity
-from stickslip.foundation.units import si_base
+from stickslip.foundation.quantities import Choice, NamedNumbers, Text, declare, quantity
+from stickslip.friction.contract import Formula
 from stickslip.friction.custom.sampled import check_samples
+from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.dimensions import check_dimensions
 from stickslip.friction.formula.expression import SLIP, Expression, depends_on, evaluate, nodes_of
 from stickslip.friction.formula.parse import LARGEST_EXPONENT, LONGEST, RESERVED, parse
-from stickslip.friction.law import Formula
-from stickslip.friction.memory import RemembersSlip
-from stickslip.friction.parameters import Choice, Named, NamedNumbers, Text, declare
 
 MOST_PARAMETERS = 50
 """Largest number of parameters of an expression, which comes from an untrusted scenario file."""
@@ -27,47 +25,31 @@ LONGEST_NAME = 40
 """Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class ExpressionLaw(RemembersSlip):
+@dataclass(frozen=True)
+class FromExpression(RemembersSlip):
     """mu(u, v) as the user writes it, u the slip (m) that `counts` names and v >= 0 the slip rate (m/s).
 
-    Parameters
-    ----------
-    expression
-        Friction coefficient (no unit) as text in u (slip, m), v (slip rate, m/s) and named parameters.
-    values
-        Names, values (SI) and optional units of the parameters.
-    static
-        Friction coefficient at rest (no unit), if it exceeds the expression at v = 0+.
-    counts
-        Slip that u denotes: "net" for signed slip, "path" for its accumulated length in both directions.
-    memory
-        Slip that friction remembers, "all" or "since-arrest" (see `RemembersSlip`).
+    For example `FromExpression("mu_d + (mu_s - mu_d) / (1 + alpha*v)", {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"})`. `values` has
+    the parameters by name, as numbers in SI or as texts with a unit. The text is never evaluated as Python.
 
-    Raises
-    ------
-    InputError
-        If the expression cannot be read, its units do not agree, its values are not finite or are negative, or a name, an
-        exponent or `static` is not allowed.
-
-    Notes
-    -----
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
     samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
     """
 
-    kind: ClassVar[str] = "expression"
-    source: ClassVar[str] = "the user's formula"
-    example: ClassVar[dict[str, Any]] = {
+    kind = "expression"
+    source = "the user's formula"
+    example: ClassVar = {
         "expression": "mu_d + (mu_s - mu_d) / (1 + alpha*v)",
         "values": {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"},
     }
 
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
-    values: tuple[Named, ...] = declare(NamedNumbers("values of the parameters", "parameters"), ())
+    values: Any = declare(NamedNumbers("values of the parameters", "parameters"), ())  # noqa: RUF009 - makes a field
+    _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
 
+    @override
     def check(self) -> None:
         self._check_names()
         units = {value.name: value.unit for value in self.values}
@@ -77,24 +59,24 @@ class ExpressionLaw(RemembersSlip):
             self._check_exponents()
             check_samples(self.tree, self.numbers(), backwards=self.counts == "net")
         except InputError as error:
-            raise InputError(f"ExpressionLaw: expression: {error}") from None
+            raise InputError(f"FromExpression: expression: {error}") from None
         if self.static is not None:
             self._check_static(self.static)
 
     def _check_names(self) -> None:
         names = [value.name for value in self.values]
         if len(names) > MOST_PARAMETERS:
-            raise InputError(f"ExpressionLaw: parameters: at most {MOST_PARAMETERS} parameters are allowed")
+            raise InputError(f"FromExpression: parameters: at most {MOST_PARAMETERS} parameters are allowed")
         for name in names:
             if not (isinstance(name, str) and name.isidentifier() and name.isascii() and len(name) <= LONGEST_NAME):
-                raise InputError(f"ExpressionLaw: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
+                raise InputError(f"FromExpression: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
             if name in RESERVED or names.count(name) > 1:
-                raise InputError(f"ExpressionLaw: parameters: the name {name} is reserved or used twice")
+                raise InputError(f"FromExpression: parameters: the name {name} is reserved or used twice")
         used = {node.name for node in nodes_of(self.tree) if node.operation == "parameter"}
         for name in names:
             if name not in used:
                 hint = nearest(name, used) if used else "the expression has no parameters"
-                raise InputError(f"ExpressionLaw: parameters: {name} does not occur in the expression; {hint}")
+                raise InputError(f"FromExpression: parameters: {name} does not occur in the expression; {hint}")
 
     def _check_exponents(self) -> None:
         for node in nodes_of(self.tree):
@@ -106,37 +88,39 @@ class ExpressionLaw(RemembersSlip):
 
     def _check_static(self, static: float) -> None:
         if depends_on(self.tree, SLIP):
-            raise InputError("ExpressionLaw: static needs an expression without u: the step at rest would differ from slip to slip")
+            raise InputError("FromExpression: static needs an expression without u: the step at rest would change with slip")
         sliding = float(self.coefficient(0.0))
         if static < sliding:
-            raise InputError(f"ExpressionLaw: static must be at least the expression at v = 0, got {static:g} < {sliding:g}")
+            raise InputError(f"FromExpression: static must be at least the expression at v = 0, got {static:g} < {sliding:g}")
 
     @property
     def tree(self) -> Expression:
-        """Return the formula as an expression tree."""
+        """The formula as an expression tree."""
         try:
             return parse(self.expression, tuple(value.name for value in self.values))
         except InputError as error:
-            raise InputError(f"ExpressionLaw: expression: {error}") from None
+            raise InputError(f"FromExpression: expression: {error}") from None
 
     @property
+    @override
     def pieces(self) -> tuple[Formula, ...]:
         tree, names = self.tree, self.parameters()
         return (lambda law, u, v: evaluate(tree, {name: getattr(law, name) for name in names}, u, v),)
 
+    @override
     def parameters(self) -> tuple[str, ...]:
         return tuple(value.name for value in self.values)
 
+    @override
     def piece_values(self, i: int) -> tuple[float, ...]:
         return tuple(value.value for value in self.values)
 
-    def literals(self) -> dict[str, float]:
-        return {}
-
     @property
+    @override
     def static_excess(self) -> float:
         return 0.0 if self.static is None else self.static - float(self.coefficient(0.0))
 
+    @override
     def range(self) -> tuple[float, float]:
         """Return bounds of the expression over all slips and slip rates, the lower one raised to 0 if it is negative.
 
@@ -147,8 +131,9 @@ class ExpressionLaw(RemembersSlip):
         return max(low, 0.0), max(high, self.static or 0.0)
 
     @property
+    @override
     def variation(self) -> float:
-        """Return the finite size by which friction changes (no unit).
+        """The finite size by which friction changes (no unit).
 
         If the bounds are not finite, it is the range of the values at slips up to 10 m and slip rates up to 10 m/s.
         """
@@ -160,8 +145,9 @@ class ExpressionLaw(RemembersSlip):
         return max(float(np.ptp(values)), self.static_excess)
 
     @property
+    @override
     def rate_scales(self) -> tuple[float, ...]:
-        """Return the characteristic slip rates (m/s): values in m/s, and inverses of values in s/m.
+        """The characteristic slip rates (m/s): values in m/s, and inverses of values in s/m.
 
         If no value has a unit, any number of the expression may be a slip rate or the inverse of one: both are returned.
         """
@@ -180,49 +166,3 @@ class ExpressionLaw(RemembersSlip):
 
 _RATES = ("m s^-1", "m^-1 s")
 """Units of slip rates and of their inverses, as `si_base` writes them."""
-
-
-def FromExpression(  # noqa: N802 - reads as the law it makes
-    expression: str,
-    parameters: Mapping[str, float | str] | None = None,
-    static: float | None = None,
-    counts: Literal["net", "path"] = "net",
-    memory: Literal["all", "since-arrest"] = "all",
-) -> ExpressionLaw:
-    """Make a friction law from text such as "mu_d + (mu_s - mu_d) / (1 + alpha*v)".
-
-    Parameters
-    ----------
-    expression
-        Friction coefficient (no unit) in u (slip, m), v >= 0 (slip rate, m/s) and the parameters.
-    parameters
-        Values of the parameters by name: numbers in SI, or texts with a unit such as "1 mm/s".
-    static
-        Friction coefficient at rest (no unit), if it exceeds the expression at v = 0+.
-    counts
-        Slip that u denotes: "net" for signed slip, "path" for its accumulated length in both directions.
-    memory
-        Slip that friction remembers: "all", or "since-arrest" if the contact heals at each arrest.
-
-    Returns
-    -------
-    ExpressionLaw
-        The law. The text is never evaluated as Python.
-
-    Raises
-    ------
-    InputError
-        If a part of the input is wrong; the message is one line that names the part.
-    """
-    values = tuple(named_value(name, value, "ExpressionLaw:") for name, value in (parameters or {}).items())
-    return ExpressionLaw(expression=expression, values=values, static=static, counts=counts, memory=memory)
-
-
-def named_value(name: str, value: float | str, where: str) -> Named:
-    """Return a parameter from a number or from a text with a unit. Raise InputError with a message that begins with `where`."""
-    if not isinstance(value, str):
-        return Named(name, value)
-    try:
-        return Named(name, *si_base(value))
-    except InputError as error:
-        raise InputError(f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.custom.from_expression import ExpressionLaw, FromExpression
+from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
 from stickslip.friction.formula.text import to_text
 
@@ -34,7 +34,7 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
 
     Returns
     -------
-    ExpressionLaw or decorator
+    FromExpression or decorator
         The law, which a scenario file can also hold; without `function`, a decorator that makes the law.
 
     Raises
@@ -51,16 +51,13 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
         return lambda decorated: FromFunction(decorated, **given)
     values = _values(function, given)
     options = {name: value for name, value in given.items() if name in OPTIONS and name not in values}
-    tree = _traced(function, tuple(values))
-    used = {node.name for node in nodes_of(tree) if node.operation == "parameter"}
-    return _law(function, tree, {name: value for name, value in values.items() if name in used}, options)
-
-
-def _law(function: Callable[..., Any], tree: Expression, values: dict[str, Any], options: dict[str, Any]) -> ExpressionLaw:
     try:
-        return FromExpression(to_text(tree), values, **options)
+        tree = _traced(function, tuple(values))
+        used = {node.name for node in nodes_of(tree) if node.operation == "parameter"}
+        return FromExpression(to_text(tree), {name: value for name, value in values.items() if name in used}, **options)
     except InputError as error:
-        raise InputError(f"FromFunction: {_name(function)}: {str(error).removeprefix('ExpressionLaw: ')}") from None
+        fault = str(error).removeprefix("formula: ").removeprefix("FromExpression: ")
+        raise InputError(f"FromFunction: {_name(function)}: {fault}") from None
 
 
 def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:
@@ -86,16 +83,15 @@ def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, An
 
 
 def _traced(function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
-    name = _name(function)
+    """Return the formula that the function records when it is called with symbols."""
     try:
-        result = function(SLIP, RATE, **{p: Parameter(p) for p in names})
-        return as_expression(result)
-    except InputError as error:
-        raise InputError(f"FromFunction: {name}: {str(error).removeprefix('formula: ')}") from None
+        return as_expression(function(SLIP, RATE, **{name: Parameter(name) for name in names}))
+    except InputError:
+        raise
     except Exception as error:  # a user's function may raise anything when it is called with symbols
         said = " ".join(str(error).split())[:120]
         raise InputError(
-            f"FromFunction: {name} cannot be traced ({type(error).__name__}: {said}); "
+            f"it cannot be traced ({type(error).__name__}: {said}); "
             "use + - * / ** and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh"
         ) from None
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, depends_on, evaluate_nodes
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import quoted
 
 LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
 """Largest slip (m) and slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed them."""
@@ -32,10 +32,11 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
         found = evaluate_nodes(tree, numbers, u, v)
         _check_constants(found)
         values = np.broadcast_to(found[tree], u.shape)
-        _refuse(~np.isfinite(values), u, v, "is not a finite number")
-        negative = np.where(values < -TOLERANCE, values, 0.0)
-        lowest = int(np.argmin(negative))
-        _refuse(np.arange(len(u)) == lowest if negative[lowest] < 0.0 else np.zeros(len(u), bool), u, v, f"is {values[lowest]:.3g}")
+        finite = np.isfinite(values)
+        worst = int(np.argmin(values)) if finite.all() else int(np.argmin(finite))
+        if not values[worst] >= -TOLERANCE or not finite[worst]:
+            what = f"is {values[worst]:.3g}" if finite[worst] else "is not a finite number"
+            raise InputError(f"friction must be a number >= 0, but at u = {u[worst]:.4g} m, v = {v[worst]:.4g} m/s it {what}")
     for node in found:
         if node.operation in ("sqrt", "log", "pow") and np.ndim(found[node.arguments[0]]):
             _check_argument(node, found[node.arguments[0]], u, v)
@@ -46,17 +47,11 @@ def samples(largest: float) -> NDArray[np.float64]:
     return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 55), np.linspace(0.0, largest, 51))))
 
 
-def _refuse(bad: NDArray[np.bool_], u: NDArray[np.float64], v: NDArray[np.float64], what: str) -> None:
-    if bad.any():
-        i = int(np.argmax(bad))
-        raise InputError(f"friction must be a number >= 0, but at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it {what}")
-
-
 def _check_constants(found: Mapping[Expression, Any]) -> None:
     """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite."""
     for node, value in found.items():
         if np.ndim(value) == 0 and not np.isfinite(value):
-            raise InputError(f"the part '{_shown(node)}' is not a finite number: it is {value:g}")
+            raise InputError(f"the part {quoted(node)} is not a finite number: it is {value:g}")
 
 
 def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:
@@ -66,10 +61,5 @@ def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np
         where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
         what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
         raise InputError(
-            f"{what}, '{_shown(node.arguments[0])}', must stay above 0 to have derivatives, but {where}; add a small number to it"
+            f"{what}, {quoted(node.arguments[0])}, must stay above 0 to have derivatives, but {where}; add a small number to it"
         )
-
-
-def _shown(node: Expression) -> str:
-    part = to_text(node)
-    return part if len(part) <= 60 else f"{part[:57]}..."

@@ -7,14 +7,14 @@ rate law all folds of the contact equation lie within 3e-4 Pa at a load of 8e7 P
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.friction.formula.expression import STATE, Expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
 
 Array = NDArray[np.float64]
 
@@ -33,33 +33,25 @@ class _Node:
 
 
 def difference(
-    tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike, state: float = 0.0
+    tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike
 ) -> tuple[Array, Array]:
     """Return mu(slip + slip_step, rate) - mu(slip, 0), and dmu/drate (s/m) at the end point.
 
     `slip` and `slip_step` are in m, `rate` >= 0 in m/s; `slip_step` and `rate` broadcast. `tree` is one piece of a law's formula
-    and `parameters` holds the law's numbers by name. `state` is the law's state variable, the same at both points. Raise KeyError
-    for a parameter without a value.
+    and `parameters` holds the law's numbers by name. A state variable is 0, healed, at both points. Raise KeyError for a parameter
+    without a value.
     """
-    kept = _Node(state, 0.0, state, 0.0)
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
-    found: dict[Expression, _Node] = {}
+    found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
     with np.errstate(divide="ignore", over="ignore"):
         for node in nodes_of(tree):
-            found[node] = kept if node == STATE else _evaluate(node, [found[a] for a in node.arguments], parameters, slip, du, v)
+            if node.arguments:
+                found[node] = _RULES[node.operation](*(found[argument] for argument in node.arguments))
+            elif node not in found:
+                number = parameters[node.name] if node.operation == "parameter" else node.value
+                found[node] = _Node(number, 0.0, number, 0.0)
     result = found[tree]
     return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
-
-
-def _evaluate(node: Expression, arguments: list[_Node], parameters: Mapping[str, float], slip: float, du: Array, v: Array) -> _Node:
-    if len(arguments) == 2:
-        return _BINARY[node.operation](*arguments)
-    if arguments:
-        return _UNARY[node.operation](arguments[0])
-    if node.operation in ("parameter", "constant"):
-        number = parameters[node.name] if node.operation == "parameter" else node.value
-        return _Node(number, 0.0, number, 0.0)
-    return _Node(slip, du, slip + du, 0.0) if node.operation == "slip" else _Node(0.0, v, v, 1.0)
 
 
 def _add(a: _Node, b: _Node) -> _Node:
@@ -141,12 +133,15 @@ def _tanh(a: _Node) -> _Node:
 def _arcsinh(a: _Node) -> _Node:
     """Return the node of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
 
-    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2).
+    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2). Where the squares would overflow, subtract.
     """
     x, y = a.value, a.reference
-    p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
-    gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
-    return _Node(np.arcsinh(y), np.arcsinh(a.step * (1.0 + gap) / (p + q)), np.arcsinh(x), a.slope / p)
+    start, end = np.arcsinh(y), np.arcsinh(x)
+    with np.errstate(over="ignore", invalid="ignore"):
+        p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
+        gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
+        step = np.arcsinh(a.step * (1.0 + gap) / (p + q))
+    return _Node(start, np.where(np.maximum(p, q) > 1e150, end - start, step), end, a.slope / p)
 
 
 def _chain(outer: Any, inner: Any) -> Any:
@@ -155,5 +150,8 @@ def _chain(outer: Any, inner: Any) -> Any:
     return np.multiply(outer, inner, where=inner != 0.0, out=np.zeros(np.broadcast_shapes(np.shape(outer), inner.shape)))
 
 
-_BINARY = {"add": _add, "sub": _sub, "mul": _mul, "div": _div, "pow": _pow}
-_UNARY = {"sin": _sin, "cos": _cos, "exp": _exp, "log": _log, "sqrt": _sqrt, "tanh": _tanh, "arcsinh": _arcsinh}
+_RULES: dict[str, Callable[..., _Node]] = {
+    **{"add": _add, "sub": _sub, "mul": _mul, "div": _div, "pow": _pow},
+    **{"sin": _sin, "cos": _cos, "exp": _exp, "log": _log, "sqrt": _sqrt, "tanh": _tanh, "arcsinh": _arcsinh},
+}
+"""Rule of each operation."""

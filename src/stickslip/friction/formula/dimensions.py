@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, nodes_of
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import quoted
 
 Dimension = dict[str, Fraction]
 """Exponents of m, kg and s in a unit; those that are zero are left out."""
@@ -40,7 +40,7 @@ def check_dimensions(tree: Expression, units: Mapping[str, str]) -> None:
             found[node] = _of(node, [found[argument] for argument in node.arguments])
     if found[tree]:
         raise InputError(
-            f"the friction coefficient must be a pure number, but {_part(tree)} is in {unit_text(found[tree])}; {_HINT}"
+            f"the friction coefficient must be a pure number, but {quoted(tree)} is in {unit_text(found[tree])}; {_HINT}"
         )
 
 
@@ -57,7 +57,7 @@ def _of(node: Expression, arguments: list[Dimension]) -> Dimension:
     if node.operation in ("pow", "sqrt"):
         return _power(node, arguments)
     if arguments and arguments[0]:
-        raise InputError(f"{_part(node)}: its argument must be a pure number, but is in {unit_text(arguments[0])}; {_HINT}")
+        raise InputError(f"{quoted(node)}: its argument must be a pure number, but is in {unit_text(arguments[0])}; {_HINT}")
     return {}
 
 
@@ -65,7 +65,7 @@ def _same(node: Expression, a: Dimension, b: Dimension) -> Dimension:
     zero = Expression("constant", value=0.0)
     if a != b and zero not in node.arguments:
         one, other = (unit_text(x) or "a pure number" for x in (a, b))
-        raise InputError(f"{_part(node)}: {one} and {other} cannot be added or subtracted; {_HINT}")
+        raise InputError(f"{quoted(node)}: {one} and {other} cannot be added or subtracted; {_HINT}")
     return b if node.arguments[0] == zero else a
 
 
@@ -74,11 +74,11 @@ def _power(node: Expression, arguments: list[Dimension]) -> Dimension:
     if not base:
         exponent_has_unit = len(arguments) == 2 and bool(arguments[1])
         if exponent_has_unit:
-            raise InputError(f"{_part(node)}: its exponent must be a pure number, but is in {unit_text(arguments[1])}")
+            raise InputError(f"{quoted(node)}: its exponent must be a pure number, but is in {unit_text(arguments[1])}")
         return {}
     if node.operation == "pow" and node.arguments[1].operation != "constant":
         raise InputError(
-            f"{_part(node)}: {unit_text(base)} to a power that is a parameter has no fixed unit; divide it by one first"
+            f"{quoted(node)}: {unit_text(base)} to a power that is a parameter has no fixed unit; divide it by one first"
         )
     exponent = Fraction(1, 2) if node.operation == "sqrt" else Fraction(node.arguments[1].value).limit_denominator(1000)
     return _clean({name: power * exponent for name, power in base.items()})
@@ -86,8 +86,3 @@ def _power(node: Expression, arguments: list[Dimension]) -> Dimension:
 
 def _clean(powers: Dimension) -> Dimension:
     return {base: powers[base] for base in sorted(powers) if powers[base]}
-
-
-def _part(node: Expression) -> str:
-    text = to_text(node)
-    return f"'{text}'" if len(text) <= 60 else f"'{text[:57]}...'"

@@ -59,7 +59,7 @@ class Expression:
 
     @property
     def size(self) -> int:
-        """Return the number of nodes of the formula, shared parts counted at each use."""
+        """The number of nodes of the formula, shared parts counted at each use."""
         return int(self._size)  # type: ignore[attr-defined] # set above
 
     def __add__(self, other: Any) -> Expression:

@@ -16,6 +16,12 @@ def to_text(node: Expression) -> str:
     return _written(node)[0]
 
 
+def quoted(node: Expression) -> str:
+    """Return a part of a formula in quotes, cut off after 60 characters, for a message."""
+    text = to_text(node)
+    return f"'{text}'" if len(text) <= 60 else f"'{text[:57]}...'"
+
+
 def _written(node: Expression) -> tuple[str, int]:
     """Return the text of a node and its precedence."""
     if node.operation not in _SIGNS:

@@ -1,1 +1,1 @@
-"""Hold the built-in friction laws, one in each file; `stickslip.friction.registry` lists them."""
+"""Hold the built-in friction laws, one in each file; `LAWS` in `stickslip.friction` lists them."""

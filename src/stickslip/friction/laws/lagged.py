@@ -1,73 +1,46 @@
 """Define a rate law whose friction lags behind the slip rate, with an optional direct effect: a regularisation."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import quantity
-from stickslip.friction.composite import PREFIXES, Prefixed
+from stickslip.foundation.quantities import Part, declare, quantity
+from stickslip.friction.composite import LawOfParts, PartNumbers
+from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh
-from stickslip.friction.law import Formula, FrictionLaw, StateVariable
-from stickslip.friction.parameters import Part, declare
-
-_PREFIX = PREFIXES[1]
-"""Prefix of the names of the rate law's parameters."""
-_OWN = ("time", "direct", "direct_rate")
-"""Parameters that belong to the lag and not to the rate law."""
+from stickslip.friction.law import FrictionLaw
 
 
 @dataclass(frozen=True)
-class LaggedFriction(FrictionLaw):
+class LaggedFriction(LawOfParts):
     """mu = law(w) + direct [arcsinh(v / (2 direct_rate)) - arcsinh(w / (2 direct_rate))], with time dw/dt = v - w.
 
-    Parameters
-    ----------
-    rate
-        A smooth friction law that depends on slip rate only.
-    time
-        Time (s) in which friction catches up with the slip rate.
-    direct
-        Increase of friction at once when the slip rate grows by a factor e (no unit).
-    direct_rate
-        Slip rate (m/s) below which the direct effect fades.
-
-    Raises
-    ------
-    InputError
-        If `rate` is not a friction law, depends on slip, does not depend on slip rate, has a state, kinks, or a step at rest.
-
-    Notes
-    -----
     In steady sliding, w = v, friction is that of the law itself. On a slab without contact mass and without direct effect,
     Z time dw/dt = load - g(w): the lag acts on w as a contact mass Z time acts on the slip rate. The contact heals at rest,
     because w falls to 0 there.
 
-    Sources: Campillo et al. 1996, section 3 (why a solution must be selected); Hess & Soom 1990, J. Tribol. 112, 147 (a time
-    lag); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh).
+    The law must depend on slip rate only, and have neither a state, nor kinks, nor a step at rest.
     """
 
-    kind: ClassVar[str] = "lagged"
-    source: ClassVar[str] = (
+    kind = "lagged"
+    source = (
         "Campillo et al. 1996, section 3 (why a solution must be selected); Hess & Soom 1990, J. Tribol. 112, 147 (a time lag); "
         "Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
     )
-    state: ClassVar[StateVariable | None] = StateVariable("w", "m/s", "lagged slip rate")
-    example: ClassVar[dict[str, Any]] = {
-        "rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"},
-        "time": "10 ms",
-    }
+    state = StateVariable("w", "m/s", "lagged slip rate")
+    example: ClassVar = {"rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}, "time": "10 ms"}
 
     rate: FrictionLaw = declare(Part("a law of slip rate"))  # noqa: RUF009 - makes a dataclass field
     time: float = quantity("s", "time in which friction catches up with the slip rate", above=0)
     direct: float = quantity("1", "immediate increase of friction per factor e of slip rate", at_least=0, default=0.0)
     direct_rate: float = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)
 
+    @override
     def check(self) -> None:
         if not isinstance(self.rate, FrictionLaw):
             raise InputError(f"LaggedFriction: rate must be a friction law, got {type(self.rate).__name__}")
@@ -77,23 +50,17 @@ class LaggedFriction(FrictionLaw):
             raise InputError(f"LaggedFriction: rate must be a smooth law, {self.rate.kind} has kinks or a step at rest")
 
     @property
+    @override
     def pieces(self) -> tuple[Formula, ...]:
         lagged = _with_lag(self.rate.pieces[0])
         return (_with_direct_effect(lagged) if self.direct > 0.0 else lagged,)
 
     @property
+    @override
     def state_rate(self) -> Formula:
         return _catch_up
 
-    def parameters(self) -> tuple[str, ...]:
-        return (*(_PREFIX + name for name in self.rate.parameters()), *_OWN)
-
-    def piece_values(self, i: int) -> tuple[float, ...]:
-        return (*self.rate.piece_values(0), *(float(getattr(self, name)) for name in _OWN))
-
-    def literals(self) -> dict[str, float]:
-        return {_PREFIX + name: value for name, value in self.rate.literals().items()}
-
+    @override
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
         """Return mu as in `FrictionLaw.coefficient`, with negative values of w replaced by 0.
 
@@ -101,22 +68,25 @@ class LaggedFriction(FrictionLaw):
         """
         return super().coefficient(u, v, np.maximum(np.asarray(w, float), 0.0))
 
+    @override
     def range(self) -> tuple[float, float]:
         low, high = self.rate.range()
         return low, math.inf if self.direct > 0.0 else high
 
     @property
+    @override
     def variation(self) -> float:
         return self.rate.variation
 
     @property
+    @override
     def rate_scales(self) -> tuple[float, ...]:
         return self.rate.rate_scales
 
 
 def _with_lag(formula: Formula) -> Formula:
     def lagged(law: Any, u: Any, v: Any, w: Any) -> Any:
-        return formula(Prefixed(law, _PREFIX), u, w)
+        return formula(PartNumbers(law, "rate"), u, w)
 
     return lagged
 

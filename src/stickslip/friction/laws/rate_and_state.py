@@ -1,19 +1,18 @@
 """Define rate-and-state friction, regularised at small slip rates."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import quantity
+from stickslip.foundation.quantities import Choice, declare, quantity
+from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh, exp, log
-from stickslip.friction.law import Formula, FrictionLaw, StateVariable
-from stickslip.friction.parameters import Choice, declare
+from stickslip.friction.law import FrictionLaw
 
 LARGEST_EXPONENT = 600.0
 """Largest exponent (reference + b w) / a: the exponential, which overflows at 709, must be finite for every state w in reach."""
@@ -28,45 +27,20 @@ class RateAndState(FrictionLaw):
     """mu(v, theta) = a arcsinh(v / (2 rate) exp((reference + b ln(rate theta / distance)) / a)), theta by `evolution`.
 
     With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
-    The contact never sticks: friction passes smoothly through v = 0.
+    The contact never sticks: friction passes smoothly through v = 0. `a` must not be so small that the exponential could overflow.
 
-    Parameters
-    ----------
-    reference
-        Friction coefficient of steady sliding at the slip rate `rate` (no unit).
-    a
-        Direct effect: increase of friction at once when the slip rate grows by a factor e (no unit).
-    b
-        Evolution effect: decrease of friction as the state falls by a factor e (no unit).
-    distance
-        Slip Dc (m) over which the state renews itself.
-    rate
-        Reference slip rate (m/s).
-    evolution
-        Evolution law of the state: "ageing", "slip" or "prz".
-
-    Raises
-    ------
-    InputError
-        If `a` is so small that the exponential in the formula could overflow.
-
-    Notes
-    -----
     The formulas use the state w = ln(rate theta / distance); users give and see theta (s).
-
-    Sources: Dieterich 1979, J. Geophys. Res. 84, 2161 (ageing); Ruina 1983, J. Geophys. Res. 88, 10359 (slip); Perrin, Rice &
-    Zheng 1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh).
     """
 
-    kind: ClassVar[str] = "rate-and-state"
-    source: ClassVar[str] = (
+    kind = "rate-and-state"
+    source = (
         "Dieterich 1979, J. Geophys. Res. 84, 2161 (ageing); Ruina 1983, J. Geophys. Res. 88, 10359 (slip); Perrin, Rice & Zheng "
         "1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
     )
-    state: ClassVar[StateVariable | None] = StateVariable("theta", "s", "state theta (distance / v in steady sliding)", scale=1.0)
-    sticks: ClassVar[bool] = False
-    start: ClassVar[dict[str, Any]] = {"coefficient": 0.65, "state": "1 year"}
-    example: ClassVar[dict[str, Any]] = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": "1 mm", "rate": "1e-6 m/s"}
+    state = StateVariable("theta", "s", "state theta (distance / v in steady sliding)", scale=1.0)
+    sticks = False
+    start: ClassVar = {"coefficient": 0.65, "state": "1 year"}
+    example: ClassVar = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": "1 mm", "rate": "1e-6 m/s"}
 
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
     a: float = quantity("1", "direct effect: immediate increase of friction per factor e of slip rate", above=0)
@@ -75,6 +49,7 @@ class RateAndState(FrictionLaw):
     rate: float = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")
 
+    @override
     def check(self) -> None:
         largest = (self.reference + FARTHEST_STATE * self.b) / self.a
         if largest > LARGEST_EXPONENT:
@@ -82,55 +57,40 @@ class RateAndState(FrictionLaw):
             raise InputError(f"RateAndState: a must be at least {least:.3g} with this reference and b, got {self.a:g}")
 
     @property
+    @override
     def pieces(self) -> tuple[Formula, ...]:
         return (_friction,)
 
     @property
+    @override
     def state_rate(self) -> Formula:
         return _EVOLUTIONS[self.evolution]
 
+    @override
     def inner_state(self, value: float) -> float:
         return math.log(self.rate * value / self.distance)
 
+    @override
     def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.distance / self.rate * np.exp(w)
 
+    @override
     def range(self) -> tuple[float, float]:
         return 0.0, math.inf
 
     @property
     def variation(self) -> float:
-        """Return a, the change of friction at once when the slip rate changes by a factor e (no unit)."""
+        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
         return self.a
 
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
-        """Return the state of steady sliding.
-
-        Parameters
-        ----------
-        v
-            Slip rate (m/s), positive, of any shape.
-
-        Returns
-        -------
-        array
-            theta (s), with the shape of `v`: distance / v, and twice that for the PRZ law.
-        """
+        """Return the state theta (s) of steady sliding at slip rates v > 0 (m/s): distance / v, and twice that for the PRZ law."""
         return (2.0 if self.evolution == "prz" else 1.0) * self.distance / np.asarray(v, float)
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
-        """Return the friction coefficient of steady sliding.
+        """Return the friction coefficient (no unit) of steady sliding at slip rates v > 0 (m/s).
 
-        Parameters
-        ----------
-        v
-            Slip rate (m/s), positive, of any shape.
-
-        Returns
-        -------
-        array
-            mu (no unit), with the shape of `v`: reference + (a - b) ln(v / rate), and b ln 2 more for the PRZ law, but for the
-            regularisation at small slip rates.
+        It is reference + (a - b) ln(v / rate), and b ln 2 more for the PRZ law, but for the regularisation at small slip rates.
         """
         rate = np.asarray(v, float)
         return self.coefficient(0.0, rate, np.log(self.rate * self.steady_state(rate) / self.distance))

@@ -1,10 +1,10 @@
 """Define friction that grows with slip rate."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
+
+from typing_extensions import override
 
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.expression import log
@@ -13,29 +13,11 @@ from stickslip.friction.law import FrictionLaw
 
 @dataclass(frozen=True)
 class VelocityStrengthening(FrictionLaw):
-    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. Every load has exactly one slip rate.
+    """mu(v) = static + a ln(1 + v / rate) + viscosity v: logarithmic, linear or both. Every load has exactly one slip rate."""
 
-    Parameters
-    ----------
-    static
-        Friction coefficient at rest (no unit).
-    a
-        Increase of friction when the slip rate grows by a factor e beyond `rate` (no unit).
-    rate
-        Slip rate (m/s) at which the logarithm sets in.
-    viscosity
-        Increase of friction with slip rate (s/m).
-
-    Notes
-    -----
-    Source: Marone, Scholz & Bilham 1991, J. Geophys. Res. 96, 8441 (the logarithm, with v / rate in place of 1 + v / rate).
-    """
-
-    kind: ClassVar[str] = "velocity-strengthening"
-    source: ClassVar[str] = (
-        "Marone, Scholz & Bilham 1991, J. Geophys. Res. 96, 8441 (logarithm, here with 1 + v / rate for v / rate)"
-    )
-    example: ClassVar[dict[str, Any]] = {"static": 0.6, "a": 0.01, "rate": "1e-6 m/s"}
+    kind = "velocity-strengthening"
+    source = "Marone, Scholz & Bilham 1991, J. Geophys. Res. 96, 8441 (logarithm, here with 1 + v / rate for v / rate)"
+    example: ClassVar = {"static": 0.6, "a": 0.01, "rate": "1e-6 m/s"}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     a: float = quantity("1", "increase of friction per factor e of slip rate beyond `rate`", at_least=0, default=0.0)
@@ -43,8 +25,10 @@ class VelocityStrengthening(FrictionLaw):
     viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
 
     @staticmethod
+    @override
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.static + law.a * log(1.0 + v / law.rate) + law.viscosity * v
 
+    @override
     def range(self) -> tuple[float, float]:
         return self.static, math.inf if self.a > 0.0 or self.viscosity > 0.0 else self.static

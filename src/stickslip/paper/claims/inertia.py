@@ -10,8 +10,8 @@ from stickslip import YEAR
 from stickslip.bodies import as_block, as_slab
 from stickslip.contact.roots import sign_change
 from stickslip.friction import HyperbolicRate
-from stickslip.paper.cases import Runs, problem
-from stickslip.paper.claims.verdict import Verdict, judge, verdict
+from stickslip.paper.cases import Runs, problem, typed
+from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -23,33 +23,36 @@ CONTACT_MASSES = (1e6, 1e5, 1e4)
 """Masses on the slab's contact, in kg/m^2; the slab itself has rho h = 2.8e7."""
 
 
+@claim(14, "The difference comes from the mass concentrated in the block.")
 def concentrated_mass(runs: Runs) -> Verdict:
-    """Measure claim 14: without mass the block's rise becomes a jump, and with mass on the slab's contact its jumps vanish."""
+    """Measure how without mass the block's rise becomes a jump, and with mass on the slab's contact its jumps vanish."""
+    case = problem("fig6-slab")
+    slab = as_slab(case.body)
     jump = runs.case("fig6-slab").shocks.rate_after.iloc[0]
-    light = {factor: _lightened(factor) for factor in MASS_FACTORS}
-    block = {factor: runs(case, duration) for factor, (case, duration) in light.items()}
-    slab = {mass: runs(_with_contact_mass(mass), 12.0) for mass in CONTACT_MASSES}
-    rise = {factor: rise_time(s) for factor, s in block.items()}
-    slab_rise = {mass: rise_time(s) for mass, s in slab.items()}
-    lightest = MASS_FACTORS[-1]
-    to_a_jump = rise[lightest] < 1e-4 * rise[1.0] and abs(_peak(block[lightest]) / jump - 1.0) < 0.01
-    shocks = {mass: len(s.shocks) for mass, s in slab.items()}
-    proportional = slab_rise[CONTACT_MASSES[-1]] < 0.1 * slab_rise[CONTACT_MASSES[0]]
+    blocks = {f"block with mass × {factor:g}": runs(*_lightened(factor)) for factor in MASS_FACTORS}
+    heavy = {mass: replace(case, body=replace(slab, contact_mass=mass)) for mass in CONTACT_MASSES}
+    slabs = {f"slab with {mass:g} kg/m² on its contact": runs(one, 12.0) for mass, one in heavy.items()}
+    block_rise, slab_rise = ({name: rise_time(s) for name, s in group.items()} for group in (blocks, slabs))
+    block_peak, slab_peak = ({name: float(s.events.peak_rate.max()) for name, s in group.items()} for group in (blocks, slabs))
+    shocks = {name: len(s.shocks) for name, s in slabs.items()}
+    (whole, *_, lightest), (heaviest, *_, least) = block_rise.values(), slab_rise.values()
+    to_a_jump = lightest < 1e-4 * whole and abs([*block_peak.values()][-1] / jump - 1.0) < 0.01
+    proportional = least < 0.1 * heaviest
     why = (
         "Both ways. The block, with the slab's radiation resistance Z times its area as damping, rises from 10 to 90 % of its "
         "peak in a time that goes to zero with its mass, and its peak goes to the slab's jump: without mass its slip rate "
         "jumps. The slab with mass on its contact has no shock at all, and rises in a time proportional to that mass."
     )
-    numbers = [
-        ("jump of the slab", jump, "m/s"),
-        *((f"rise time, block with mass × {factor:g}", t, "s") for factor, t in rise.items()),
-        *((f"largest slip rate, block with mass × {factor:g}", _peak(s), "m/s") for factor, s in block.items()),
-        *((f"shocks, slab with {mass:g} kg/m² on its contact", n, "") for mass, n in shocks.items()),
-        *((f"rise time, slab with {mass:g} kg/m² on its contact", t, "s") for mass, t in slab_rise.items()),
-        *((f"largest slip rate, slab with {mass:g} kg/m² on its contact", _peak(s), "m/s") for mass, s in slab.items()),
-    ]
     return verdict(
-        14, judge(to_a_jump and not any(shocks.values()) and proportional), "α = 1 s/m, block with K = G × 10³ m", why, *numbers
+        judge(to_a_jump and not any(shocks.values()) and proportional),
+        "α = 1 s/m, block with K = G × 10³ m",
+        why,
+        ("jump of the slab", jump, "m/s"),
+        *each("rise time", block_rise, "s"),
+        *each("largest slip rate", block_peak, "m/s"),
+        *each("shocks", shocks),
+        *each("rise time", slab_rise, "s"),
+        *each("largest slip rate", slab_peak, "m/s"),
     )
 
 
@@ -58,22 +61,11 @@ def _lightened(factor: float) -> tuple[Problem, float]:
 
     The duration is 120 times that in which a small slip rate grows by a factor e without the spring; it ends after the peak.
     """
-    case, slab = problem("fig6-block-reconstructed"), problem("fig6-slab").body
-    body, law = as_block(case.body), case.friction
-    assert isinstance(law, HyperbolicRate)
-    area = body.normal_force / slab.normal_load
-    mass, damping = body.mass * factor, slab.impedance * area
+    case, slab = problem("fig6-block-reconstructed"), as_slab(problem("fig6-slab").body)
+    body, law = as_block(case.body), typed(case.friction, HyperbolicRate)
+    mass, damping = body.mass * factor, slab.impedance * (body.normal_force / slab.normal_stress)
     growth = (body.normal_force * (law.static - law.dynamic) * law.alpha - damping) / mass
     return replace(case, body=replace(body, mass=mass, damping=damping)), 120.0 / growth
-
-
-def _with_contact_mass(mass: float) -> Problem:
-    case = problem("fig6-slab")
-    return replace(case, body=replace(as_slab(case.body), contact_mass=mass))
-
-
-def _peak(solution: Solution) -> float:
-    return float(solution.events.peak_rate.max())
 
 
 def rise_time(solution: Solution) -> float:
@@ -92,8 +84,9 @@ def _reaches(solution: Solution, rate: float, start: float, end: float) -> float
     return sign_change(lambda t: float(solution.slip_rate(t)) - rate, float(time[first - 1]), float(time[first]))
 
 
+@claim(15, "After its event the block stays put for a long period.")
 def block_stays_put(runs: Runs) -> Verdict:
-    """Measure claim 15: the rest of the block before its second event, and the time in which the spring regains the strength."""
+    """Measure the rest of the block before its second event, and the time in which the spring regains the strength."""
     readings = {
         "slip law, as printed": "fig5-block-printed",
         "rate law, as printed": "fig6-block-printed",
@@ -101,7 +94,8 @@ def block_stays_put(runs: Runs) -> Verdict:
         "slip law, ω = 50 /m": "fig5-block-reconstructed-omega",
         "rate law, K = G × 10³ m": "fig6-block-reconstructed",
     }
-    numbers, rests = [], {}
+    rests: dict[str, float] = {}
+    numbers: list[Number] = []
     for reading, name in readings.items():
         rests[reading], expected, lasted = rest_after_event(runs, name)
         numbers += [
@@ -115,7 +109,7 @@ def block_stays_put(runs: Runs) -> Verdict:
         "seconds. As printed there is no event worth the name: under the slip law the block settles by millimetres, under the "
         "rate law it follows the driver in steps of nanometres."
     )
-    return verdict(15, judge(printed > LONG, other > LONG), "K = G × 10³ m, or ω = 50 /m", why, *numbers)
+    return verdict(judge(printed > LONG, other > LONG), "K = G × 10³ m, or ω = 50 /m", why, *numbers)
 
 
 def rest_after_event(runs: Runs, name: str) -> tuple[float, float, float]:

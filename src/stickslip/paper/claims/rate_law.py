@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab, as_slab
+from stickslip.bodies import as_slab
 from stickslip.contact.uniqueness import uniqueness
 from stickslip.friction import Coulomb, HyperbolicRate
-from stickslip.paper.cases import Runs, problem
-from stickslip.paper.claims.verdict import Outcome, Verdict, judge, verdict
+from stickslip.paper.cases import Runs, problem, typed
+from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
+from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -22,28 +23,25 @@ LIKE_COULOMB = 0.9
 """Share of the slip rate under Coulomb's law from which on the slab counts as behaving as with that law."""
 
 
+@claim(5, "Under the rate law with α = 1 the block's slip rate is continuous.")
 def block_is_continuous(runs: Runs) -> Verdict:
-    """Measure claim 5: the number of the block's shocks, and the largest change of its slip rate within 1 µs."""
+    """Measure the number of the block's shocks, and the largest change of its slip rate within 1 µs."""
     solutions = {"as printed": runs.case("fig6-block-printed"), "K = G × 10³ m": runs.case("fig6-block-reconstructed")}
-    holds = {r: len(s.shocks) == 0 for r, s in solutions.items()}
+    shocks = {r: len(s.shocks) for r, s in solutions.items()}
     why = (
         "The block's mass makes its slip rate a state: m dv/dt is bounded by the friction that can be lost, so v cannot jump, "
         "whatever the law. As printed (K = G × 10⁴ m) the motion is continuous because hardly anything moves: S (μS − μD) α < "
         "2 √(Km), so the instability is caught by the spring. With K = G × 10³ m there is an event, and its slip rate is "
         "continuous."
     )
-    numbers = [
-        *((f"shocks, {r}", len(s.shocks), "") for r, s in solutions.items()),
-        *((f"largest slip rate, {r}", _largest(s), "m/s") for r, s in solutions.items()),
-        *((f"largest step of the slip rate within 1 µs, {r}", _largest_step(s, 1e-6), "m/s") for r, s in solutions.items()),
-    ]
     return verdict(
-        5, judge(holds["as printed"], any(holds.values())), "both readings; an event only with K = G × 10³ m", why, *numbers
+        judge(shocks["as printed"] == 0, 0 in shocks.values()),
+        "both readings; an event only with K = G × 10³ m",
+        why,
+        *each("shocks", shocks),
+        *each("largest slip rate", {r: s.catalogue(0.0).peak_rate.max() for r, s in solutions.items()}, "m/s"),
+        *each("largest step of the slip rate within 1 µs", {r: _largest_step(s, 1e-6) for r, s in solutions.items()}, "m/s"),
     )
-
-
-def _largest(solution: Solution) -> float:
-    return float(solution.catalogue(0.0).peak_rate.max())
 
 
 def _largest_step(solution: Solution, step: float) -> float:
@@ -52,46 +50,49 @@ def _largest_step(solution: Solution, step: float) -> float:
     return float(np.abs(solution.slip_rate(time + step) - solution.slip_rate(time, side="left")).max())
 
 
+@claim(6, "Under the rate law with α = 1 the slab's slip rate jumps.")
 def slab_jumps(runs: Runs) -> Verdict:
-    """Measure claim 6: the shocks of the slab with alpha = 1 s/m."""
+    """Measure the shocks of the slab with alpha = 1 s/m."""
     solution = runs.case("fig6-slab")
-    shocks = solution.shocks
+    units = {"time": "s", "rate_before": "m/s", "rate_after": "m/s", "traction_after": "Pa"}
+    numbers: list[Number] = []
+    for i, shock in enumerate(solution.shocks.to_dict("records"), start=1):
+        numbers += [(f"shock {i}, {name.replace('_', ' ')}", shock[name], unit) for name, unit in units.items()]
     why = (
         "Nothing at the massless contact limits dv/dt. At 0+ stick can no longer hold the load and the slip rate jumps to the "
         "only other solution of the contact equation; at 2h/c the echo of that jump brings it back to rest. Traction jumps "
         "with it, and is slightly negative after arrest: the stress drop overshoots."
     )
-    numbers: list[tuple[str, float, str]] = [("shocks", len(shocks), "")]
-    units = {"time": "s", "rate_before": "m/s", "rate_after": "m/s", "traction_after": "Pa"}
-    for i, shock in enumerate(shocks[list(units)].to_dict("records"), start=1):
-        numbers += [(f"shock {i}, {name.replace('_', ' ')}", shock[name], unit) for name, unit in units.items()]
-    numbers.append(("slip", solution.events.slip.sum(), "m"))
-    return verdict(6, judge(len(shocks) > 0), "α = 1 s/m", why, *numbers)
+    count = len(solution.shocks)
+    slip = ("slip", solution.events.slip.sum(), "m")
+    return verdict(judge(count > 0), "α = 1 s/m", why, ("shocks", count, ""), *numbers, slip)
 
 
+@claim(13, "In the whole irregular regime shocks dominate the slab's motion, while the block's is smooth.")
 def irregular_regime(runs: Runs) -> Verdict:
-    """Measure claim 13: the share of all change of slip rate that happens in shocks, over alpha, and the shocks of the block."""
+    """Measure the share of all change of slip rate that happens in shocks, over alpha, and the shocks of the block."""
     slab, block = problem("fig6-slab"), problem("fig6-block-reconstructed")
-    critical = _critical(slab)
-    alphas = [critical + 1e-6, *(factor * critical for factor in SCAN)]
-    shares, block_shocks = [], 0
-    for alpha in alphas:
-        shares.append(shock_share(runs(_with_alpha(slab, alpha), 1.5 * slab.round_trip_time)))
-        block_shocks += len(runs(_with_alpha(block, alpha), 4.0).shocks)
-    dominated = min(shares) > 0.5
-    outcome = Outcome.NOT if not dominated or block_shocks else Outcome.PRINTED if min(shares) > 0.9 else Outcome.QUALIFIED
+    critical, duration = _critical(slab), 1.5 * slab.round_trip_time
+    shares, block_shocks = {}, 0
+    for alpha in (critical + 1e-6, *(factor * critical for factor in SCAN)):
+        shares[f"α/αc = {alpha / critical:.6g}"] = shock_share(runs(parameter(slab, "alpha").put(alpha), duration))
+        block_shocks += len(runs(parameter(block, "alpha").put(alpha), 4.0).shocks)
+    least = min(shares.values())
+    outcome = Outcome.NOT if least <= 0.5 or block_shocks else Outcome.PRINTED if least > 0.9 else Outcome.QUALIFIED
     why = (
         "The share of all the change of slip rate in the first event that happens in shocks. It never falls to one half, for "
         "the event always ends with a shock; but towards αc the jump at the start vanishes like (α/αc − 1)/α and slip "
         "accelerates smoothly in between. The block, given the same friction, has no shock for any α."
     )
-    numbers = [
+    return verdict(
+        outcome,
+        "as printed; smoothly growing slip between the shocks near αc",
+        why,
         ("critical α", critical, "s/m"),
-        *((f"share of shocks, α/αc = {alpha / critical:.6g}", share, "") for alpha, share in zip(alphas, shares, strict=True)),
-        ("smallest share of shocks", min(shares), ""),
+        *each("share of shocks", shares),
+        ("smallest share of shocks", least, ""),
         ("shocks of the block, whole scan", block_shocks, ""),
-    ]
-    return verdict(13, outcome, "as printed; smoothly growing slip between the shocks near αc", why, *numbers)
+    )
 
 
 def shock_share(solution: Solution) -> float:
@@ -103,90 +104,90 @@ def shock_share(solution: Solution) -> float:
 
 
 def _critical(case: Problem) -> float:
-    critical = uniqueness(case).critical_value
-    assert critical is not None
-    return critical
+    return typed(uniqueness(case).critical_value, float)
 
 
-def _with_alpha(case: Problem, alpha: float) -> Problem:
-    assert isinstance(case.friction, HyperbolicRate)
-    return replace(case, friction=replace(case.friction, alpha=alpha))
-
-
+@claim(
+    18, "At αc + 10⁻⁶ there are two shocks, at the beginning and at the end (with the reflected wave), at a very small slip rate."
+)
 def just_above_critical(runs: Runs) -> Verdict:
-    """Measure claim 18: the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
+    """Measure the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
     case = problem("fig7-slab-critical")
     back = case.round_trip_time
     event = runs(case, 2.0 * back)
-    shocks = event.shocks
-    later = runs(case, SECOND_EVENT_BY).events
+    shocks, later = event.shocks, runs(case, SECOND_EVENT_BY).events
     at_ends = len(shocks) == 2 and shocks.time.iloc[0] == 0.0 and abs(shocks.time.iloc[1] - back) < 1e-9 * back
     small = event.events.peak_rate.max() < 1e-3
     why = (
         "Exactly two shocks in the event, at 0+ and with the reflected wave at 2h/c, at slip rates of a tenth of a millimetre "
         "per second. Between them slip accelerates smoothly by more than the first jump."
     )
-    numbers = [
+    return verdict(
+        judge(at_ends and small),
+        "α in s/m",
+        why,
         ("shocks within two round trips", len(shocks), ""),
         ("first shock, slip rate after", shocks.rate_after.iloc[0], "m/s"),
         ("second shock, time", shocks.time.iloc[-1], "s"),
         ("second shock, slip rate before", shocks.rate_before.iloc[-1], "m/s"),
         ("slip", event.events.slip.sum(), "m"),
         ("time from arrest to the next event", later.start.iloc[1] - later.end.iloc[0], "s"),
-    ]
-    return verdict(18, judge(at_ends and small), "α in s/m", why, *numbers)
+    )
 
 
+@claim(19, "For α > 3 αc the slab behaves as with Coulomb's law.")
 def like_coulomb(runs: Runs) -> Verdict:
-    """Measure claim 19: the slip rate divided by that under Coulomb's law, at several alpha."""
+    """Measure the slip rate divided by that under Coulomb's law, at several alpha."""
     slab = problem("fig6-slab")
-    critical, back = _critical(slab), slab.round_trip_time
-    law = slab.friction
-    assert isinstance(law, HyperbolicRate)
-    middle = 0.5 * back
+    law, back = typed(slab.friction, HyperbolicRate), slab.round_trip_time
     coulomb = runs(replace(slab, friction=Coulomb(law.static, law.dynamic)), 2.0 * back)
+    rate = coulomb.slip_rate(0.5 * back)
     ratios = {}
     for factor in (1.5, 3.0, 5.0, 10.0, 30.0, 100.0):
-        rate = runs(_with_alpha(slab, factor * critical), 2.0 * back).slip_rate(middle)
-        ratios[factor] = float(rate / coulomb.slip_rate(middle))
+        run = runs(parameter(slab, "alpha").put(factor * _critical(slab)), 2.0 * back)
+        ratios[factor] = float(run.slip_rate(0.5 * back) / rate)
     outcome = Outcome.PRINTED if ratios[3.0] > LIKE_COULOMB else Outcome.QUALIFIED if ratios[100.0] > LIKE_COULOMB else Outcome.NOT
     why = (
         "In kind the slab does behave as with Coulomb's law: constant slip rate for one round trip, then rest. In number its "
         f"slip rate is 1 − αc/α times Coulomb's: {ratios[3.0]:.3f} at 3 αc, and within a tenth of it only from 10 αc on."
     )
-    numbers = [
-        ("Coulomb's slip rate", float(coulomb.slip_rate(middle)), "m/s"),
+    return verdict(
+        outcome,
+        "in kind from αc on; within 10 % from 10 αc",
+        why,
+        ("Coulomb's slip rate", rate, "m/s"),
         ("Coulomb's slip", coulomb.events.slip.sum(), "m"),
         *((f"slip rate over Coulomb's, α = {factor:g} αc", ratio, "") for factor, ratio in ratios.items()),
-    ]
-    return verdict(19, outcome, "in kind from αc on; within 10 % from 10 αc", why, *numbers)
+    )
 
 
+@claim(20, "The load is β(t) = G(Vt + D0 − u0)/h up to t = h/c.")
 def load_before_the_echo(runs: Runs) -> Verdict:
-    """Measure claim 20: the computed load against the paper's formula, up to h/c, from there to 2h/c, and at 2h/c."""
-    worst: dict[str, float] = {"to h/c": 0.0, "from h/c to 2h/c": 0.0}
-    beyond = []
+    """Measure the computed load against the paper's formula, up to h/c, from there to 2h/c, and at 2h/c."""
+    worst, beyond = {"to h/c": 0.0, "from h/c to 2h/c": 0.0}, {}
     for name in ("fig5-slab-reconstructed", "fig6-slab", "fig7-slab-critical"):
         solution = runs.case(name)
-        case = solution.problem
-        body = as_slab(case.body)
+        body = as_slab(solution.problem.body)
         middle, back = body.thickness / body.wave_speed, body.two_way_time
         for part, start, end in (("to h/c", 0.0, middle), ("from h/c to 2h/c", middle, back)):
             time = np.linspace(start, end, 400)
-            worst[part] = max(worst[part], float(np.abs(solution.load(time, side="left") / _formula(case, body, time) - 1.0).max()))
-        beyond.append((name, float(solution.load(back) - _formula(case, body, np.array(back)))))
+            departure = solution.load(time, side="left") / _formula(solution.problem, time) - 1.0
+            worst[part] = max(worst[part], float(np.abs(departure).max()))
+        beyond[name] = solution.load(back) - _formula(solution.problem, np.array(back))
     why = (
         "The load at the contact is what arrives from the driver. Until the first wave that left the contact has come back, "
         "at 2h/c, what arrives is the initial strain and the steady pull: the formula holds twice as long as claimed. At 2h/c "
         "the load departs from it by −2Z times the slip rate of one round trip before."
     )
-    numbers = [
-        *((f"largest relative departure, {part}", value, "") for part, value in worst.items()),
-        *((f"departure at 2h/c, {name}", value, "Pa") for name, value in beyond),
-    ]
-    return verdict(20, judge(worst["to h/c"] < 1e-12), "and further: up to 2h/c", why, *numbers)
+    return verdict(
+        judge(worst["to h/c"] < 1e-12),
+        "and further: up to 2h/c",
+        why,
+        *each("largest relative departure", worst),
+        *each("departure at 2h/c", beyond, "Pa"),
+    )
 
 
-def _formula(case: Problem, body: ElasticSlab, time: np.ndarray) -> np.ndarray:
+def _formula(case: Problem, time: np.ndarray) -> np.ndarray:
     """Return the paper's formula for the load (Pa) at times (s): G (V t + D0 - u0) / h."""
-    return case.load + body.stiffness * case.first_pull_rate * time
+    return case.load + case.body.stiffness * case.first_pull_rate * time

@@ -1,9 +1,17 @@
-"""The parts of a verdict on a claim, and the claims of the paper in our words."""
+"""The parts of a verdict on a claim of the paper, and the table of claims that the functions which measure them fill."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import wraps
+from typing import Any
+
+from stickslip.paper.cases import Runs
+
+Number = tuple[str, Any, str]
+"""A measured number: its label, its value and its unit."""
 
 
 class Outcome(StrEnum):
@@ -26,43 +34,37 @@ class Measured:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The outcome for one claim, with the reading in which it holds, the measured numbers and an explanation."""
+    """The outcome for one claim, with the reading in which it holds, an explanation and the measured numbers."""
 
-    number: int
-    claim: str
     outcome: Outcome
     reading: str
-    measured: tuple[Measured, ...]
     explanation: str
+    measured: tuple[Measured, ...]
+    number: int = 0
+    claim: str = ""
 
     def value(self, label: str) -> float:
         """Return the measured number with this label."""
         return next(m.value for m in self.measured if m.label == label)
 
 
-STATEMENTS = {
-    1: "Under the slip law the block slips once, releases much of its stress, and stops.",
-    2: "Under the slip law the slab shows several pulses of slip.",
-    3: "The wave reflected at the driver arrests the slab completely.",
-    4: "The number of pulses depends only on the thickness and the wave speed.",
-    5: "Under the rate law with α = 1 the block's slip rate is continuous.",
-    6: "Under the rate law with α = 1 the slab's slip rate jumps.",
-    7: "The critical value is αc = √(ρG)/(S(μS − μD)) = 0.196 s/m.",
-    8: "An irregular contact has three solutions between the folds, two at them, one elsewhere.",
-    9: "A regular contact has one solution for every load, and no fold.",
-    10: "With the slip law the slab's problem is well-posed.",
-    11: "Whatever rule selects the solution, shocks occur.",
-    12: "The rule of perfect delay is no simple energy criterion: Maxwell's rule gives another answer.",
-    13: "In the whole irregular regime shocks dominate the slab's motion, while the block's is smooth.",
-    14: "The difference comes from the mass concentrated in the block.",
-    15: "After its event the block stays put for a long period.",
-    16: "The initial data are close to instability.",
-    17: "Accelerating and decelerating paths differ (hysteresis).",
-    18: "At αc + 10⁻⁶ there are two shocks, at the beginning and at the end (with the reflected wave), at a very small slip rate.",
-    19: "For α > 3 αc the slab behaves as with Coulomb's law.",
-    20: "The load is β(t) = G(Vt + D0 − u0)/h up to t = h/c.",
-}
-"""The claims of the paper in our words, by number."""
+Measurement = Callable[[Runs], Verdict]
+MEASUREMENTS: dict[int, tuple[str, Measurement]] = {}
+"""Each claim in our words, and the function that measures it, by the number of the claim."""
+
+
+def claim(number: int, statement: str) -> Callable[[Measurement], Measurement]:
+    """Decorate the function that measures a claim; `statement` is the claim in our words."""
+
+    def register(measure: Measurement) -> Measurement:
+        @wraps(measure)
+        def judged(runs: Runs) -> Verdict:
+            return replace(measure(runs), number=number, claim=statement)
+
+        MEASUREMENTS[number] = statement, judged
+        return judged
+
+    return register
 
 
 def judge(printed: bool, reading: bool = False) -> Outcome:
@@ -72,7 +74,11 @@ def judge(printed: bool, reading: bool = False) -> Outcome:
     return Outcome.READING if reading else Outcome.NOT
 
 
-def verdict(number: int, outcome: Outcome, reading: str, explanation: str, *measured: tuple[str, float, str]) -> Verdict:
-    """Return a verdict on claim `number`; each measured number is given as label, value and unit."""
-    numbers = tuple(Measured(label, float(value), unit) for label, value, unit in measured)
-    return Verdict(number, STATEMENTS[number], outcome, reading, numbers, explanation)
+def each(label: str, values: Mapping[str, Any], unit: str = "") -> list[Number]:
+    """Return one measured number for each entry, labelled by `label` and the key."""
+    return [(f"{label}, {key}", value, unit) for key, value in values.items()]
+
+
+def verdict(outcome: Outcome, reading: str, explanation: str, *measured: Number) -> Verdict:
+    """Return a verdict from measured numbers; the decorator `claim` adds the claim and its number."""
+    return Verdict(outcome, reading, explanation, tuple(Measured(label, float(value), unit) for label, value, unit in measured))

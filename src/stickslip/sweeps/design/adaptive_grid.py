@@ -21,7 +21,6 @@ from stickslip.foundation.errors import InputError
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Differ = Callable[[Floats, Floats], NDArray[np.bool_]]
 
 MOST_MEMBERS = 10_000_000
 """Default limit on the number of computed points. It ends a search for an answer that changes everywhere and has no boundary."""
@@ -46,7 +45,7 @@ class Lattice:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Return the number of points of the finest grid along each axis."""
+        """The number of points of the finest grid along each axis."""
         return tuple((count - 1) * 2**self.depth + 1 for count in self.coarse)
 
     def fractions(self, points: Integers) -> Floats:
@@ -147,7 +146,7 @@ class Refined:
 
     @property
     def boundary(self) -> Floats:
-        """Return the midpoints (cells, axes) of the finest cells around which answers differ, from 0 to 1 along each axis.
+        """The midpoints (cells, axes) of the finest cells around which answers differ, from 0 to 1 along each axis.
 
         Every point of the boundary lies within half a cell of one of these midpoints, along each axis.
         """
@@ -155,28 +154,21 @@ class Refined:
         return np.asarray((self.cells.corner[finest] + 0.5) / (np.array(self.lattice.shape) - 1.0))
 
 
-def unequal(least: Floats, most: Floats) -> NDArray[np.bool_]:
-    """Return True where the smallest and the largest answer differ; meant for answers that are whole numbers."""
-    return np.asarray(least < most)
-
-
-def apart(factor: float) -> Differ:
-    """Return a comparison that is True where the smallest and the largest answer differ by more than a factor, or in sign."""
-
-    def differ(least: Floats, most: Floats) -> NDArray[np.bool_]:
-        smaller, larger = np.sort(np.abs([least, most]), axis=0)
-        return np.asarray((larger > factor * smaller) | (least * most < 0.0))
-
-    return differ
+def differ(least: Floats, most: Floats, factor: float | None = None) -> NDArray[np.bool_]:
+    """Return True where the smallest and the largest answer differ; with a factor, where by more than it, or in sign."""
+    if factor is None:
+        return np.asarray(least < most)
+    smaller, larger = np.sort(np.abs([least, most]), axis=0)
+    return np.asarray((larger > factor * smaller) | (least * most < 0.0))
 
 
 def refine_cells(
-    lattice: Lattice, evaluate: Callable[[Integers], Floats], differ: Differ = unequal, most: int = MOST_MEMBERS
+    lattice: Lattice, evaluate: Callable[[Integers], Floats], factor: float | None = None, most: int = MOST_MEMBERS
 ) -> Refined:
     """Compute a coarse grid, then halve the cells around which answers differ, down to the depth of the lattice.
 
     `evaluate` takes points (n, axes) and returns n answers. NaN means that there is no answer, and causes no refinement.
-    `differ` compares the smallest and the largest answer around each cell. The search ends before a round that would take it
+    Answers differ if they are not the same, or by more than a factor (`differ`). The search ends before a round that would take it
     beyond `most` points. Raises InputError if the coarse grid alone has more points than that.
     """
     points, answers = np.empty((0, len(lattice.coarse)), np.int64), np.empty(0)
@@ -188,7 +180,7 @@ def refine_cells(
         found = np.asarray(evaluate(fresh), float) if len(fresh) else np.empty(0)
         points, answers = np.concatenate([points, fresh]), np.concatenate([answers, found])
         cells.learn(lattice, fresh, found)
-        changes = differ(cells.least, cells.most)
+        changes = differ(cells.least, cells.most, factor)
         halve = changes & (cells.level < lattice.depth)
         children = _halved(lattice, cells[halve])
         fresh = _missing(lattice, children, points)

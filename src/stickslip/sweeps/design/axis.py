@@ -1,9 +1,8 @@
-"""The values of one parameter of a sweep: "body.thickness=1km..50km:300:log", "friction.alpha=0.1,0.5,2", or a list of values."""
+"""The values of one parameter of a sweep, from an array or a list, or the two ends between which samples are drawn."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,31 +10,57 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.parameters import Choice
-from stickslip.scenarios.scenario import Scenario
+from stickslip.foundation.quantities import Choice, Quantity
+from stickslip.foundation.units import to_si
 from stickslip.scenarios.values import show
-from stickslip.sweeps.design.parameter_paths import Key, key_named
+from stickslip.sweeps.design.parameter_paths import ParameterPath
 
 Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""
 LARGEST_AXIS = 10_000_000
-"""Largest number of values of an axis, and of members of a random design: 80 MB for each key."""
-FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
-
-_RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
+"""Largest number of values of an axis, and of members of a random design: 80 MB for each parameter."""
+EQUAL = 1e-9
+"""Relative difference up to which the ratios of successive values count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A parameter (`key`) with its `values`, or with the `ends` (SI) between which samples are drawn.
+    """A parameter with its `values`, or with the `ends` (SI) between which samples are drawn.
 
-    Samples are distributed evenly between the ends, or evenly in the logarithm if `log` is True.
+    If `log` is True, samples are distributed evenly in the logarithm, and a step between two values is divided into equal ratios.
     """
 
-    key: Key
+    parameter: ParameterPath
     values: Values
     ends: tuple[float, float] | None = None
     log: bool = False
+
+    @classmethod
+    def of_values(cls, parameter: ParameterPath, values: Any, where: str) -> Axis:
+        """Return the axis of an array, a list or a pint quantity array; it is logarithmic if the values are in equal ratios.
+
+        Raises InputError, whose message begins with `where`.
+        """
+        if isinstance(values, str | Mapping) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) != 1:
+            hint = ": LOW..HIGH:POINTS is for the command line, here use numpy.linspace" if isinstance(values, str) else ""
+            shown = " ".join(show(values).split())
+            raise InputError(f"{where}: {parameter.name} must be a one-dimensional array or a list of values, got {shown}{hint}")
+        found = read_values(parameter, values, where)
+        return cls(parameter, found, log=_in_equal_ratios(found))
+
+    @classmethod
+    def of_range(cls, parameter: ParameterPath, ends: Sequence[Any], log: bool, where: str) -> Axis:
+        """Return the axis of samples between two ends. Raises InputError unless they are numbers in ascending order."""
+        if isinstance(parameter.declared, Choice):
+            words = ", ".join(parameter.declared.allowed)
+            raise InputError(f"{where}: {parameter.name} takes words, not a range: list some of {words}")
+        unit = parameter.unit
+        low, high = (float(parameter.read(_without_unit(parameter, end, where), where)) for end in ends)
+        if not np.isfinite([low, high]).all() or not low < high:
+            raise InputError(f"{where}: {parameter.name} must go from a smaller to a larger number, got {low:g} to {high:g} {unit}")
+        if log and low <= 0.0:
+            raise InputError(f"{where}: {parameter.name} must be above 0 for :log, got {low:g} {unit}")
+        return cls(parameter, np.empty(0), (low, high), log)
 
     def at(self, shares: NDArray[np.float64]) -> Values:
         """Return the values at the given fractions (0 to 1) of the way from one end to the other, or through the list of values."""
@@ -47,61 +72,50 @@ class Axis:
         return np.asarray(low + shares * (high - low))
 
 
-def read_axis(scenario: Scenario, text: str, where: str) -> Axis:
-    """Read an axis that was typed as "KEY=...". Raises InputError, whose message begins with `where`."""
-    name, equals, content = text.partition("=")
-    if not equals or not name.strip() or not content.strip():
-        raise InputError(f"{where} must be {FORM}, got {show(text)}")
-    return axis_of(scenario, name.strip(), content.strip(), where)
+def read_values(parameter: ParameterPath, values: Iterable[Any], where: str, most: float = LARGEST_AXIS) -> Values:
+    """Return values in SI. Raises InputError for the first that the parameter cannot have, for none, and for more than `most`."""
+    values = _without_unit(parameter, values, where)
+    if isinstance(values, np.ndarray) and values.dtype.kind in "iuf" and values.size and _takes_an_interval(parameter):
+        for extreme in (values.min(), values.max()):  # both are NaN if any of the values is
+            parameter.read(extreme, where)
+        read = values.astype(float)
+    else:
+        plain = [parameter.read(_without_unit(parameter, value, where), where) for value in values]
+        read = np.array(plain, dtype=float if parameter.unit else np.dtypes.StringDType())
+    if not len(read):
+        raise InputError(f"{where}: {parameter.name} needs at least one value")
+    check_size(parameter, len(read), where, most)
+    return read
 
 
-def axis_of(scenario: Scenario, name: str, content: Any, where: str) -> Axis:
-    """Return the axis of a key from the text after the "=" of FORM, or from values (numbers in SI or texts with a unit).
-
-    Raises InputError.
-    """
-    key = key_named(scenario, name, where)
-    if isinstance(content, str):
-        found = _RANGE.fullmatch(content)
-        return _range(key, found, where) if found else _listed(key, content.split(","), where)
-    if not isinstance(content, Iterable):
-        raise InputError(f"{where}: {key.name} must be a text or a list of values, got {show(content)}")
-    return _listed(key, content, where)
+def _takes_an_interval(parameter: ParameterPath) -> bool:
+    """Return True if a parameter can have all numbers between any two that it can have."""
+    return isinstance(parameter.declared, Quantity) and not parameter.declared.whole
 
 
-def read_values(key: Key, values: Iterable[Any], where: str) -> Values:
-    """Return the values of a key in SI. Raises InputError for the first value that cannot be read."""
-    read = [key.read(value, where) for value in values]
-    return np.array(read, dtype=float if key.unit else np.dtypes.StringDType())
+def check_size(parameter: ParameterPath, size: int, where: str, most: float = LARGEST_AXIS) -> None:
+    """Raise InputError for more values than `most`."""
+    if size > most:
+        raise InputError(f"{where}: {parameter.name} has {size} values, at most {most} are allowed")
 
 
-def _listed(key: Key, values: Iterable[Any], where: str) -> Axis:
-    found = read_values(key, values, where)
-    if found.size == 0:
-        raise InputError(f"{where}: {key.name} needs at least one value")
-    _check_size(key, found.size, where)
-    return Axis(key, found)
+def _without_unit(parameter: ParameterPath, value: Any, where: str) -> Any:
+    """Return the magnitude in SI of a number or an array with a unit of pint; anything else as it is. Raises InputError."""
+    if not hasattr(value, "magnitude"):
+        return value
+    if not parameter.unit:
+        raise InputError(f"{where}: {parameter.name} takes words, got a quantity in {value.units:D}")
+    try:
+        unit = "dimensionless" if parameter.unit == "1" else parameter.unit
+        magnitude: Any = np.asarray(value.magnitude, float)[()]
+        return to_si(magnitude, f"{value.units:D}", unit)
+    except InputError as error:
+        raise InputError(f"{where}: {parameter.name}: {error}") from None
 
 
-def _range(key: Key, found: re.Match[str], where: str) -> Axis:
-    if isinstance(key.declared, Choice):
-        raise InputError(f"{where}: {key.name} takes words, not a range: list some of {', '.join(key.declared.allowed)}")
-    low, high = (float(key.read(found[end], where)) for end in ("low", "high"))
-    log = bool(found["log"])
-    if not np.isfinite([low, high]).all() or not low < high:
-        raise InputError(f"{where}: {key.name} must go from a smaller to a larger number, got {low:g} to {high:g} {key.unit}")
-    if log and low <= 0.0:
-        raise InputError(f"{where}: {key.name} must be above 0 for :log, got {low:g} {key.unit}")
-    if found["points"] is None:
-        return Axis(key, np.empty(0), (low, high), log)
-    points = int(found["points"])
-    _check_size(key, points, where)
-    if points < 2:
-        raise InputError(f"{where}: {key.name} needs at least 2 points, got {points}")
-    spaced = np.geomspace if log else np.linspace
-    return Axis(key, np.asarray(spaced(low, high, points)), (low, high), log)
-
-
-def _check_size(key: Key, size: int, where: str) -> None:
-    if size > LARGEST_AXIS:
-        raise InputError(f"{where}: {key.name} has {size} values, at most {LARGEST_AXIS} are allowed")
+def _in_equal_ratios(values: Values) -> bool:
+    """Return True for three or more positive numbers in equal ratios, as from numpy.geomspace."""
+    if values.dtype.kind != "f" or len(values) < 3 or values.min() <= 0.0 or np.isinf(values).any():
+        return False
+    ratios = values[1:] / values[:-1]
+    return bool((np.abs(ratios - ratios[0]) <= EQUAL * ratios[0]).all() and abs(ratios[0] - 1.0) > EQUAL)

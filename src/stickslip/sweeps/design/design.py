@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -15,14 +15,24 @@ from numpy.typing import NDArray
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, axis_of, read_axis, read_values
-from stickslip.sweeps.design.parameter_paths import Key, key_named
+from stickslip.scenarios.values import show
+from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, read_values
+from stickslip.sweeps.design.axis_text import typed_value
+from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter
 
 if TYPE_CHECKING:
     import pandas as pd
 
-KINDS = ("grid", "random", "lhs")
+GRID, RANDOM, LATIN_HYPERCUBE = KINDS = ("grid", "random", "lhs")
 """Designs made from axes: every combination, independent random samples, or a Latin hypercube."""
+LIST, REFINED = "list", "refined"
+"""Designs that consist of members given one by one, and of the members of a refined map."""
+IN_WORDS = {
+    RANDOM: "drawn at random",
+    LATIN_HYPERCUBE: "drawn as a Latin hypercube",
+    LIST: "from a list",
+    REFINED: "of a refined map",
+}
 LARGEST_TABLE = 1_000_000_000
 """Largest size (bytes) of a CSV file of members; a larger one is refused before it fills the memory."""
 LARGEST_GRID = 1_000_000_000
@@ -35,96 +45,103 @@ MEMBER = "member"
 class Design:
     """The members of a sweep, in their order: the last axis of a grid varies fastest.
 
-    `columns` holds one array for each key (SI, or words). For a grid it contains the values of the axis, for samples and lists
-    one value for each member.
+    `columns` holds one array for each parameter (SI, or words). For a grid it contains the values of the axis, for samples and
+    lists one value for each member. `logs` are the names of the parameters whose values are spaced evenly in the logarithm.
     """
 
     kind: str
-    keys: tuple[Key, ...]
+    parameters: tuple[ParameterPath, ...]
     columns: tuple[Values, ...]
     seed: int | None = None
     logs: frozenset[str] = frozenset()
-    """Names of the keys whose values are spaced evenly in the logarithm."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the parameters."""
+        return tuple(parameter.name for parameter in self.parameters)
 
     @property
     def is_grid(self) -> bool:
-        """Return True if every combination of the values in the columns is a member."""
-        return self.kind == "grid"
+        """True if every combination of the values in the columns is a member."""
+        return self.kind == GRID
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Return the number of members along each dimension."""
+        """The number of members along each dimension."""
         return tuple(len(column) for column in (self.columns if self.is_grid else self.columns[:1]))
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Return the names of the dimensions: the keys of a grid, otherwise `member`."""
-        return tuple(key.name for key in self.keys) if self.is_grid else (MEMBER,)
+        """The names of the dimensions: the parameters of a grid, otherwise `member`."""
+        return self.names if self.is_grid else (MEMBER,)
 
     @property
     def size(self) -> int:
-        """Return the number of members."""
+        """The number of members."""
         return math.prod(self.shape)
 
     def values(self, members: slice | NDArray[np.intp]) -> dict[str, Values]:
-        """Return the values of these members for each key, as one-dimensional arrays in SI."""
+        """Return the values of these members by parameter, as one-dimensional arrays in SI."""
         numbers = np.arange(*members.indices(self.size)) if isinstance(members, slice) else np.asarray(members)
-        if not self.is_grid:
-            return {key.name: column[numbers] for key, column in zip(self.keys, self.columns, strict=True)}
-        places = np.unravel_index(numbers, self.shape)
-        return {key.name: column[place] for key, column, place in zip(self.keys, self.columns, places, strict=True)}
+        places = np.unravel_index(numbers, self.shape) if self.is_grid else (numbers,) * len(self.columns)
+        return {name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)}
 
     def __str__(self) -> str:
         if self.is_grid:
             return f"{' x '.join(str(one) for one in self.shape)} = {self.size} members"
-        names = {
-            "random": "drawn at random",
-            "lhs": "drawn as a Latin hypercube",
-            "list": "from a list",
-            "refined": "of a refined map",
-        }
-        return f"{self.size} members {names[self.kind]}"
-
-
-Vary = str | Sequence[str] | Mapping[str, Any]
-"""Axes: texts "KEY=LOW..HIGH:POINTS", or a mapping from keys to the text after the "=" or to lists of values."""
+        return f"{self.size} members {IN_WORDS[self.kind]}"
 
 
 def read_design(
-    scenario: Scenario, vary: Any, kind: str = "grid", members: int | None = None, seed: int = 0, where: str = "sweep: vary"
+    scenario: Scenario, vary: Any, kind: str = GRID, *, members: int | None = None, seed: int = 0, where: str = "sweep: vary"
 ) -> Design:
-    """Return the design that `vary` describes: axes (`Vary`), a DataFrame or CSV file (`Path`) of members, or a finished design.
+    """Return the design that `vary` describes: a mapping or axes (`axes_of`), a table of members, or a finished design.
 
-    Raises InputError. A message on the axes or the table begins with `where`.
+    A table is a DataFrame or the `Path` of a CSV file. Raises InputError. A message on the axes or the table begins with `where`.
     """
     if isinstance(vary, Design):
         return vary
     if isinstance(vary, Path) or hasattr(vary, "columns"):
         return listed(scenario, read_csv(vary, where) if isinstance(vary, Path) else vary, where)
-    axes = axes_of(scenario, vary, where)
+    axes = axes_of(scenario, vary, where, sampled=kind != GRID)
     if kind not in KINDS:
         raise InputError(f"sweep: design '{kind}' is unknown; {nearest(kind, KINDS)}")
-    if kind == "grid":
-        if members is not None:
-            raise InputError("sweep: members belongs to the designs random and lhs: a grid has every combination of its axes")
-        return grid(axes, where)
-    return sampled(axes, kind, members, seed, where)
+    if kind != GRID:
+        return sampled(axes, kind, members, seed, where)
+    if members is not None:
+        raise InputError("sweep: members belongs to the designs random and lhs: a grid has every combination of its axes")
+    return grid(axes, where)
 
 
-def axes_of(scenario: Scenario, vary: Vary, where: str) -> list[Axis]:
-    """Return the axes that `vary` describes. Raises InputError, whose message begins with `where`."""
+def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False) -> list[Axis]:
+    """Return the axes of a mapping from parameters to values (`Axis.of_values`); a list of axes is returned as it is.
+
+    If `sampled`, a tuple (LOW, HIGH) or (LOW, HIGH, "log") stands for the ends between which samples are drawn. Raises
+    InputError, whose message begins with `where`.
+    """
     if isinstance(vary, Mapping):
-        axes = [axis_of(scenario, str(name), content, where) for name, content in vary.items()]
+        axes = [_axis(find_parameter(scenario, str(name), where), content, where, sampled) for name, content in vary.items()]
+    elif isinstance(vary, list) and all(isinstance(axis, Axis) for axis in vary):
+        axes = vary
     else:
-        axes = [read_axis(scenario, text, where) for text in ([vary] if isinstance(vary, str) else vary)]
+        shown = " ".join(show(vary).split())
+        raise InputError(f"{where} must be a mapping from parameters to arrays, a DataFrame or the Path of a CSV file, got {shown}")
     if not axes:
         raise InputError(f"{where} is missing: name at least one parameter to vary")
-    _check_keys([axis.key for axis in axes], where)
+    _check_names([axis.parameter.name for axis in axes], where)
     return axes
 
 
-def _check_keys(keys: Sequence[Key], where: str) -> None:
-    names = [key.name for key in keys]
+def _axis(parameter: ParameterPath, content: Any, where: str, sampled: bool) -> Axis:
+    if not isinstance(content, tuple):
+        return Axis.of_values(parameter, content, where)
+    if not sampled or len(content) < 2 or content[2:] not in ((), ("log",)):
+        ends = '(LOW, HIGH) or (LOW, HIGH, "log")'
+        raise InputError(f"{where}: {parameter.name} must be an array or a list: a tuple {ends} is for the designs random and lhs")
+    return Axis.of_range(parameter, content[:2], content[2:] == ("log",), where)
+
+
+def _check_names(names: Sequence[str], where: str) -> None:
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{where}: {name} is varied twice")
@@ -132,28 +149,27 @@ def _check_keys(keys: Sequence[Key], where: str) -> None:
         raise InputError(f"{where}: initial.load and initial.excess exclude each other")
 
 
-def grid(axes: Iterable[Axis], where: str) -> Design:
+def _design(kind: str, axes: Sequence[Axis], columns: Sequence[Values], seed: int | None = None) -> Design:
+    logs = frozenset(axis.parameter.name for axis in axes if axis.log)
+    return Design(kind, tuple(axis.parameter for axis in axes), tuple(columns), seed, logs)
+
+
+def grid(axes: Sequence[Axis], where: str) -> Design:
     """Return the design of every combination of the axes.
 
     Raises InputError for an axis without points or with a repeated value, and for more than LARGEST_GRID members.
     """
-    axes = list(axes)
     for axis in axes:
         if len(axis.values) == 0:
-            raise InputError(f"{where}: {axis.key.name} needs a number of points: LOW..HIGH:POINTS")
+            raise InputError(f"{where}: {axis.parameter.name} needs a number of points: LOW..HIGH:POINTS")
         ordered = np.sort(axis.values)
         twice = np.flatnonzero(ordered[1:] == ordered[:-1])
         if twice.size:
-            raise InputError(f"{where}: {axis.key.name} has the value {ordered[twice[0]]} twice")
-    keys, columns = tuple(axis.key for axis in axes), tuple(axis.values for axis in axes)
-    found = Design("grid", keys, columns, logs=_logs(axes))
+            raise InputError(f"{where}: {axis.parameter.name} has the value {ordered[twice[0]]} twice")
+    found = _design(GRID, axes, [axis.values for axis in axes])
     if found.size > LARGEST_GRID:
         raise InputError(f"{where}: a grid has at most {LARGEST_GRID:.0e} members, got {found.size:.3g}")
     return found
-
-
-def _logs(axes: Iterable[Axis]) -> frozenset[str]:
-    return frozenset(axis.key.name for axis in axes if axis.log)
 
 
 def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, where: str) -> Design:
@@ -162,22 +178,27 @@ def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, whe
     `kind` "random" draws members independently. "lhs" is a Latin hypercube: every axis is divided into as many equal intervals as
     there are members, with one member in each (McKay, Beckman & Conover 1979, Technometrics 21, 239). Raises InputError.
     """
-    if members is None or not (isinstance(members, int) and members > 0):
-        raise InputError(f"sweep: members must be a whole number above 0 for the design {kind}, got {members!r}")
-    if not (isinstance(seed, int) and seed >= 0):
-        raise InputError(f"sweep: seed must be a whole number, 0 or above, got {seed!r}")
+    members = check_whole(members, 1, f"sweep: members must be a whole number above 0 for the design {kind}")
+    seed = check_whole(seed, 0, "sweep: seed must be a whole number, 0 or above")
     for axis in axes:
         if axis.ends is not None and len(axis.values):
-            raise InputError(f"{where}: {axis.key.name} takes no number of points in the design {kind}: give LOW..HIGH")
+            raise InputError(f"{where}: {axis.parameter.name} takes no number of points in the design {kind}: give LOW..HIGH")
     if members > LARGEST_AXIS:
         raise InputError(f"sweep: members must be at most {LARGEST_AXIS} for the design {kind}, got {members}")
     shares = _shares(kind, members, len(axes), seed)
-    columns = tuple(axis.at(shares[:, i]) for i, axis in enumerate(axes))
-    return Design(kind, tuple(axis.key for axis in axes), columns, seed, _logs(axes))
+    return _design(kind, axes, [axis.at(shares[:, i]) for i, axis in enumerate(axes)], seed)
+
+
+def check_whole(value: int | None, least: int, refusal: str, most: float = math.inf) -> int:
+    """Return a whole number within limits. Raises InputError with the text `refusal` and the value for anything else."""
+    if not isinstance(value, int) or not least <= value <= most:
+        raise InputError(f"{refusal}, got {value!r}")
+    return value
 
 
 def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64]:
-    if kind == "random":
+    """Return the places (0 to 1) of members along each axis, with the shape (members, axes)."""
+    if kind == RANDOM:
         return np.random.default_rng(seed).random((members, axes))
     from scipy.stats import qmc
 
@@ -185,7 +206,7 @@ def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64
 
 
 def read_csv(path: Path, where: str) -> pd.DataFrame:
-    """Read a table of members from a CSV file: a header line with keys, then one line for each member. Raises InputError."""
+    """Read a table of members from a CSV file: a header line with parameters, then one line for each member. Raises InputError."""
     import pandas as pd
 
     try:
@@ -202,11 +223,15 @@ def read_csv(path: Path, where: str) -> pd.DataFrame:
 def listed(scenario: Scenario, table: pd.DataFrame, where: str) -> Design:
     """Return the design of a table with one member in each row.
 
-    Columns are named by keys, and cells hold numbers in SI or texts with units. Raises InputError.
+    Columns are named by parameters, and cells hold numbers in SI or texts with units. Raises InputError.
     """
     if not len(table) or not len(table.columns):
         raise InputError(f"{where}: the table has no members")
-    keys = tuple(key_named(scenario, str(name).strip(), where) for name in table.columns)
-    _check_keys(keys, where)
-    columns = (table.iloc[:, i] for i in range(len(keys)))
-    return Design("list", keys, tuple(read_values(key, column, where) for key, column in zip(keys, columns, strict=True)))
+    parameters = tuple(find_parameter(scenario, str(name).strip(), where) for name in table.columns)
+    _check_names([parameter.name for parameter in parameters], where)
+    columns = (table.iloc[:, i] for i in range(len(parameters)))
+    values = (
+        read_values(parameter, (typed_value(parameter, cell) for cell in column), where, math.inf)
+        for parameter, column in zip(parameters, columns, strict=True)
+    )
+    return Design(LIST, parameters, tuple(values))

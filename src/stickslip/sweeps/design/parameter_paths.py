@@ -6,13 +6,15 @@ sufficient if it is unambiguous. One element of a series is written "friction.va
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity
-from stickslip.friction.parameters import Choice, NamedNumbers, Part, Series, fields_of
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.problem.selection_rule import names as rules
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
@@ -21,10 +23,11 @@ from stickslip.scenarios.values import read_quantity, show
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
+_LAST_STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
 @dataclass(frozen=True)
-class Key:
+class ParameterPath:
     """A parameter of a scenario: its place in the file, and its declaration as a quantity or as one of several words."""
 
     name: str
@@ -34,69 +37,73 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """Return the SI unit: "1" for a pure number, "" for words."""
+        """The SI unit: "1" for a pure number, "" for words."""
         return self.declared.unit if isinstance(self.declared, Quantity) else ""
 
-    @property
-    def meaning(self) -> str:
-        """Return the meaning of the parameter in words."""
-        return self.declared.meaning
-
     def read(self, value: Any, where: str) -> float | str:
-        """Read a value: a number (SI), a text with or without a unit, or a word. Returns it in SI.
+        """Return a value in SI, from a number (SI), a text with a unit, or a word.
 
         Raises InputError, whose message begins with `where`.
         """
+        value = value.strip() if isinstance(value, str) else value
         if isinstance(self.declared, Choice):
-            return self.declared.check(where, self.name, value.strip() if isinstance(value, str) else value)
-        return read_quantity(_number(value), self.declared, where, self.name)
+            return self.declared.check(where, self.name, value)
+        return read_quantity(value.item() if isinstance(value, np.generic) else value, self.declared, where, self.name)
+
+    def put(self, document: dict[str, Any], value: float | str) -> None:
+        """Write a value (SI) into the document of a scenario, in place of the one that is there."""
+        *tables, last = self.name.split(".")
+        for table in tables:
+            document = document[table]
+        found = _LAST_STEP.fullmatch(last)
+        assert found
+        if found["index"]:
+            document[found["name"]][int(found["index"])] = value
+        elif self.written:
+            document[last] = f"{value!r} {self.written}"
+        else:
+            whole = self.name == "run.events" and isinstance(value, float) and value.is_integer()
+            document[last] = int(value) if whole else value
 
 
-def _number(value: Any) -> Any:
-    if isinstance(value, str):
-        try:
-            return float(value)
-        except ValueError:
-            return value.strip()
-    return value.item() if hasattr(value, "item") else value
-
-
-def key_named(scenario: Scenario, name: str, where: str) -> Key:
-    """Return the key with this name, or whose name ends with it. Raises InputError if no key fits, or several do."""
-    found = {key.name: key for key in keys_of(scenario)}
+def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
+    """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
+    found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
     if name in found:
         return found[name]
     fitting = [full for full in found if full.endswith(f".{name}")]
     if len(fitting) > 1:
         raise InputError(f"{where}: '{name}' is ambiguous: give one of {', '.join(fitting)}")
     if not fitting:
-        short = nearest(name, [full.rpartition(".")[2] for full in found if "[" not in full])
-        hint = short if short.startswith("did") and "." not in name else nearest(name, [full for full in found if "[" not in full])
+        plain = [full for full in found if "[" not in full]
+        hint = nearest(name, [full.rpartition(".")[2] for full in plain])
+        hint = hint if hint.startswith("did") and "." not in name else nearest(name, plain)
         raise InputError(f"{where}: {show(name)} is not a parameter of this scenario; {hint}")
     return found[fitting[0]]
 
 
-def keys_of(scenario: Scenario) -> Iterator[Key]:
-    """Yield every key that can be varied, in the order of the scenario file."""
+def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
+    """Yield every parameter that can be varied, in the order of the scenario file."""
     problem = scenario.problem
-    yield from _of(problem.body, "body")
-    yield from _of(problem.friction, "friction")
+    yield from _paths_in(problem.body, "body")
+    yield from _paths_in(problem.friction, "friction")
     for table in ("loading", "initial", "run"):
         for name, (declared, _) in entries_in(table, type(problem.body), problem.friction.state).items():
             if isinstance(declared, Quantity):
-                yield Key(f"{table}.{name}", declared)
-    yield Key("run.events", EVENTS)
-    yield Key("run.selection", Choice(SELECTION, tuple(rules())))
+                yield ParameterPath(f"{table}.{name}", declared)
+    yield ParameterPath("run.events", EVENTS)
+    yield ParameterPath("run.selection", Choice(SELECTION, tuple(rules())))
 
 
-def _of(owner: Any, place: str) -> Iterator[Key]:
+def _paths_in(owner: Any, place: str) -> Iterator[ParameterPath]:
+    """Yield the parameters of a body or a law, and of the laws inside it."""
     for name, (declared, _) in fields_of(type(owner)).items():
-        key, value = f"{place}.{key_of(name, declared)}", getattr(owner, name)
+        path, value = f"{place}.{key_of(name, declared)}", getattr(owner, name)
         if isinstance(declared, Quantity | Choice):
-            yield Key(key, declared)
+            yield ParameterPath(path, declared)
         elif isinstance(declared, Part):
-            yield from _of(value, key)
+            yield from _paths_in(value, path)
         elif isinstance(declared, Series):
-            yield from (Key(f"{key}[{i}]", declared.item) for i in range(len(value)))
+            yield from (ParameterPath(f"{path}[{i}]", declared.item) for i in range(len(value)))
         elif isinstance(declared, NamedNumbers):
-            yield from (Key(f"{key}.{one.name}", Quantity(one.unit or "1", declared.meaning), one.unit) for one in value)
+            yield from (ParameterPath(f"{path}.{one.name}", Quantity(one.unit or "1", declared.meaning), one.unit) for one in value)

@@ -9,12 +9,17 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
+    from stickslip.contact.uniqueness import Uniqueness
     from stickslip.solution.solution import Solution
+
+Of = Callable[["Solution"], Any]
+"""A function of a solution that returns a number."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,7 @@ class Summary:
     name: str
     unit: str
     meaning: str
-    of: Callable[[Solution], Any]
+    of: Of
     is_flag: bool = False
 
     def unit_for(self, problem: Problem) -> str:
@@ -60,15 +65,24 @@ def _built_in(name: str) -> Summary:
     return QUANTITIES[name]
 
 
-def _first(column: str) -> Callable[[Solution], float]:
-    def of(solution: Solution) -> float:
-        return float(solution.events[column].iloc[0]) if len(solution.events) else np.nan
+def _first(column: str) -> Of:
+    return lambda solution: solution.events[column].iloc[0] if len(solution.events) else np.nan
+
+
+def _at_peak(column: str) -> Of:
+    return lambda solution: (
+        solution.events[column].iloc[int(solution.events.peak_rate.argmax())] if len(solution.events) else np.nan
+    )
+
+
+def _recurrence(statistic: Callable[[NDArray[np.float64]], Any], least: int) -> Of:
+    """Return a statistic of the times from the start of each slip event to that of the next, if there are enough of them."""
+
+    def of(solution: Solution) -> Any:
+        between = solution.events.recurrence.to_numpy(float)[1:]
+        return statistic(between) if len(between) >= least else np.nan
 
     return of
-
-
-def _energy(part: str) -> Callable[[Solution], float]:
-    return lambda solution: _energies(solution)[part]
 
 
 @lru_cache(maxsize=1)
@@ -78,80 +92,56 @@ def _energies(solution: Solution) -> dict[str, float]:
     return {str(name): float(values.item()) for name, values in found.items()}
 
 
-def _recurrences(solution: Solution) -> np.ndarray[Any, Any]:
-    return solution.events.recurrence.to_numpy(float)[1:]
-
-
-def _recurrence(solution: Solution) -> float:
-    between = _recurrences(solution)
-    return float(between.mean()) if len(between) else np.nan
-
-
-def _recurrence_cv(solution: Solution) -> float:
-    between = _recurrences(solution)
-    return float(between.std(ddof=1) / between.mean()) if len(between) > 1 else np.nan
-
-
-def _peak(column: str) -> Callable[[Solution], float]:
-    def of(solution: Solution) -> float:
-        events = solution.events
-        return float(events[column].iloc[int(events.peak_rate.argmax())]) if len(events) else np.nan
-
-    return of
+def _energy(part: str) -> Of:
+    return lambda solution: _energies(solution)[part]
 
 
 def _slip(solution: Solution) -> float:
     return float(solution.slip(solution.history.duration)) - solution.problem.initial_slip
 
 
-def _irregular(solution: Solution) -> bool:
+def _uniqueness(solution: Solution) -> Uniqueness:
     from stickslip.contact.uniqueness import uniqueness
 
-    return uniqueness(solution.problem).regime != "regular"
+    return uniqueness(solution.problem)
 
 
-def _branches(solution: Solution) -> int:
-    from stickslip.contact.uniqueness import uniqueness
-
-    return max(len(uniqueness(solution.problem).branches), 1)
-
-
+IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"
 _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
     Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),
     Summary("shocks", "1", "jumps of slip rate", lambda solution: len(solution.shocks)),
     Summary("slip", "m", "slip of the whole run", _slip),
-    Summary("peak_rate", "m s-1", "largest slip rate of all slip events", _peak("peak_rate")),
-    Summary("peak_time", "s", "when the slip rate is largest", _peak("peak_time")),
+    Summary("peak_rate", "m s-1", "largest slip rate of all slip events", _at_peak("peak_rate")),
+    Summary("peak_time", "s", "when the slip rate is largest", _at_peak("peak_time")),
     Summary("first_start", "s", "start of the first slip event", _first("start")),
     Summary("first_end", "s", "end of the first slip event", _first("end")),
     Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
     Summary("first_slip", "m", "slip of the first slip event", _first("slip")),
     Summary("first_traction_drop", "load", "friction before minus friction after the first slip event", _first("traction_drop")),
     Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
-    Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence),
-    Summary("recurrence_cv", "1", "coefficient of variation of the recurrence times", _recurrence_cv),
+    Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence(np.mean, 1)),
+    Summary(
+        "recurrence_cv",
+        "1",
+        "coefficient of variation of the recurrence times",
+        _recurrence(lambda between: between.std(ddof=1) / between.mean(), 2),
+    ),
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
+    Summary("irregular", "1", IRREGULAR, lambda solution: _uniqueness(solution).regime != "regular", is_flag=True),
     Summary(
-        "irregular",
+        "branches",
         "1",
-        "several slip rates solve the contact equation at some load, at the initial slip",
-        _irregular,
-        is_flag=True,
+        "rising branches of the contact equation at the initial slip",
+        lambda solution: max(len(_uniqueness(solution).branches), 1),
     ),
-    Summary("branches", "1", "rising branches of the contact equation at the initial slip", _branches),
-    *(
-        Summary(part, "energy", meaning, _energy(part))
-        for part, meaning in (
-            ("work", "work of the driver"),
-            ("heat", "friction heat"),
-            ("damped", "energy dissipated by the block's damping"),
-            ("radiated", "energy radiated through a driver of finite impedance"),
-            ("trapped", "energy of the waves inside the slab at the end"),
-            ("balance", "energy balance of the run: zero for an exact solution"),
-        )
-    ),
+    Summary("work", "energy", "work of the driver", _energy("work")),
+    Summary("heat", "energy", "friction heat", _energy("heat")),
+    Summary("damped", "energy", "energy dissipated by the block's damping", _energy("damped")),
+    Summary("radiated", "energy", "energy radiated through a driver of finite impedance", _energy("radiated")),
+    Summary("trapped", "energy", "energy of the waves inside the slab at the end", _energy("trapped")),
+    Summary("balance", "energy", "energy balance of the run: zero for an exact solution", _energy("balance")),
 )
 QUANTITIES = {one.name: one for one in _ALL}
 """The built-in quantities, by name."""
@@ -162,7 +152,7 @@ TAKEN = ("status", "reason", "time", "member")
 """Names in the dataset of a sweep that a user's quantity cannot have."""
 _NAME = re.compile(r"(?!series_)[A-Za-z][A-Za-z0-9_ ]{0,59}")
 
-Wanted = str | tuple[str, str, Callable[["Solution"], Any]] | Summary
+Wanted = str | tuple[str, str, Of] | Summary
 """A quantity that a user asks for: the name of a built-in one, (name, unit, function of a solution), or a `Summary`."""
 
 

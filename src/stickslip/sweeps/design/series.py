@@ -12,7 +12,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.evaluation import CURVES
 from stickslip.solution.solution import Solution
-from stickslip.sweeps.design.design import Design
+from stickslip.sweeps.design.design import Design, check_whole
 
 Floats = NDArray[np.float64]
 PREFIX = "series_"
@@ -32,7 +32,7 @@ class Series:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of the curves among the results."""
+        """The names of the curves among the results."""
         return tuple(PREFIX + curve for curve in self.curves)
 
     def of(self, solution: Solution) -> dict[str, Floats]:
@@ -60,8 +60,7 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
             raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")
     if len(set(curves)) < len(curves):
         raise InputError("sweep: a series is given twice")
-    if not (isinstance(samples, int) and 2 <= samples <= LARGEST):
-        raise InputError(f"sweep: samples must be a whole number from 2 to {LARGEST}, got {samples!r}")
-    names = [key.name for key in design.keys]
-    last = float(design.columns[names.index("run.duration")].max()) if "run.duration" in names else scenario.duration
+    check_whole(samples, 2, f"sweep: samples must be a whole number from 2 to {LARGEST}", LARGEST)
+    durations = dict(zip(design.names, design.columns, strict=True)).get("run.duration")
+    last = scenario.duration if durations is None else float(durations.max())
     return Series(tuple(curves), np.linspace(0.0, last, samples))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,11 +15,10 @@ from numpy.typing import NDArray
 
 from stickslip.batch import run_members, why_not
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.scenario import Scenario, read_scenario
-from stickslip.solution.solution import Solution
+from stickslip.scenarios.entries import Source
+from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.members import Members
-from stickslip.sweeps.design.parameter_paths import Key
+from stickslip.sweeps.design.parameter_paths import ParameterPath
 from stickslip.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.sweeps.design.series import Series
 from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE
@@ -30,44 +31,59 @@ MAX_PIECES = 200_000
 """Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
+EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
+"""A scenario has either an initial load or an initial excess. The one that is varied replaces the other."""
 
 
 @dataclass(frozen=True)
 class Work:
     """The work that is done for every member.
 
-    `text` is the scenario (TOML, in SI), `keys` are the parameters that vary, and `quantities` and `series` are the results kept.
+    `text` is the scenario (TOML, in SI), `parameters` are those that vary, and `quantities` and `series` are the results kept.
     """
 
     text: str
-    keys: tuple[Key, ...]
+    parameters: tuple[ParameterPath, ...]
     quantities: tuple[Summary, ...]
     series: Series | None = None
 
     @cached_property
-    def members(self) -> Members:
-        """Return the factory of the members' scenarios."""
-        return Members(self.text, self.keys)
+    def _document(self) -> dict[str, Any]:
+        """The scenario as a document, without an entry that a varied one replaces."""
+        document = tomllib.loads(self.text)
+        for parameter in self.parameters:
+            document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
+        return document
 
     @cached_property
     def scenario(self) -> Scenario:
-        """Return the scenario whose parameters are varied."""
+        """The scenario whose parameters are varied."""
         return read_scenario(self.text, "member")
 
     @cached_property
     def why_one_by_one(self) -> str:
-        """Return in one line why the compiled batch cannot do this work; "" if it can."""
+        """The reason in one line why the compiled batch cannot do this work; "" if it can."""
         if self.series:
             return "curves over time need whole solutions"
         own = next((one.name for one in self.quantities if QUANTITIES.get(one.name) is not one), None)
         if own is not None:
             return f"{own} is a function of a whole solution"
-        return why_not(self.scenario, [key.name for key in self.keys], [one.name for one in self.quantities])
+        return why_not(self.scenario, [parameter.name for parameter in self.parameters], [one.name for one in self.quantities])
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Return the names of all results."""
+        """The names of all results."""
         return tuple(one.name for one in self.quantities) + (self.series.names if self.series else ())
+
+    def member(self, values: Mapping[str, float | str]) -> Scenario:
+        """Return the scenario of the member with these values (SI).
+
+        Raises InputError with the same one-line message as a scenario file that cannot be used.
+        """
+        document = copy.deepcopy(self._document)
+        for parameter in self.parameters:
+            parameter.put(document, values[parameter.name])
+        return scenario_of(document, Source("member"))
 
 
 @dataclass(frozen=True)
@@ -82,40 +98,50 @@ class ChunkResult:
     status: NDArray[np.int8]
     reasons: dict[int, str] = field(default_factory=dict)
 
+    @classmethod
+    def empty(cls, work: Work, count: int) -> ChunkResult:
+        """Return the results of `count` members before they are run: NaN, with the status "finished"."""
+        results = {one.name: np.full(count, np.nan) for one in work.quantities}
+        if work.series:
+            results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
+        return cls(results, np.zeros(count, np.int8))
+
+    def fail(self, i: int, code: int, reason: str) -> None:
+        """Record that a member failed."""
+        self.status[i] = code
+        self.reasons[i] = " ".join(reason.split())
+
 
 def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = None) -> ChunkResult:
-    """Run the members with these values (SI, one-dimensional arrays by key) on a number of threads (default: all cores).
+    """Run the members with these values (SI, one-dimensional arrays by parameter) on a number of threads (default: all cores).
 
     The results of a member depend on nothing but its own values.
     """
-    return compiled_batch(work, values, threads) or one_by_one(work, values)
+    return one_by_one(work, values) if work.why_one_by_one else compiled_batch(work, values, threads or os.cpu_count() or 1)
 
 
-def compiled_batch(work: Work, values: Mapping[str, Values], threads: int | None) -> ChunkResult | None:
-    """Run all members in the compiled batch (`stickslip.batch`); return None if it cannot do this work."""
-    if work.why_one_by_one:
-        return None
+def compiled_batch(work: Work, values: Mapping[str, Values], threads: int) -> ChunkResult:
+    """Run all members in the compiled batch (`stickslip.batch`)."""
     names = [one.name for one in work.quantities]
-    found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads or os.cpu_count() or 1)
+    found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads)
     status = np.array([CODES[code] for code in found.status.tolist()], np.int8)
     failed = status >= FIRST_FAILURE
     result = ChunkResult({name: np.where(failed, np.nan, found.results[name]) for name in names}, status)
     for i in np.flatnonzero(failed).tolist():
-        result.reasons[i] = (
-            _refused(work, values, i, found.reason[i])
-            if i in found.reason
-            else _stopped(STATUSES[int(found.status[i])], float(found.results[END][i]))
-        )
+        if i in found.reason:
+            result.reasons[i] = _refusal(work, _of_member(values, i)) or found.reason[i]
+        else:
+            result.reasons[i] = _stopped(STATUSES[int(found.status[i])], float(found.results[END][i]))
     return result
 
 
-def _refused(work: Work, values: Mapping[str, Values], i: int, otherwise: str) -> str:
-    """Return why the values of a member make no valid scenario, in the same words as when it is read by itself."""
+def _refusal(work: Work, values: Mapping[str, float | str]) -> str:
+    """Return why the values of a member make no valid scenario, as when it is read by itself; "" if they make one."""
     try:
-        work.members.scenario(_of_member(values, i))
+        work.member(values)
     except InputError as error:
         return str(error)
-    return otherwise
+    return ""
 
 
 def _of_member(values: Mapping[str, Values], i: int) -> dict[str, float | str]:
@@ -125,32 +151,27 @@ def _of_member(values: Mapping[str, Values], i: int) -> dict[str, float | str]:
 def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     """Run each member by itself, one after the other. Raises KeyboardInterrupt on Ctrl-C."""
     count = len(next(iter(values.values())))
-    result = nothing(work, count)
+    result = ChunkResult.empty(work, count)
     for i in range(count):
         try:
             _run_one(work, _of_member(values, i), result, i)
         except Exception as error:  # no error, not even one in a user's function, may stop the other members
-            _fail(result, i, ERROR, f"{type(error).__name__}: {error}")
+            result.fail(i, ERROR, f"{type(error).__name__}: {error}")
     return result
 
 
-def nothing(work: Work, count: int) -> ChunkResult:
-    """Return empty results of `count` members: NaN, with the status "finished"."""
-    results = {one.name: np.full(count, np.nan) for one in work.quantities}
-    if work.series:
-        results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
-    return ChunkResult(results, np.zeros(count, np.int8))
-
-
 def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:
+    """Run one member and enter its results. Raises KeyboardInterrupt on Ctrl-C, and whatever a quantity raises."""
     try:
-        solution = _solved(work.members.scenario(values))
+        solution = work.member(values).run(max_pieces=MAX_PIECES)
     except InputError as error:
-        _fail(result, i, BAD_PARAMETERS, str(error))
+        result.fail(i, BAD_PARAMETERS, str(error))
         return
+    if solution.status.name == "interrupted":
+        raise KeyboardInterrupt
     code = CODE_OF[solution.status.name]
     if code >= FIRST_FAILURE:
-        _fail(result, i, code, _stopped(solution.status, solution.history.duration))
+        result.fail(i, code, _stopped(solution.status, solution.history.duration))
         return
     found: dict[str, Any] = {one.name: one.value(solution) for one in work.quantities}
     for name, value in (found | work.series.of(solution) if work.series else found).items():
@@ -160,15 +181,3 @@ def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i:
 
 def _stopped(status: Status, end: float) -> str:
     return f"{status.name} at {end:.9g} s: {status.message}"
-
-
-def _solved(scenario: Scenario) -> Solution:
-    solution = scenario.run(max_pieces=MAX_PIECES)
-    if solution.status.name == "interrupted":
-        raise KeyboardInterrupt
-    return solution
-
-
-def _fail(result: ChunkResult, i: int, code: int, reason: str) -> None:
-    result.status[i] = code
-    result.reasons[i] = " ".join(reason.split())

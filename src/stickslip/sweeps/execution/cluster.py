@@ -83,7 +83,9 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
         with _quietly(), Client(_answering(scheduler), set_as_default=False) as client:
             yield client
     else:
-        many = {"n_workers": _checked(workers), "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
+        if workers is None or workers < 1:
+            raise InputError(f"sweep: workers must be 1 or more, got {workers}")
+        many = {"n_workers": workers, "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
         private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
         with config.set(SETTINGS):
             local = LocalCluster(**many, **private, security=own_security(), silence_logs=logging.ERROR)
@@ -101,12 +103,6 @@ def _quietly() -> Iterator[None]:
         yield
     finally:
         log.setLevel(before)
-
-
-def _checked(workers: int | None) -> int:
-    if workers is None or workers < 1:
-        raise InputError(f"sweep: workers must be 1 or more, got {workers}")
-    return workers
 
 
 def _answering(scheduler: str) -> str:
@@ -157,9 +153,10 @@ def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[t
 
     def send() -> list[Future]:
         room = max(LEAST, AHEAD * sum(client.nthreads().values())) - len(numbers)
-        sent = {_submitted(client, run, chunk): number for number, chunk in islice(waiting, max(room, 0))}
-        numbers.update(sent)
-        return list(sent)
+        more = list(islice(waiting, max(room, 0)))
+        sent = [client.submit(_run_checked, run, chunk, engine(), pure=False, retries=RETRIES) for _, chunk in more]
+        numbers.update(zip(sent, (number for number, _ in more), strict=True))
+        return sent
 
     ready = as_completed(send(), loop=client.loop)
     for future in ready:
@@ -178,10 +175,6 @@ def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[t
         raise ChunksLostError(
             f"sweep: no worker finished {lost[0]}{more}; all other chunks are stored: the same command tries the missing ones again"
         )
-
-
-def _submitted(client: Client, run: Callable[[Chunk], Result], chunk: Chunk) -> Future:
-    return client.submit(_run_checked, run, chunk, engine(), pure=False, retries=RETRIES)
 
 
 def _run_checked(run: Callable[[Chunk], Result], chunk: Chunk, expected: str) -> Result:

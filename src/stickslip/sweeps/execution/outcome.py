@@ -12,33 +12,23 @@ BAD_PARAMETERS = 10
 """Code of a member whose scenario is refused, or cannot start."""
 ERROR = 14
 """Code of a member for which a quantity could not be calculated, or something else went wrong."""
-MEANINGS = {
-    NOT_RUN: "not_run",
-    0: "finished",
-    1: "enough_events",
-    2: "locked_for_ever",
-    BAD_PARAMETERS: "bad_parameters",
-    11: "event_storm",
-    12: "not_finite",
-    13: "too_many_pieces",
-    15: "negative_friction",
-    16: "off_the_law",
-    ERROR: "error",
-}
-"""Names of the codes. Codes below 0 are of members that have not been run; members with codes from 10 on failed, and have a reason
-in place of results."""
 FIRST_FAILURE = 10
-"""Smallest code of a failure."""
+"""Smallest code of a failure. Members that failed have a reason in place of results."""
 
-CODES = {
-    Stop.FINISHED: 0,
-    ENOUGH_EVENTS: 1,
-    Stop.LOCKED: 2,
-    Stop.STORM: 11,
-    Stop.FAILED: 12,
-    FULL_HISTORY: 13,
-    Stop.NEGATIVE_FRICTION: 15,
-    Stop.OFF_THE_LAW: 16,
-    REFUSED: BAD_PARAMETERS,
-}
+_OUTCOMES = (
+    (NOT_RUN, "not_run", None),
+    (0, "finished", Stop.FINISHED),
+    (1, "enough_events", ENOUGH_EVENTS),
+    (2, "locked_for_ever", Stop.LOCKED),
+    (BAD_PARAMETERS, "bad_parameters", REFUSED),
+    (11, "event_storm", Stop.STORM),
+    (12, "not_finite", Stop.FAILED),
+    (13, "too_many_pieces", FULL_HISTORY),
+    (15, "negative_friction", Stop.NEGATIVE_FRICTION),
+    (16, "off_the_law", Stop.OFF_THE_LAW),
+    (ERROR, "error", None),
+)
+MEANINGS = {code: name for code, name, _ in _OUTCOMES}
+"""Names of the codes."""
+CODES = {stop: code for code, _, stop in _OUTCOMES if stop is not None}
 """The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.scenario import Scenario, load_scenario
+from stickslip.problem.problem import Problem
+from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.scenarios.schema import DURATION
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.design import Design, read_design
+from stickslip.sweeps.design.design import GRID, Design, check_whole, read_design
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
 from stickslip.sweeps.design.series import read_series
 from stickslip.sweeps.execution.chunk import Work
@@ -37,18 +40,14 @@ class Plan:
     work: Work
     tile: tuple[int, ...]
 
-    def with_tile(self, tile: tuple[int, ...]) -> Plan:
-        """Return the same plan with chunks of another shape."""
-        return replace(self, tile=tile)
-
     @property
     def tiles(self) -> tuple[int, ...]:
-        """Return the number of chunks along each dimension."""
+        """The number of chunks along each dimension."""
         return tuple(-(-whole // part) for whole, part in zip(self.design.shape, self.tile, strict=True))
 
     @property
     def chunks(self) -> int:
-        """Return the number of chunks."""
+        """The number of chunks."""
         return math.prod(self.tiles)
 
     def region(self, chunk: int) -> tuple[slice, ...]:
@@ -59,20 +58,20 @@ class Plan:
 
     def members(self, chunk: int) -> NDArray[np.intp]:
         """Return the indices of the members of a chunk, in the order of its results."""
-        region = self.region(chunk)
-        places = np.meshgrid(*(np.arange(one.start, one.stop) for one in region), indexing="ij")
+        places = np.meshgrid(*(np.arange(one.start, one.stop) for one in self.region(chunk)), indexing="ij")
         return np.ravel_multi_index(tuple(place.ravel() for place in places), self.design.shape)
 
     def values(self, chunk: int) -> dict[str, Values]:
-        """Return the values of the members of a chunk (SI, one-dimensional arrays) for each key."""
+        """Return the values of the members of a chunk (SI, one-dimensional arrays) by parameter."""
         return self.design.values(self.members(chunk))
 
 
 def make_plan(
-    scenario: Scenario | str,
+    scenario: Problem | Scenario | str | Path,
     vary: Any,
     *,
-    design: str = "grid",
+    duration: float | None = None,
+    design: str = GRID,
     members: int | None = None,
     seed: int = 0,
     quantities: Iterable[Wanted] = DEFAULT,
@@ -82,19 +81,31 @@ def make_plan(
     where: str = "sweep: vary",
 ) -> Plan:
     """Make a plan from the arguments of `stickslip.sweep`, after checking them. Raises InputError."""
-    chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
-    members_of = read_design(chosen, vary, design, members, seed, where)
-    kept = quantities_named(quantities)
-    work = Work(chosen.to_toml(), members_of.keys, kept, read_series(chosen, members_of, series, samples))
+    chosen = scenario_to_vary(scenario, duration)
+    members_of = read_design(chosen, vary, design, members=members, seed=seed, where=where)
+    curves = read_series(chosen, members_of, series, samples)
+    work = Work(chosen.to_toml(), members_of.parameters, quantities_named(quantities), curves)
     return Plan(chosen, members_of, work, tile_of(members_of.shape, _chunk_size(members_of.size, chunk, work)))
+
+
+def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | None = None) -> Scenario:
+    """Return the scenario that is meant: a problem with a duration (s), a scenario, a scenario file, or a bundled name.
+
+    Raises InputError, also for a problem that no scenario file can describe: members are read from such files.
+    """
+    if not isinstance(given, Problem):
+        if duration is not None:
+            raise InputError("sweep: duration belongs to a Problem: a scenario has its own, which run.duration varies")
+        return given if isinstance(given, Scenario) else load_scenario(given)
+    if duration is None:
+        raise InputError("sweep: a Problem needs a duration (s)")
+    return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")
 
 
 def _chunk_size(members: int, chunk: int | None, work: Work) -> int:
     if chunk is None:
         return min(max(members // CHUNKS, SMALLEST_CHUNK), LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH)
-    if not (isinstance(chunk, int) and chunk > 0):
-        raise InputError(f"sweep: chunk must be a whole number of members above 0, got {chunk!r}")
-    return chunk
+    return check_whole(chunk, 1, "sweep: chunk must be a whole number of members above 0")
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:

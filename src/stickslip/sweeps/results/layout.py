@@ -20,8 +20,10 @@ FORMAT = 1
 """Version of the layout, stored in the attribute `stickslip_sweep`."""
 STATUS, REASON = "status", "reason"
 """Names of the variables that say how a member ended, and why it failed."""
-WORDS = "string"
-"""The zarr data type of words."""
+NUMBERS, WORDS, CODES = "float64", "string", "int8"
+"""The zarr data types of numbers, words and status codes."""
+FILLS = {NUMBERS: np.nan, WORDS: "", CODES: NOT_RUN}
+"""The value of an element that has not been written, by data type."""
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
 
@@ -30,50 +32,42 @@ def lay_out(plan: Plan, place: Any) -> None:
     """Create a store (a folder or a zarr store) with its attributes and coordinates, and with variables that are still empty."""
     group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
     design, series = plan.design, plan.work.series
-    for key, column in zip(design.keys, design.columns, strict=True):
-        about = {"long_name": key.meaning, "log": int(key.name in design.logs)} | ({"units": key.unit} if key.unit else {})
-        _put(group, key.name, column, (key.name,) if design.is_grid else design.dims, about)
+    for one, column in zip(design.parameters, design.columns, strict=True):
+        about = {"long_name": one.declared.meaning, "log": int(one.name in design.logs)} | ({"units": one.unit} if one.unit else {})
+        _coordinate(group, one.name, column, (one.name,) if design.is_grid else design.dims, about)
     if series is not None:
-        _put(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
+        _coordinate(group, TIME, series.times, (TIME,), {"long_name": "time since the start of the run", "units": "s"})
     for name, about in results(plan).items():
-        samples = ((TIME, len(series.times)),) if series and name.startswith(PREFIX) else ()
-        _new(group, plan, name, about, "float64", np.nan, samples)
-    _new(group, plan, REASON, {"long_name": "why a member failed"}, WORDS, "")
+        _variable(group, plan, name, NUMBERS, about)
+    _variable(group, plan, REASON, WORDS, {"long_name": "why a member failed"})
     flags = {"flag_values": list(MEANINGS), "flag_meanings": " ".join(MEANINGS.values())}
-    _new(group, plan, STATUS, {"long_name": "how a member ended"} | flags, "int8", NOT_RUN)
+    _variable(group, plan, STATUS, CODES, {"long_name": "how a member ended"} | flags)
 
 
-def _put(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple[str, ...], about: dict[str, Any]) -> None:
-    kind, fill = (WORDS, "") if values.dtype.kind == "T" else ("float64", np.nan)
-    array = group.create_array(
+def _coordinate(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple[str, ...], about: dict[str, Any]) -> None:
+    """Create a coordinate, which is a single chunk, and store its values."""
+    kind = WORDS if values.dtype.kind == "T" else NUMBERS
+    _array(group, name, kind, about, shape=values.shape, chunks=values.shape, dimension_names=dims)[...] = values
+
+
+def _variable(group: zarr.Group, plan: Plan, name: str, kind: str, about: dict[str, Any]) -> None:
+    """Create an empty variable over the members; that of a curve has a further dimension of time."""
+    design, series = plan.design, plan.work.series
+    samples = {TIME: len(series.times)} if series and name.startswith(PREFIX) else {}
+    _array(
+        group,
         name,
-        shape=values.shape,
-        chunks=values.shape,
-        dtype=kind,
-        compressors=COMPRESSED,
-        fill_value=fill,
-        dimension_names=dims,
-        attributes=about,
-    )
-    array[...] = values
-
-
-def _new(
-    group: zarr.Group, plan: Plan, name: str, about: dict[str, Any], kind: str, fill: Any, samples: tuple[tuple[str, int], ...] = ()
-) -> None:
-    """Create an empty variable over the members. `samples` holds the name and length of a further dimension, if there is one."""
-    more = tuple(length for _, length in samples)
-    group.create_array(
-        name,
-        shape=plan.design.shape + more,
-        chunks=plan.tile + more,
+        kind,
+        about | ({} if design.is_grid else {"coordinates": " ".join(design.names)}),
+        shape=(*design.shape, *samples.values()),
+        chunks=(*plan.tile, *samples.values()),
+        dimension_names=(*design.dims, *samples),
         chunk_key_encoding={"name": "default", "separator": "."},  # all chunks of a variable lie in one folder
-        dtype=kind,
-        compressors=COMPRESSED,
-        fill_value=fill,
-        dimension_names=(*plan.design.dims, *(dim for dim, _ in samples)),
-        attributes=about | ({} if plan.design.is_grid else {"coordinates": " ".join(key.name for key in plan.design.keys)}),
     )
+
+
+def _array(group: zarr.Group, name: str, kind: str, about: dict[str, Any], **layout: Any) -> zarr.Array[Any]:
+    return group.create_array(name, dtype=kind, compressors=COMPRESSED, fill_value=FILLS[kind], attributes=about, **layout)
 
 
 def array_of(group: zarr.Group, name: str) -> zarr.Array[Any]:
@@ -101,7 +95,7 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
 def attributes(plan: Plan) -> dict[str, Any]:
     """Return the attributes of the store: everything that determines the results, and nothing else."""
     design, scenario = plan.design, plan.scenario
-    about = {"design": design.kind, "keys": [key.name for key in design.keys], "chunk": list(plan.tile)}
+    about = {"design": design.kind, "keys": list(design.names), "chunk": list(plan.tile)}
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",

@@ -1,4 +1,4 @@
-"""The recipe that determines the members of a refined map. It is stored with them, so that the cells can be reconstructed."""
+"""The specification that determines the members of a refined map; it is stored with them, so that cells can be reconstructed."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.adaptive_grid import Differ, Floats, Integers, Lattice, Refined, apart, refine_cells, unequal
+from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.outcome import NOT_RUN
 
 ATTRIBUTE = "refinement"
-"""Name of the attribute of the dataset that holds the recipe (JSON)."""
+"""Name of the attribute of the dataset that holds the specification (JSON)."""
 
 
 @dataclass(frozen=True)
-class Recipe:
-    """The recipe of a search: the quantity whose changes are sought, the coarse grid, and the limits of the refinement.
+class RefinementSpec:
+    """The specification of a search: the quantity whose changes are sought, the coarse grid, and the limits of the refinement.
 
-    `columns` holds the coarse values of each key (SI, ascending), and `logarithmic` says which of them are spaced evenly in the
-    logarithm. `depth` is the number of halvings, `most` the largest number of members, and `kept` the names of the quantities in
-    the dataset. Raises InputError for a factor that is not above 1, for numbers that are not whole, and in the cases of `Lattice`.
+    `columns` holds the coarse values of each parameter (SI, ascending), and `logarithmic` says which of them are spaced evenly in
+    the logarithm. `depth` is the number of halvings, `most` the largest number of members, and `kept` the names of the quantities
+    in the dataset. Raises InputError for a factor that is not above 1, for numbers that are not whole, and in the cases of
+    `Lattice`.
     """
 
     quantity: str
@@ -46,17 +47,20 @@ class Recipe:
         _ = self.lattice
 
     @classmethod
-    def of(cls, quantity: str, axes: Sequence[Axis], kept: list[str], depth: int, factor: float | None, most: int) -> Self:
-        """Make the recipe of a search over these axes. Raises InputError unless each has two or more numbers in ascending order."""
+    def of(cls, quantity: str, axes: Sequence[Axis], kept: list[str], *, depth: int, factor: float | None, most: int) -> Self:
+        """Make the specification of a search over these axes.
+
+        Raises InputError unless each axis has two or more numbers in ascending order.
+        """
         for axis in axes:
-            if not axis.key.unit or len(axis.values) < 2 or not (axis.values[1:] > axis.values[:-1]).all():
-                raise InputError(f"refine: {axis.key.name} needs two or more numbers in ascending order: LOW..HIGH:POINTS")
-        columns = {axis.key.name: axis.values.tolist() for axis in axes}
+            if not axis.parameter.unit or len(axis.values) < 2 or not (axis.values[1:] > axis.values[:-1]).all():
+                raise InputError(f"refine: {axis.parameter.name} needs two or more numbers in ascending order: LOW..HIGH:POINTS")
+        columns = {axis.parameter.name: axis.values.tolist() for axis in axes}
         return cls(quantity, factor, depth, most, columns, [axis.log for axis in axes], kept)
 
     @classmethod
     def read(cls, dataset: xr.Dataset) -> Self:
-        """Read the recipe of a dataset. Raises InputError if it has none."""
+        """Read the specification of a dataset. Raises InputError if it has none."""
         if ATTRIBUTE not in dataset.attrs:
             raise InputError("this sweep was not made by stickslip.refine")
         return cls(**json.loads(dataset.attrs[ATTRIBUTE]))
@@ -66,16 +70,11 @@ class Recipe:
 
     @cached_property
     def lattice(self) -> Lattice:
-        """Return the finest grid, which contains every point of the search."""
+        """The finest grid, which contains every point of the search."""
         return Lattice(tuple(len(column) for column in self.columns.values()), self.depth)
 
-    @property
-    def differ(self) -> Differ:
-        """Return the comparison that decides whether answers differ."""
-        return unequal if self.factor is None else apart(self.factor)
-
     def values(self, points: Integers) -> tuple[Floats, ...]:
-        """Return the values of each key (SI) at points (members, axes) of the finest grid.
+        """Return the values of each parameter (SI) at points (members, axes) of the finest grid.
 
         Each coarse step is divided into equal parts, or into equal ratios on a logarithmic axis.
         """
@@ -96,7 +95,7 @@ class RefinedMap:
     Attributes
     ----------
     low, high : dict of str to array, shape (cells,)
-        Lower and upper ends of the cells, by key (SI).
+        Lower and upper ends of the cells, by parameter (SI).
     answer : array, shape (cells,)
         The answer around each cell: NaN where it changes, and where there is none. With a factor, the mean of the smallest and
         the largest answer.
@@ -109,9 +108,9 @@ class RefinedMap:
     answer: Floats
     changes: NDArray[np.bool_]
 
-    def at(self, key: str, value: float) -> RefinedMap:
-        """Return the cells that contain a value (SI) of one of the keys; where two cells touch at this value, the upper one."""
-        low, high = self.low[key], self.high[key]
+    def at(self, name: str, value: float) -> RefinedMap:
+        """Return the cells that contain a value (SI) of a parameter; where two cells touch at this value, the upper one."""
+        low, high = self.low[name], self.high[name]
         rows = (low <= value) & ((value < high) | (high == high.max()) & (value == high))
         lower, upper = ({name: one[rows] for name, one in side.items()} for side in (self.low, self.high))
         return RefinedMap(lower, upper, self.answer[rows], self.changes[rows])
@@ -135,17 +134,17 @@ def cells_of(dataset: xr.Dataset) -> RefinedMap:
     InputError
         For any other dataset, and for a search that was stopped before its coarse grid was complete.
     """
-    recipe = Recipe.read(dataset)
+    spec = RefinementSpec.read(dataset)
     missing = np.flatnonzero(dataset["status"].values == NOT_RUN)
-    answers = np.asarray(dataset[recipe.quantity].values, float)[: missing[0] if missing.size else None]
-    found = _again(recipe, answers)
+    answers = np.asarray(dataset[spec.quantity].values, float)[: missing[0] if missing.size else None]
+    found = _repeated(spec, answers)
     cells = found.cells
-    size = (2 ** (recipe.depth - cells.level))[:, np.newaxis]
-    low, high = (dict(zip(recipe.columns, recipe.values(corner), strict=True)) for corner in (cells.corner, cells.corner + size))
+    size = (2 ** (spec.depth - cells.level))[:, np.newaxis]
+    low, high = (dict(zip(spec.columns, spec.values(corner), strict=True)) for corner in (cells.corner, cells.corner + size))
     return RefinedMap(low, high, np.where(found.changes, np.nan, 0.5 * (cells.least + cells.most)), found.changes)
 
 
-def _again(recipe: Recipe, answers: Floats) -> Refined:
+def _repeated(spec: RefinementSpec, answers: Floats) -> Refined:
     """Repeat a search with stored answers, as far as there are any. It asks for the same points in the same order."""
     place = 0
 
@@ -154,4 +153,4 @@ def _again(recipe: Recipe, answers: Floats) -> Refined:
         place += len(points)
         return answers[place - len(points) : place]
 
-    return refine_cells(recipe.lattice, evaluate, recipe.differ, len(answers))
+    return refine_cells(spec.lattice, evaluate, spec.factor, len(answers))

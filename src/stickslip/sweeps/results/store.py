@@ -9,11 +9,10 @@ run again. Nothing in the store depends on when, in which order or by which proc
 from __future__ import annotations
 
 import errno
-import os
 import shutil
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -23,7 +22,7 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
-from stickslip.foundation.atomic_write import draft_beside, sync_folder
+from stickslip.foundation.atomic_write import draft_beside, held, sync_folder
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import ChunkResult
 from stickslip.sweeps.execution.outcome import NOT_RUN
@@ -36,8 +35,8 @@ from stickslip.sweeps.results.store_compatibility import as_begun
 class ResultStore:
     """The store of a plan, in memory or in a folder. A folder is locked against other sweeps until the `with` block ends."""
 
-    def __init__(self, plan: Plan, place: Path | MemoryStore, hold: int | None = None) -> None:
-        self.plan, self.place, self._hold = plan, place, hold
+    def __init__(self, plan: Plan, place: Path | MemoryStore) -> None:
+        self.plan, self.place, self._lock = plan, place, ExitStack()
         self.group = zarr.open_group(place, mode="r+")
 
     @classmethod
@@ -54,12 +53,12 @@ class ResultStore:
         Temporary files and unverified chunks, left by a sweep that was killed, are removed first.
         """
         if not path.exists():
-            _create(plan, path)
+            publish(path, lambda draft: lay_out(plan, draft))
         check_store(path)
-        plan, hold = as_begun(plan, path), _held(path)
+        store = cls(as_begun(plan, path), path)
+        store._lock.enter_context(held(path, f"{path}: another sweep is writing into it"))
         for draft in path.rglob("*.partial"):  # left by a sweep that was killed while it wrote
             draft.unlink()
-        store = cls(plan, path, hold)
         with writing(path):
             for chunk in store.chunks_without_checksums():
                 (path / store.files_of(chunk)[0]).unlink(missing_ok=True)
@@ -69,9 +68,7 @@ class ResultStore:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        if self._hold is not None:
-            os.close(self._hold)
-            self._hold = None
+        self._lock.close()
 
     def files_of(self, chunk: int) -> list[str]:
         """Return the names of the files of a chunk in a folder, the file of its status first."""
@@ -93,7 +90,7 @@ class ResultStore:
 
     @property
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
-        """Return the status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
+        """The status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
         return np.asarray(array_of(self.group, STATUS)[...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
@@ -135,14 +132,11 @@ def check_store(path: Path) -> set[str]:
     Raises InputError for a damaged file, and for anything that is not the store of a sweep.
     """
     if not is_vouched_for(path, LAYOUT):
-        ours = (path / FOLDER).exists() or _mentions(path / "zarr.json", b"stickslip_sweep")
+        about = path / "zarr.json"
+        ours = (path / FOLDER).exists() or (about.is_file() and b"stickslip_sweep" in about.read_bytes())
         what = "a store without its checksums, of an older version or damaged" if ours else "not the store of a sweep"
         raise InputError(f"{path}: exists and is {what}: choose another name")
     return check_all(path)
-
-
-def _mentions(path: Path, word: bytes) -> bool:
-    return path.is_file() and word in path.read_bytes()
 
 
 def open_store(path: str | Path) -> xr.Dataset:
@@ -177,10 +171,6 @@ def open_store(path: str | Path) -> xr.Dataset:
     return found
 
 
-def _create(plan: Plan, path: Path) -> None:
-    publish(path, lambda draft: lay_out(plan, draft))
-
-
 def publish(path: Path, fill: Callable[[Path], object]) -> None:
     """Let `fill` create a store under a temporary name, then rename it to `path`, so that it appears complete or not at all.
 
@@ -199,24 +189,3 @@ def publish(path: Path, fill: Callable[[Path], object]) -> None:
             sync_folder(path.parent)
     finally:
         shutil.rmtree(draft, ignore_errors=True)
-
-
-def _held(path: Path) -> int | None:
-    """Lock a store for one sweep, until the returned file descriptor is closed or the process ends in any way.
-
-    Returns None where there are no such locks. Raises InputError if another sweep has locked the store.
-    """
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return None
-    folder = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(folder)
-        raise InputError(f"{path}: another sweep is writing into it") from None
-    except OSError:  # a file system without locks
-        os.close(folder)
-        return None
-    return folder

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,32 +27,31 @@ def as_begun(plan: Plan, path: Path) -> Plan:
     """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
     try:
         group = zarr.open_group(path, mode="r")
+        if "stickslip_sweep" not in group.attrs:
+            raise KeyError("stickslip_sweep")
     except (OSError, ValueError, KeyError):
         raise InputError(f"{path}: exists and is not the store of a sweep: choose another name") from None
-    if "stickslip_sweep" not in group.attrs:
-        raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
     ours = attributes(plan)
     different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
     different = different or _design_differs(plan, group)
     if different:
         raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
-    return plan.with_tile(tuple(json.loads(str(group.attrs["design"]))["chunk"]))
+    return replace(plan, tile=tuple(json.loads(str(group.attrs["design"]))["chunk"]))
 
 
 def _design_differs(plan: Plan, group: zarr.Group) -> str:
     """Return in words how the design or the quantities of the store differ from the plan; "" if they agree."""
     design, series = plan.design, plan.work.series
     theirs = json.loads(str(group.attrs["design"]))
-    if theirs["keys"] != [key.name for key in design.keys] or theirs["design"] != design.kind:
+    if theirs["keys"] != list(design.names) or theirs["design"] != design.kind:
         return f"over {', '.join(theirs['keys'])} (design {theirs['design']})"
-    for key, column in zip(design.keys, design.columns, strict=True):
-        if not np.array_equal(array_of(group, key.name)[...], column):
-            return f"with other values of {key.name}"
-    coordinates = {key.name for key in design.keys} | {TIME, STATUS, REASON}
-    found = {name: dict(array.attrs) for name, array in group.arrays() if name not in coordinates}
-    wanted = results(plan)
-    if {name: about["units"] for name, about in found.items()} != {name: about["units"] for name, about in wanted.items()}:
-        return f"for other quantities ({', '.join(sorted(found))})"
+    for name, column in zip(design.names, design.columns, strict=True):
+        if not np.array_equal(array_of(group, name)[...], column):
+            return f"with other values of {name}"
+    others = {*design.names, TIME, STATUS, REASON}
+    units = {name: array.attrs["units"] for name, array in group.arrays() if name not in others}
+    if units != {name: about["units"] for name, about in results(plan).items()}:
+        return f"for other quantities ({', '.join(sorted(units))})"
     if series is not None and not np.array_equal(array_of(group, TIME)[...], series.times):
         return "with other samples of time"
     return ""

@@ -1,0 +1,164 @@
+"""Define what a friction law states about itself: everything that the author of a law may write is on this page.
+
+`laws/hyperbolic_rate.py` is a typical law. What the code works out from these statements is in `law.py`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import check_fields, document_fields
+
+Formula = Callable[..., Any]
+"""A function that returns mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s).
+
+For a law with a state variable the state is the fourth argument.
+"""
+
+
+@dataclass(frozen=True)
+class StateVariable:
+    """Describe the state variable of a law: name, unit and meaning of the number that users see."""
+
+    name: str
+    unit: str
+    meaning: str
+    scale: float = 0.0
+    """Size below which the error of the state, in the form that the formulas use, is measured absolutely.
+
+    With 0 the error is relative to the state itself.
+    """
+
+
+@dataclass(frozen=True)
+class LawContract(ABC):
+    """The statements of a friction law; subclass `stickslip.friction.FrictionLaw` to make one.
+
+    A law declares its parameters as fields (`quantity` or `declare` of `foundation.quantities`), its formula once, and the class
+    attributes below. The formula is either `formula`, or a list `pieces` with one formula for each interval of slip or slip rate,
+    separated by `knots`. Parameters and source are added to the docstring of the class.
+
+    The formula is written for a slip rate v >= 0. For backward slip the traction changes sign and v is the magnitude of the slip
+    rate. A law is frozen: whatever changes during a run, a state variable included, is stored in the run.
+    """
+
+    kind: ClassVar[str]
+    """Name of the law in scenario files and in `LAWS`."""
+    source: ClassVar[str] = ""
+    """Paper and equation from which the law is taken."""
+    example: ClassVar[Mapping[str, Any]] = {}
+    """Plausible values of the fields, in the form of a scenario file: `stickslip new` shows them and tests use them."""
+    counts: ClassVar[Literal["net", "path"]] = "net"
+    """The slip that the law sees: "net" is u itself, with its sign; "path" is the accumulated length of slip in both directions.
+
+    The magnitude of initial_slip is included in the path.
+    """
+    memory: ClassVar[Literal["all", "since-arrest"]] = "all"
+    """The time from which slip is counted: the start of the run, or the last arrest (see `RemembersSlip`)."""
+    knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
+    """The variable in which `knots` are given: slip (m) or slip rate (m/s)."""
+    state: ClassVar[StateVariable | None] = None
+    """The state variable, if the law has one: formulas then take it as a fourth argument and `state_rate` is its evolution."""
+    sticks: ClassVar[bool] = True
+    """True if there is a static strength below which the contact rests; False if friction passes smoothly through v = 0."""
+    start: ClassVar[Mapping[str, Any]] = {}
+    """Initial values for the example of a law that never sticks: `coefficient` (load / normal load) and `state`."""
+    many: ClassVar[bool] = False
+    """True if fields may be arrays with one number for each member of a batch.
+
+    Formulas, `range`, `knots` and `static_excess` then return arrays too.
+    """
+    columns: ClassVar[Mapping[str, str]] = {}
+    """Columns of a data file and the fields that they fill; a scenario may give a law with columns as `file`."""
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        """Return mu from the parameters (attributes of `law`), slip u (m) and slip rate v >= 0 (m/s).
+
+        u and v are numbers, arrays or expressions: use only ordinary operators and the functions of `formula.expression`.
+        """
+        raise TypeError(f"{type(law).__name__} has neither a formula nor pieces")
+
+    @abstractmethod
+    def range(self) -> tuple[float, float]:
+        """Return a lower and an upper bound of the friction coefficient (no unit), at rest and while slipping.
+
+        The lower bound must not be negative. The upper bound is inf if friction grows without bound.
+        """
+
+    def check(self) -> None:  # noqa: B027 - most laws have nothing to add
+        """Check conditions that involve several fields. Raise InputError if one is violated."""
+
+    @property
+    def static_excess(self) -> float:
+        """Static friction minus the formula at v = 0+ (no unit): zero for a law that is continuous at rest."""
+        return 0.0
+
+    @property
+    def pieces(self) -> tuple[Formula, ...]:
+        """One formula for each interval of slip or slip rate; most laws have a single one."""
+        return (type(self).formula,)
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """The ascending places (m or m/s) at which one piece ends and the next begins: one fewer than `pieces`."""
+        return ()
+
+    # ---- what a search for folds can use --------------------------------------------------------------------------------------
+
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """Return the parameter, and its value in SI, at which Z v + S mu(v) first has a falling part.
+
+        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `stickslip.parameters`. Return None without a
+        closed form, or if Z v + S mu(v) never falls. On one side of the value several slip rates solve the contact equation
+        (paper, section 3).
+        """
+        return None
+
+    def rate_at_slope(self, slope: Any) -> Any:
+        """Return the slip rate (m/s) at which dmu/dv equals `slope` (s/m), for a law that `bends_one_way`.
+
+        Return None if there is no closed form. If no slip rate has that slope, the result may be NaN or any number: a batch only
+        starts its search for the fold of Z v + S mu(v) there, so that a wrong rate costs time but no accuracy.
+        """
+        return None
+
+    @property
+    def bends_one_way(self) -> bool:
+        """True if mu is convex, or concave, over all slip rates v > 0, so that Z v + S mu(v) turns at most once."""
+        return False
+
+    # ---- state ----------------------------------------------------------------------------------------------------------------
+
+    @property
+    def state_rate(self) -> Formula:
+        """The function that gives dw/dt (1/s times the unit of w) from parameters, slip, slip rate and state w."""
+        raise TypeError(f"{type(self).__name__} has no state variable")
+
+    def inner_state(self, value: float) -> float:
+        """Convert a state as users give it to the number w that the formulas use."""
+        return value
+
+    def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Convert values of w, the state that the formulas use, to the state that users see."""
+        return w
+
+    # ---------------------------------------------------------------------------------------------------------------------------
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        document_fields(cls, vars(cls).get("source", ""))
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        self.check()
+        low, _ = self.range()
+        if low < 0:
+            raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")

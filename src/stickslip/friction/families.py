@@ -1,0 +1,108 @@
+"""Define what laws of one family share: the choice of slip memory, weakening with slip, and the Stribeck curves."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any, Literal
+
+import numpy as np
+from typing_extensions import override
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Choice, declare, quantity
+from stickslip.friction.law import FrictionLaw
+
+
+def hull(*values: Any) -> tuple[Any, Any]:
+    """Return the smallest and the largest of some numbers, or of arrays entry by entry: the range of a law between them."""
+    return reduce(np.minimum, values), reduce(np.maximum, values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RemembersSlip(FrictionLaw):
+    """A law of slip that lets users choose from when slip is counted, by its field `memory`.
+
+    "all" counts slip from the start of the run, initial slip included. "since-arrest" counts slip from the last arrest, at which
+    the contact heals at once. The class attribute `counts` says which slip is counted: net slip with its sign, or the path.
+
+    An arrest is rest for a positive time: the contact can stay at rest under the friction that it has at that moment, before it
+    heals. The counted slip is then set back to 0. If the healed strength is below the load, the contact slips again at once.
+
+    Passing through v = 0 directly into slip in the other direction is not an arrest. Touching v = 0 is not one either: with
+    inertia, a touch is rest that, without healing, would end within sqrt(rtol) times the period or the round trip.
+
+    The start of the run counts as an arrest: with "since-arrest" the initial slip does not enter friction.
+    """
+
+    memory: Literal["all", "since-arrest"] = declare(  # type: ignore[misc] # a class attribute in the base, a field here
+        Choice("slip that friction remembers", ("all", "since-arrest")), "all"
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.memory == "since-arrest" and not self.depends_on_slip:
+            name = type(self).__name__
+            raise InputError(f"{name}: memory 'since-arrest' needs friction that depends on slip; allowed here: all")
+
+
+@dataclass(frozen=True)
+class SlipWeakening(RemembersSlip):
+    """A law whose friction changes from `static` to `dynamic` over a `distance` of slip path.
+
+    The slip path d is the accumulated length of slip in both directions.
+    """
+
+    counts = "path"
+
+    static: float = quantity("1", "friction coefficient before slip", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient after much slip", at_least=0)
+    distance: float = quantity("m", "slip over which friction falls (often Dc)", above=0)
+
+    @staticmethod
+    def weakened(law: Any, u: Any, v: Any) -> Any:
+        """Return the constant mu of a piece in which weakening is complete."""
+        return law.dynamic + 0.0 * u
+
+    @override
+    def range(self) -> tuple[float, float]:
+        return hull(self.static, self.dynamic)
+
+
+@dataclass(frozen=True)
+class Stribeck(FrictionLaw):
+    """A law that falls from `static` to `dynamic` around the slip rate `rate`, and rises again with `viscosity`.
+
+    The exponent must be whole: with any other the curve has no derivatives at v = 0, where every slip begins.
+    """
+
+    static: float = quantity("1", "friction coefficient at rest", at_least=0)
+    dynamic: float = quantity("1", "friction coefficient at high slip rate, without the viscous term", at_least=0)
+    rate: float = quantity("m/s", "slip rate v_s over which friction falls", above=0)
+    exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True)
+    viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
+
+    @abstractmethod
+    def steepness(self) -> float:
+        """Return the steepest fall of the curve without viscosity, in units of (static - dynamic) / rate."""
+
+    @override
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        """Return rate_c = k S (static - dynamic) / (Z + S viscosity), with k the `steepness`.
+
+        The problem is irregular for smaller rates.
+        """
+        fall = self.steepness() * normal * (self.static - self.dynamic)
+        return ("rate", fall / (impedance + normal * self.viscosity)) if fall > 0.0 else None
+
+    @override
+    def range(self) -> tuple[float, float]:
+        low, high = hull(self.static, self.dynamic)
+        return low, math.inf if self.viscosity > 0.0 else high
+
+    @property
+    @override
+    def bends_one_way(self) -> bool:
+        return self.exponent == 1.0
