@@ -34,7 +34,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
     assert f"stickslip {name} " in shown.out.partition("Usage")[2].partition("\n")[2]
 
 
-def test_without_arguments_it_teaches(command):
+def test_without_arguments_the_help_is_shown(command):
     shown = command()
     assert shown.code == 0
     for name in COMMANDS:
@@ -42,7 +42,7 @@ def test_without_arguments_it_teaches(command):
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
 
-def test_version(command):
+def test_version_prints_the_version(command):
     assert command("--version").out == f"stickslip {__version__}\n"
 
 
@@ -70,14 +70,14 @@ def test_new_lists_every_name(command):
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
 
 
-def test_what_new_prints_can_be_checked_and_run(command, tmp_path: Path):
+def test_a_scenario_that_new_prints_can_be_checked_and_run(command, tmp_path: Path):
     (tmp_path / "mine.toml").write_text(command("new", "slab").out)
     assert command("check", "mine.toml").code == 0
     assert command("run", "mine.toml").code == 0
 
 
 @pytest.mark.parametrize("name", library.names())
-def test_check(command, name):
+def test_check_prints_its_four_sections(command, name):
     shown = command("check", name)
     assert shown.code == 0
     assert shown.out.startswith(load_scenario(name).title)
@@ -99,7 +99,7 @@ def test_check_shows_units_folds_and_warnings(command):
     assert "warning" in out
 
 
-def test_check_says_what_jumps_and_what_rests_on_the_rule(command):
+def test_check_says_what_jumps_and_what_depends_on_the_rule(command):
     out = command("check", "fig6-slab").out
     for pattern in (
         r"^critical value +friction\.alpha = 0\.196 s/m; here above it, at 1",
@@ -250,7 +250,7 @@ def test_run_draws_where_the_energy_is(command, tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["energy.svg"]
 
 
-def test_pictures_of_the_slabs_inside(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_run_draws_space_time_and_animation(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.figures.runs.animation.FRAMES", 3)
     out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif", "--figure", "run.png").out
     assert out.endswith("written: run.png\nwritten: waves.svg\nwritten: slab.gif\n")

@@ -8,7 +8,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.figures.runs import energy
-from tests.figures.test_figures import BLOCK_PROBLEM, SLAB_PROBLEM
+from tests.figures.problems import BLOCK_PROBLEM, SLAB_PROBLEM
 from tests.observables.runs import RUNS, worst_imbalance
 
 mpl.use("Agg")
@@ -39,13 +39,13 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert worst_imbalance(run) < 1e-9
 
 
-def test_a_part_that_is_left_out_is_missed() -> None:
+def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
     dataset = energy.data(ss.simulate(*RUNS["slab, lossy"]))
     without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
     assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
 
 
-def test_labels_and_what_is_shown_of_a_long_run() -> None:
+def test_a_long_run_is_shown_around_its_event_with_units() -> None:
     run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
     axes = run.plot.energy().axes[0]
     assert axes.get_ylabel() == "energy (MJ/m²)"

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 import stickslip as ss
-from tests.engine.test_moving_folds import KINKED, MATCHED, hardening
-from tests.engine.test_moving_folds import SLAB as THIN
+from tests.engine.moving_folds import KINKED, MATCHED, hardening
+from tests.engine.moving_folds import SLAB as THIN
+from tests.problems import SLAB
 
 F = ss.friction
-SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 
 
 def bundled(name: str, times: float = 1.0) -> tuple[ss.Problem, float]:

@@ -98,7 +98,7 @@ def test_a_long_text_without_dots_is_no_long_key() -> None:
     assert time.monotonic() - begin < 5.0
 
 
-def test_a_whole_number_beyond_all_floats() -> None:
+def test_a_whole_number_beyond_all_floats_is_refused() -> None:
     problem = read_scenario(SLAB, "my.toml").problem
     with pytest.raises(ss.InputError, match="thickness must be finite, got inf"):
         ss.ElasticSlab(2800, 3500, 10**400, 1e8)
@@ -213,5 +213,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
         ),
     ],
 )
-def test_a_command_line_beyond_all_measure(capsys: pytest.CaptureFixture[str], arguments: list[str], message: str) -> None:
+def test_a_command_line_beyond_all_measure_is_refused(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
     assert said(capsys, *arguments).startswith(f"stickslip: {message}")
