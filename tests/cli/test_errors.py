@@ -163,7 +163,7 @@ def test_a_full_disk_gives_one_line_and_leaves_no_half_file(command, tmp_path: P
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok])
+@pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok], ids=lambda status: status.name)
 def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: pytest.MonkeyPatch, status):
     original = Scenario.run
 

@@ -181,6 +181,7 @@ def test_friction_that_no_rate_changes_has_margin_one():
         (lambda x: math.copysign(1.0, 0.3 - x), 0.0, 1.0, 0.3),
         (lambda x: 1e-300 * (x - 0.7) ** 9, 0.0, 1.0, None),
     ],
+    ids=["cubic", "jump from minus infinity", "jump down", "flat root"],
 )
 def test_sign_change_finds_the_crossing_from_its_upper_side(function, low, high, root):
     found = sign_change(function, low, high)
