@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pandas
@@ -23,6 +22,7 @@ from stickslip.cli.names import (
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from stickslip.studies import ensemble as ensembles
+from tests.limits import limit_of_process
 
 COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
@@ -47,15 +47,13 @@ def test_version_prints_the_version(command):
 
 
 def test_help_is_fast_because_it_compiles_and_validates_nothing():
-    code = (
+    code = limit_of_process(5) + (
         "import sys\nfrom stickslip.cli.main import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
         "print(*({'numba', 'pydantic', 'pandas', 'pint', 'matplotlib'} & set(sys.modules)), end='', file=sys.stderr)"
     )
-    start = time.perf_counter()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert done.returncode == 0
-    assert time.perf_counter() - start < 5.0
 
 
 @pytest.mark.parametrize("name", templates.template_names())
@@ -212,16 +210,16 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = ensembles._run
+    original = ensembles.simulate
     done = []
 
-    def stops(*arguments):
+    def stops(*arguments, **options):
         if len(done) == 3:
             raise KeyboardInterrupt
-        done.append(original(*arguments))
+        done.append(original(*arguments, **options))
         return done[-1]
 
-    monkeypatch.setattr(ensembles, "_run", stops)
+    monkeypatch.setattr(ensembles, "simulate", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.nc")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out

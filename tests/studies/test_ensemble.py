@@ -121,7 +121,7 @@ def test_from_rest_a_disturbance_only_shifts_the_time() -> None:
 @pytest.mark.parametrize(
     ("excess", "size", "signs"),
     [(0.0, 1e-12, {1.0}), (-0.0, 1e-12, {1.0}), (1.0, 1e-12, {-1.0, 1.0}), (-1.0, 1e-6, {-1.0, 1.0})],
-    ids=["at the strength", "at minus the strength", "beyond the strength", "beyond minus the strength"],
+    ids=["at the strength", "at the strength, minus zero", "beyond the strength", "below the strength"],
 )
 def test_a_start_beyond_the_strength_is_not_held_back(excess: float, size: float, signs: set) -> None:
     forward = replace(FAST, initial_excess=excess)

@@ -133,8 +133,9 @@ def test_a_killed_sweep_continues(undisturbed: dict[str, bytes], tmp_path: Path)
     sweep = subprocess.Popen([sys.executable, str(script), str(out)], env=environment, start_new_session=True)
     assert sweep.wait(timeout=120) == -signal.SIGKILL
     assert sum(name.startswith("status/c.") for name in files(out)) == 3
-    give_up = time.monotonic() + 20.0
-    while _alive(sweep.pid) and time.monotonic() < give_up:
+    for _ in range(400):
+        if not _alive(sweep.pid):
+            break
         time.sleep(0.05)
     assert not _alive(sweep.pid)
     ss.sweep("fig6-slab", VARY, quantities=["slip", "pulses"], series=["slip"], samples=5, chunk=1, out=out)
@@ -222,8 +223,9 @@ def test_a_scheduler_that_is_lost_gives_one_line(tmp_path: Path) -> None:
     scheduler = subprocess.Popen(start, **quiet)
     worker = subprocess.Popen([*dask, "worker", "--scheduler-file", str(file), "--no-nanny", "--nthreads", "1"], **quiet)
     try:
-        give_up = time.monotonic() + 60.0
-        while not file.exists() and time.monotonic() < give_up:
+        for _ in range(600):
+            if file.exists():
+                break
             time.sleep(0.1)
         with cluster(str(file)) as client:
             client.wait_for_workers(1, timeout=60)
