@@ -58,9 +58,6 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
     ),
 }
 
-SLOW = ("moving levels", "moving levels, knots")
-"""Runs of seconds: the branches are worked out anew at every step."""
-
 
 def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
     """What is not the same in two solutions, bit for bit."""

@@ -26,7 +26,7 @@ from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
-from tests.long_runs.problems import RUNS, SLOW, bundled, differences
+from tests.long_runs.problems import RUNS, bundled, differences
 from tests.long_runs.processes import killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
@@ -38,7 +38,7 @@ def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
     pd.testing.assert_frame_equal(one, other, check_exact=True)
 
 
-@pytest.mark.parametrize("name", [name for name in RUNS if name not in SLOW])
+@pytest.mark.parametrize("name", RUNS)
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", capacity)

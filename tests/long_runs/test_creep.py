@@ -189,9 +189,15 @@ def _around_peak(window: Window) -> np.ndarray:
     return window.event_slip(peak + np.linspace(-6.0, 2.0, 300)) - float(window.event_slip(peak))
 
 
-def test_time_after_years_of_creep_is_sharp() -> None:
-    """The second pulse of the printed slab, after 332 days: local times count from a whole number of round trips."""
-    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+@pytest.fixture(scope="module")
+def years_of_creep() -> ss.Solution:
+    """Run the printed slab up to its second pulse, after 332 days."""
+    return ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+
+
+def test_time_after_years_of_creep_is_sharp(years_of_creep: ss.Solution) -> None:
+    """At the second pulse, local times count from a whole number of round trips."""
+    run = years_of_creep
     window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
     assert window.epoch.row > 5_000_000
     assert 0.0 <= window.epoch.offset < ROUND
@@ -201,8 +207,8 @@ def test_time_after_years_of_creep_is_sharp() -> None:
     np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
 
 
-def test_slip_has_no_gap_at_the_borders_of_a_leap() -> None:
-    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+def test_slip_has_no_gap_at_the_borders_of_a_leap(years_of_creep: ss.Solution) -> None:
+    run = years_of_creep
     for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
         history = run.history.seen_from(epoch)
         for leap in run.creep.itertuples():
