@@ -52,13 +52,15 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
 def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
+    file_of_whole = whole.to_netcdf(tmp_path / "whole.nc")
+    assert differences(ss.open_solution(file_of_whole), whole) == []
     rng, steps = np.random.default_rng(len(name)), steps_of(problem, duration)
     for stop in {1, 2, *rng.integers(1, steps + 1, 5).tolist(), steps}:
         stopped(problem, duration, int(stop), path)
         with h5py.File(path) as file:
             assert file.attrs["status"] == "under way"
         assert differences(ss.resume(path), whole) == [], f"after {stop} of {steps} steps"
-        assert differences(ss.open_solution(path), whole) == []
+        assert path.read_bytes() == file_of_whole.read_bytes()
 
 
 def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
@@ -100,7 +102,7 @@ def test_the_comparison_shows_a_state_that_is_not_restored(tmp_path: Path) -> No
     assert half.checkpoint is not None
     State(half.checkpoint.state).law_slip *= 1.0 + 1e-15
     save_checkpoint(half, path)
-    assert "rate" in differences(ss.resume(path), whole)
+    assert "pieces" in differences(ss.resume(path), whole)
 
 
 @pytest.mark.parametrize("events", [1, 7, 30])
