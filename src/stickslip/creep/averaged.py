@@ -52,6 +52,7 @@ class Strength:
     step: float  # slip over which a second derivative is taken, m: that of a round trip
 
     def __call__(self, x: float) -> float:
+        """Return the static strength (Pa) after slip x (m), minus that at the start of the run."""
         return strength_change(self.problem, self.law_slip + self.sign * x)
 
     @cached_property

@@ -58,10 +58,10 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
 
 
 @kernel
-def _latest(begins: Integers, members: Integers, leaves: int, leaf: Integers, upto: Integers, found: Integers) -> None:
-    """Find, for each leaf, the last piece up to upto[q] in any node on the way from the leaf to the root."""
+def _latest(begins: Integers, members: Integers, leaf: Integers, upto: Integers, found: Integers) -> None:
+    """Find, for each leaf (by the number of its node), the last piece up to upto[q] in any node on the way to the root."""
     for q in range(len(leaf)):
-        node, best = leaf[q] + leaves, NOTHING
+        node, best = leaf[q], NOTHING
         while node >= 1:
             place = _last(members, begins[node], begins[node + 1], upto[q])
             if place >= begins[node]:
@@ -112,7 +112,7 @@ class Phases:
         """
         leaf = np.searchsorted(self.edges, phase, side=side) - 1
         found = np.empty(len(leaf), np.int64)
-        _latest(self.begins, self.members, self.leaves, np.clip(leaf, 0, len(self.edges) - 2), upto, found)
+        _latest(self.begins, self.members, self.leaves + np.clip(leaf, 0, len(self.edges) - 2), upto, found)
         return found
 
     def standing(self, upto: int) -> tuple[NDArray[np.intp], Floats, Floats]:

@@ -174,7 +174,7 @@ def take_out(run: Run, own: Floats) -> int:
     run.jet[0] = own[WIDTH * JET]
     note_shock(run)
     to = target if own[WIDTH * REACHED] == 1.0 else run.state.xi + length * own[WIDTH * GUESS]
-    move(run, rate, length, grown, rate_end, to)
+    move(run, length, grown, rate_end, to)
     if run.counts.has_inertia == 1:
         judge_stiffness(run)
     goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0

@@ -64,10 +64,10 @@ def offset_at(history: HistoryPiece, piece: int, xi: float) -> float:
 
 
 @kernel
-def time_between(history: HistoryPiece, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
-    """Return the time (s) from one place to a later one."""
-    rows = history[later].row - history[piece].row
-    return rows * row_time + (offset_at(history, later, later_xi) - offset_at(history, piece, xi))
+def time_between(history: HistoryPiece, row_time: float, place: tuple[int, float], later: tuple[int, float]) -> float:
+    """Return the time (s) from one place (piece, xi) to a later one."""
+    rows = history[later[0]].row - history[place[0]].row
+    return rows * row_time + (offset_at(history, later[0], later[1]) - offset_at(history, place[0], place[1]))
 
 
 @kernel
@@ -150,7 +150,7 @@ def friction_before(run: Run, piece: int, excess: float) -> float:
     if piece == 0:
         return excess
     history, row_time, last = run.history, run.par.row_time, piece - 1
-    if not time_between(history, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
+    if not time_between(history, row_time, (last, 1.0), (piece, 0.0)) > ROUNDING * row_time:
         return friction_in(run, last, 1.0)
     row, phase = history[piece].row, history[piece].theta_from
     if phase == 0.0:
@@ -214,10 +214,8 @@ def fold_recurrence(history: HistoryPiece, row_time: float, points: Points, even
     """
     mean = spread = 0.0
     for n in range(1, events):
-        a, b = points.begin[n - 1], points.begin[n]
-        since = time_between(
-            history, row_time, points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
-        )
+        a, b, turns = points.begin[n - 1], points.begin[n], points.turns
+        since = time_between(history, row_time, (turns.piece[a], turns.xi[a]), (turns.piece[b], turns.xi[b]))
         change = since - mean
         mean += change / n
         spread += change * (since - mean)
@@ -239,7 +237,7 @@ def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
     out.first_start = time_at(history, row_time, piece, xi)
     if points.turns.kind[b] == -1:
         out.first_end = time_at(history, row_time, last, last_xi)
-        out.first_duration = time_between(history, row_time, piece, xi, last, last_xi)
+        out.first_duration = time_between(history, row_time, (piece, xi), (last, last_xi))
     out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
     before = friction_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
     out.first_traction_drop = before - friction_after(run, last, last_xi)

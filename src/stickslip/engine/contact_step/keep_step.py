@@ -18,18 +18,18 @@ from stickslip.engine.state.workspace import Run
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
     multiply(run.local, run.powers, run.history[run.counts.length].load)
-    move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
+    move(run, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
 @kernel
-def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
+def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> None:
     """Record the step and move the state to its end, at xi = to.
 
     Load and rate (m/s, as a magnitude) are in the next free row of the history. `grown` is the slip (m) in the step and
     `rate_end` the rate at its end (m/s), both unsigned.
     """
     direction = run.counts.mode
-    load = run.history[run.counts.length].load
+    load, rate = run.history[run.counts.length].load, run.history[run.counts.length].rate
     speed, bend = run.k.speed * length, run.k.bend * length * length
     if run.counts.is_block == 1:
         unload_spring(direction * run.par.stiffness * speed, direction * run.par.stiffness * bend, rate, load)

@@ -152,7 +152,7 @@ def take_step(run: Run, plan: StepPlan, guess: float) -> None:
         note_rough_step(run, kept.rate, rate_end)
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * guess
-    move(run, kept.rate, cut.end * length, grown, rate_end, to)
+    move(run, cut.end * length, grown, rate_end, to)
     resolve(run, cut)
     if cut.event == StepEvent.NONE and plan.ends_branch and (reached or plan.target - run.state.xi < TIE):
         reach_end(run)
