@@ -62,9 +62,6 @@ def floats_at() -> Any:
     return _Wanted(FLOATS, 1, False)
 
 
-def integers_at() -> Any:
-    """Declare a field that holds the address of 64-bit integers."""
-    return _Wanted(INTEGERS, 1, False)
 
 
 def floats_inside(size: int) -> Any:
