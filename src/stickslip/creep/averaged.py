@@ -162,7 +162,7 @@ class AveragedCreep:
         ends of its pieces and the slip (m) since its start.
         """
         areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
-        ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
+        ends = np.append(0.0, self.pattern.parts.phase_from + self.pattern.width)
         first = before[1] - creep.mean_rate * np.interp(before[0], ends, lengths)
         second = first[-1] + areas / self.impedance - creep.mean_rate * lengths
         return float(np.ptp([0.0, *first, *second])) / creep.seen
