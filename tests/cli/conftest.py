@@ -19,8 +19,9 @@ class Outcome:
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_engine() -> None:
-    """Compile the engine before any test looks at what a command says on standard error."""
-    ss.simulate(ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), ss.friction.Coulomb(0.6, 0.5), initial_excess=0.0), 1.0)
+    """Compile the engine and its parts before any test looks at what a command says on standard error."""
+    for name in ("fig6-slab", "rate-and-state-block"):
+        ss.load_scenario(name).run()
 
 
 @pytest.fixture
