@@ -70,19 +70,19 @@ def sweep(
     figure: Figure = None,
     dry_run: DryRun = False,
 ) -> None:
-    """Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
+    r"""Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
 
     Any number of a scenario can be varied, by its place in the file
     (friction.alpha, body.thickness, friction.slip.mean, run.rtol), with the
     units of scenarios. Runs that fail are counted, with their reasons.
 
     \b
-      stickslip sweep fig6-slab --vary friction.alpha=0.05..2:40 \\
+      stickslip sweep fig6-slab --vary friction.alpha=0.05..2:40 \
         --vary "body.thickness=1km..50km:30:log" --out map.zarr
       stickslip sweep mine.toml -v alpha=0.1,1,10 -q recurrence -q heat
-      stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \\
+      stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \
         --design lhs --members 1000 --out sample.zarr
-      stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \\
+      stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \
         --refine events --depth 5 --figure map.png
 
     After a stop, the same command continues where the store ends.
