@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lanes import CONSTANTS, Waits
+from stickslip.batch.kernels.lanes import Block, Waits
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
@@ -86,7 +86,7 @@ def apart(*shape: int, dtype: type = float) -> Any:
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
     """Return `Workspace.numbers` and `Workspace.block` for a law with the given number of constants."""
-    numbers = apart(WIDTH * (CONSTANTS + constants))
+    numbers = apart(WIDTH * (Block.total + constants))
     return numbers, np.array([numbers.ctypes.data])
 
 
