@@ -310,7 +310,7 @@ BAD = [
     ({"seed": -1}, "seed must be a whole number, 0 or more, got -1"),
     ({"duration": 0.0}, "duration must be a positive time"),
     ({"rtol": 1.0}, "rtol must lie between"),
-    ({"events": 0}, "events must be a whole number above 0"),
+    ({"max_events": 0}, "max_events must be a whole number above 0"),
     ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
     ({"problem": ss.Problem(SLAB, STATE, initial_load=0.0, initial_state=1.0)}, "neither a strength nor an initial load"),
 ]

@@ -82,7 +82,7 @@ def lend_part(memory: Integers, part: Part | None = None) -> None:
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
     """Write the addresses of those parts that members with such numbers may ever need; batches have no loading histories."""
-    if counts.has_inertia == 1:
+    if counts.has_inertia == 1 or counts.has_state == 1:
         lend_part(memory, Part.IMPLICIT_STEPS)
     if params.reflection == -1.0 and counts.is_block == 0:
         lend_part(memory, Part.ECHO_QUEUE)
