@@ -45,20 +45,20 @@ class Named:
 
 
 NAMED = (
-    Named("echo-sign", "engine/loop.py", "par.reflection * (2.0 *", "-par.reflection * (2.0 *"),
+    Named("echo-sign", "engine/loop.py", "params.reflection * (2.0 *", "-params.reflection * (2.0 *"),
     Named(
         "factor-two-in-the-echo",
         "engine/loop.py",
-        "* (2.0 * par.impedance * rate[k]",
-        "* (1.0 * par.impedance * rate[k]",
+        "* (2.0 * params.impedance * rate[k]",
+        "* (1.0 * params.impedance * rate[k]",
     ),
     Named(
         "factor-two-in-the-tree",
         "engine/waves/echo_queue.py",
-        "- 2.0 * run.par.impedance * rate[k]",
-        "- run.par.impedance * rate[k]",
+        "- 2.0 * run.params.impedance * rate[k]",
+        "- run.params.impedance * rate[k]",
     ),
-    Named("a-row-too-early", "engine/loop.py", "run.history[n].row - 1", "run.history[n].row"),
+    Named("a-row-too-early", "engine/loop.py", "run.history[n].trip - 1", "run.history[n].trip"),
     Named(
         "wrong-side-of-a-fold",
         "engine/folds/fold.py",

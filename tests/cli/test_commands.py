@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 
 import pandas
@@ -22,7 +23,6 @@ from stickslip.cli.names import (
 )
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
-from stickslip.studies import ensemble as ensembles
 
 COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
@@ -212,7 +212,7 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = ensembles._run
+    original = import_module("stickslip.studies.ensemble")._run
     done = []
 
     def stops(*arguments):
@@ -221,7 +221,7 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
         done.append(original(*arguments))
         return done[-1]
 
-    monkeypatch.setattr(ensembles, "_run", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "_run", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.nc")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out

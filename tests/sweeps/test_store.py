@@ -25,12 +25,12 @@ from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
 
 VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": np.linspace(5e3, 20e3, 6)}
 """The second half fails: a rigid driver has no far stress."""
-KEPT = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
+SAVED = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
 MEMBERS, FINE = 12, 6
 
 
 def sweep(out: Path | None, **asked: Any) -> xr.Dataset:
-    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(KEPT | asked))
+    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(SAVED | asked))
 
 
 def files(store: Path) -> dict[str, bytes]:
@@ -122,7 +122,7 @@ def test_ctrl_c_in_the_last_moment_of_a_run_ends_the_sweep(monkeypatch: pytest.M
 
 
 def test_the_order_of_chunks_does_not_matter(tmp_path: Path, whole: dict[str, bytes]) -> None:
-    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    plan, path = make_plan("fig6-slab", VARY, **SAVED), tmp_path / "map.zarr"
     forwards = on_threads(1)
     carry_out(plan, path, lambda work, chunks: forwards(work, reversed(list(chunks))))
     assert files(path) == whole
@@ -256,7 +256,7 @@ def test_another_scenario_and_another_version_are_refused(tmp_path: Path, monkey
     path = tmp_path / "map.zarr"
     sweep(path)
     with pytest.raises(ss.InputError, match="was made from another scenario"):
-        ss.sweep("second-event-maxwell", VARY, out=path, **KEPT)
+        ss.sweep("second-event-maxwell", VARY, out=path, **SAVED)
     monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
         sweep(path)
@@ -281,7 +281,7 @@ def test_what_is_no_sweep_is_left_alone(tmp_path: Path, kind: str) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="needs locks")
 def test_two_sweeps_do_not_write_into_one_store(tmp_path: Path) -> None:
-    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    plan, path = make_plan("fig6-slab", VARY, **SAVED), tmp_path / "map.zarr"
     with ResultStore.at(plan, path), pytest.raises(ss.InputError, match="another sweep is writing into it"):
         sweep(path)
     assert (sweep(path).status.values != NOT_RUN).all()

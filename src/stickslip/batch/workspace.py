@@ -112,12 +112,12 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
 
     The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
     """
-    par = Params(setups.par[0])
-    own = Setup(par, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
+    params = Params(setups.params[0])
+    own = Setup(params, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
-        lend_parts_of_batch(work.table[n], par, Counts(setups.counts))
+        lend_parts_of_batch(work.table[n], params, Counts(setups.counts))
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
     for name in ("law", "constants", "branch_table", "first_load"):

@@ -105,11 +105,11 @@ def put_in(run: Run, own: Floats, fresh: bool) -> None:
         constants, last = constants_of(run, run.counts.piece), TERMS - 1
         for k in range(SERIES):
             own[WIDTH * k] = numbers_of(run.k)[k]
-        own[WIDTH * TOLERANCE] = run.par.tolerance
+        own[WIDTH * TOLERANCE] = run.params.tolerance
         for k in range(run.size):
             own[WIDTH * (CONSTANTS + k)] = constants[k]
     for k in range(last + 1):
-        own[WIDTH * (SEEN + k)] = run.seen[k]
+        own[WIDTH * (SEEN + k)] = run.load_along_slip[k]
         own[WIDTH * (LOCAL + k)] = run.local[k]
 
 
@@ -120,7 +120,7 @@ def take_length(run: Run, own: Floats) -> None:
     if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # `length_at` alone does not decide here
         for k in range(TERMS):
             run.jet[k] = own[WIDTH * (JET + k)]
-        usable = usable_length(run.jet, run.par.tolerance)
+        usable = usable_length(run.jet, run.params.tolerance)
     if run.law[run.counts.piece].guard_count > 0:
         for k in range(TERMS):
             run.reach[k] = own[WIDTH * (REACH + k)]
@@ -174,7 +174,7 @@ def take_out(run: Run, own: Floats) -> int:
     run.jet[0] = own[WIDTH * JET]
     note_shock(run)
     to = target if own[WIDTH * REACHED] == 1.0 else run.state.xi + length * own[WIDTH * GUESS]
-    move(run, rate, length, grown, rate_end, to)
+    move(run, length, grown, rate_end, to)
     if run.counts.has_inertia == 1:
         judge_stiffness(run)
     goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0
