@@ -42,8 +42,8 @@ def with_table(text: str) -> str:
     before, _, rest = text.partition(HEADING)
     _, _, after = rest.partition(NEXT)
     intro = (
-        "`stickslip new slab --friction KIND` prints a scenario with any of these laws. (`python docs/law_table.py` writes this table"
-        " from the code.)"
+        "`stickslip new slab --friction KIND` prints a scenario with any of these laws. (`python docs/law_table.py` writes this"
+        " table from the code.)"
     )
     return f"{before}{HEADING}\n{intro}\n\n{table()}\n{NEXT}{after}"
 
