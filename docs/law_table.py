@@ -41,7 +41,7 @@ def with_table(text: str) -> str:
     """Return the page with the table as the first thing under its heading."""
     before, _, rest = text.partition(HEADING)
     _, _, after = rest.partition(NEXT)
-    intro = "One row a law, written from `LAWS` by `python docs/law_table.py`."
+    intro = "`python docs/law_table.py` writes this table from the code. `stickslip new slab --friction KIND` prints a scenario."
     return f"{before}{HEADING}\n{intro}\n\n{table()}\n{NEXT}{after}"
 
 

@@ -124,7 +124,7 @@ class Session:
         return replace(found, lumping_note=self.lumping_note, rounding_note=self.rounding_note, **given)
 
     def advance(self, last: tuple[int, float], budget: int) -> int:
-        """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
+        """Call the engine once or, if it has paused for that, leap over creep. Returns the code of `loop.run_until`.
 
         The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as Stop.NONE.
         """

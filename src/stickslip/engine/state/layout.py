@@ -1,8 +1,8 @@
 """The records and tables that the compiled engine reads and writes: named places in plain arrays.
 
 Loads are differences from the reference strength (the static strength at the start), in Pa for a slab and N for a block. Slips
-are differences from the initial slip, in m. A time is a round trip (`row`) and a phase theta (s) in it. A block has rows too:
-one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
+are differences from the initial slip, in m. A time is a round trip (`trip`) and a phase (s) in it. A block has round
+trips too: one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
 a pure number.
 """
 
@@ -28,7 +28,7 @@ class Params(Record):
     """Hold the numbers of a problem, in SI. They are constant during a run, except `stick_to` under a law of slip and slip rate."""
 
     round_trip_time: (
-        float  # s: two-way travel time of a slab; length of a row of a block (a period, or longer where it never sticks)
+        float  # s: two-way travel time of a slab; length of a round trip of a block (a period, or longer where it never sticks)
     )
     impedance: float  # Pa s/m: wave impedance Z of a slab; N s/m: damping of a block
     normal: float  # Pa: normal stress on a slab; N: normal force on a block
@@ -42,7 +42,7 @@ class Params(Record):
     counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
     static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
     stick_to: float  # Pa or N: load at which rest ends, minus the static strength at the present slip; never above 0
-    ramp: float  # Pa or N: growth of the load at rest in one row; 0 for a loading that varies
+    ramp: float  # Pa or N: growth of the load at rest in one round trip; 0 for a loading that varies
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
     smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
     relative_jump: float  # 1: nor are changes up to this share of the slip rate
@@ -66,7 +66,7 @@ class State(Record):
     last_step: float  # s: length that the error allowed the last step to have
     phase_from: float  # s: phase at which the piece of load begins; phase = phase_from + speed xi + bend xi^2
     phase_to: float  # s: phase at which the piece of load ends
-    speed: float  # s: dtheta/dxi at xi = 0
+    speed: float  # s: dphase/dxi at xi = 0
     bend: float  # s: coefficient of xi^2 in the phase, 0 except next to folds
     table_slip: float  # m: law slip (minus its initial value) at which the table of branches holds
     fold_rate: float  # m/s: magnitude of the slip rate at the moving fold that the contact approaches
@@ -92,7 +92,7 @@ SAVED = State.places["taken"].first
 class Counts(Record):
     """Hold the part of the state that is whole numbers: places in the history, flags, codes."""
 
-    trip: int  # present round trip of a slab or row of a block, from 0
+    trip: int  # present round trip, from 0
     source: int  # index of the next piece of load: of the first load (round trip 0, block), else counted from `previous_from`
     mode: int  # 0 at rest, +1 in forward slip, -1 in backward slip
     piece: int  # piece of the law that holds
@@ -130,14 +130,14 @@ class Counts(Record):
     lumped: int  # 1 if the present piece of load was replaced by its mean
     slip_trip: int  # round trip in which slip last began
     unresolved_slips: int  # number of slips too short to be resolved, less the number of other slips, never below 0
-    pause_at: int  # round trip before which `advance` returns
+    pause_at: int  # round trip before which `run_until` returns
     pause_for: int  # number of round trips that the next pause waits, set by the caller
     creep_leaps: int  # number of leaps over creep so far
     varies: int  # 1 if the loading varies in time other than as a ramp
     segment: int  # segment of the loading that holds at present
-    trip_segment: int  # segment of the loading at the end of the row before
+    trip_segment: int  # segment of the loading at the end of the round trip before
     waits: int  # 1 if explicit steps of slip are left to the caller
-    creep_in: int  # number of round trips with slip before `advance` pauses for a look at leaps over creep; none if not above 0
+    creep_in: int  # number of round trips with slip before `run_until` pauses for a look at leaps over creep; none if not above 0
     lumps: int  # 1 if short pieces of load are lumped
     lump_above: int  # number of pieces in a round trip above which lumping begins
     lumped_since: int  # round trip from which on short pieces are lumped
@@ -245,7 +245,7 @@ class Task(IntEnum):
     TAKE_LOADING = 2
     """Cut the piece of load where the loading breaks, and add the loading to it."""
     COUNT_TRIPS_AT_REST = 3
-    """Find for how many rows a contact at rest withstands the loading."""
+    """Find for how many round trips a contact at rest withstands the loading."""
     NEXT_ECHO = 4
     """Find the next echo that must be met."""
     END_TRIP = 5
@@ -317,7 +317,7 @@ class Branch(Record):
 
 
 class FirstLoad(Record):
-    """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `theta`."""
+    """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `phase`."""
 
     phase: float  # s: phase at which the piece begins
     load: float  # Pa or N, minus the reference strength
