@@ -1,8 +1,8 @@
 """The records and tables that the compiled engine reads and writes: named places in plain arrays.
 
 Loads are differences from the reference strength (the static strength at the start), in Pa for a slab and N for a block. Slips
-are differences from the initial slip, in m. A time is a round trip (`trip`) and a phase (s) in it. A block has round
-trips too: one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
+are differences from the initial slip, in m. A time is a round trip (`trip`) and a phase (s) in it. A block has round trips too:
+one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
 a pure number.
 """
 
