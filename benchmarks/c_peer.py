@@ -108,8 +108,8 @@ def runner(case: Case, tolerance: float) -> Runner:
     function = library(formula, law.parameters()).advance
     addresses: dict[int, int] = {}
 
-    def kernel(table: np.ndarray, last_row: int, last_theta: float, budget: int) -> int:
+    def kernel(table: np.ndarray, last_trip: int, last_phase: float, budget: int) -> int:
         address = addresses.get(id(table)) or addresses.setdefault(id(table), table.ctypes.data)
-        return int(function(address, last_row, last_theta, budget))
+        return int(function(address, last_trip, last_phase, budget))
 
     return ours.runner(case, tolerance, kernel)

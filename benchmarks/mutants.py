@@ -45,31 +45,31 @@ class Named:
 
 
 NAMED = (
-    Named("echo-sign", "engine/loop.py", "par.reflection * (2.0 *", "-par.reflection * (2.0 *"),
+    Named("echo-sign", "engine/waves/incoming_load.py", "params.reflection * (2.0 *", "-params.reflection * (2.0 *"),
     Named(
         "factor-two-in-the-echo",
-        "engine/loop.py",
-        "* (2.0 * par.impedance * rate[k]",
-        "* (1.0 * par.impedance * rate[k]",
+        "engine/waves/incoming_load.py",
+        "* (2.0 * params.impedance * rate[k]",
+        "* (1.0 * params.impedance * rate[k]",
     ),
     Named(
         "factor-two-in-the-tree",
         "engine/waves/echo_queue.py",
-        "- 2.0 * run.par.impedance * rate[k]",
-        "- run.par.impedance * rate[k]",
+        "- 2.0 * run.params.impedance * rate[k]",
+        "- run.params.impedance * rate[k]",
     ),
-    Named("a-row-too-early", "engine/loop.py", "run.history[n].row - 1", "run.history[n].row"),
+    Named("a-trip-too-early", "engine/waves/incoming_load.py", "run.history[n].trip - 1", "run.history[n].trip"),
     Named(
         "wrong-side-of-a-fold",
         "engine/folds/fold.py",
-        "if abs(level - run.keep_to[branch]) < abs(",
-        "if abs(level - run.keep_to[branch]) > abs(",
+        "if abs(level - branch.keep_to) < abs(",
+        "if abs(level - branch.keep_to) > abs(",
     ),
     Named(
         "fold-outrun-backwards",
         "engine/folds/fold.py",
-        "return direction * run.part[1] > run.value[2]",
-        "return direction * run.part[1] < run.value[2]",
+        "return direction * run.part[1] > run.friction.by_slip",
+        "return direction * run.part[1] < run.friction.by_slip",
     ),
     Named("tolerance-times-1000", "engine_input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
     Named("no-verification", "engine/contact_step/verify.py", "return missing <= allowed", "return True or missing <= allowed"),
@@ -100,10 +100,10 @@ NAMED = (
     Named(
         "no-kinetic-energy-of-the-block",
         "observables/energy/balance.py",
-        '"stored": spring + 0.5 * body.mass * rate**2',
-        '"stored": spring + 0.0 * body.mass * rate**2',
+        '"stored": spring + 0.5 * body.inertia * rate**2',
+        '"stored": spring + 0.0 * body.inertia * rate**2',
     ),
-    Named("year-of-365-days", "__init__.py", "YEAR = 31_557_600.0", "YEAR = 31_536_000.0"),
+    Named("year-of-365-days", "foundation/constants.py", "YEAR = 31_557_600.0", "YEAR = 31_536_000.0"),
 )
 """Mistakes by name."""
 

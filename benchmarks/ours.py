@@ -27,18 +27,18 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
     setup, state, count = prepare(case.problem, tolerance)
     count.to_the_end = 1  # nothing goes on behind it
     store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
-    memory = memory_of(setup.par, state, count)
+    memory = memory_of(setup.params, state, count)
     lend(memory, setup, store, echoes)
-    lend_parts_of_batch(memory, setup.par, count)
+    lend_parts_of_batch(memory, setup.params, count)
     first, count = memory.copy(), counts_in(memory)
-    last_row, last_theta = split_time(case.duration, case.problem.round_trip_time)
+    last_trip, last_phase = split_time(case.duration, case.problem.round_trip_time)
 
     lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner
 
     def run() -> None:
         assert lent
         memory[:] = first
-        code = kernel(memory, last_row, last_theta, BUDGET)
+        code = kernel(memory, last_trip, last_phase, BUDGET)
         assert STATUSES[code].ok, STATUSES[code]
 
     def solution() -> Solution:
@@ -46,7 +46,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
             at.trimmed(store, int(count.length)),
             case.problem,
             case.problem.round_trip_time,
-            float(setup.par.ramp),
+            float(setup.params.ramp),
             case.duration,
         )
         return Solution(case.problem, case.duration, tolerance, STATUSES[Stop.FINISHED], history)

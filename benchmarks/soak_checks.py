@@ -202,7 +202,7 @@ def _energy(run: ss.Solution, parts: dict[str, NDArray[np.float64]], loads: NDAr
     size = max(float(np.abs(values).max()) for name, values in parts.items() if name != "balance")
     load = max(problem.normal, float(np.abs(loads).max()))
     size = max(size, float(np.ptp(loads)) * load / body.stiffness, _exchanged(run))
-    rows = run.history.duration / run.history.row_time
+    rows = run.history.duration / run.history.round_trip_time
     rounding = (1e-14 + 1e-16 * rows) * (load**2 / (2.0 * body.stiffness) + _in_the_driver(problem))
     off = float(np.abs(parts["balance"]).max())
     wrong = []

@@ -93,14 +93,14 @@ def in_c(task: Task, members: int) -> Run:
     work = new_workspace().ready_for(setups.constants.shape[2])
     base, stride = table_of(setups, work)
     kept = (setups, work)
-    lent = (base, stride, work.table, setups.par)
-    given = (setups.branches, setups.state, setups.counts, setups.last_row, setups.last_theta)
+    lent = (base, stride, work.table, setups.params)
+    given = (setups.branches, setups.state, setups.counts, setups.last_trip, setups.last_phase)
 
     def run(threads: int) -> Floats:
         slip = np.empty(members)
         assert kept
         pointers = [array.ctypes.data for array in (*lent, *given)]
-        failed = kernel(*pointers[:4], int(len(setups.par) > 1), *pointers[4:], members, threads, slip.ctypes.data)
+        failed = kernel(*pointers[:4], int(len(setups.params) > 1), *pointers[4:], members, threads, slip.ctypes.data)
         assert failed == 0, f"{failed} members in C did not finish"
         return slip
 

@@ -69,7 +69,7 @@ COUNTS = {
     "branch": -3,
     "mode": 2,
     "echo_of": 10**9,
-    "row_from": -1,
+    "trip_from": -1,
     "segment": 99,
     "sparse": 1,
 }
@@ -123,7 +123,7 @@ def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path
     refused(lambda: ss.open_solution(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
 
 
-@pytest.mark.parametrize("name", ["history_rate", "engine_count", "row_time"])
+@pytest.mark.parametrize("name", ["history_rate", "engine_count", "round_trip_time"])
 def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
     path = run.to_netcdf(tmp_path / "run.nc")
     resealed(path, lambda file: file.__delitem__(name))

@@ -16,7 +16,7 @@
 #define LOW 9
 
 typedef struct {
-    const Params *par;
+    const Params *params;
     const double *c;
     const LawPiece *law;
     const Branch *branch;
@@ -25,7 +25,7 @@ typedef struct {
     Counts *count;
     HistoryPiece *history;
     int64_t branches, loads, capacity;
-    double load[TERMS], local[TERMS], seen[TERMS], jet[2 * TERMS], powers[TERMS];
+    double load[TERMS], local[TERMS], load_along_slip[TERMS], jet[2 * TERMS], powers[TERMS];
     LawValue value;
     Friction friction;
     Series k;
@@ -167,27 +167,27 @@ static double first_descent(const double *c) {
 static void friction_at(Run *r, double slip, double rate) {
     value(r->c, slip + r->law->slip_shift, rate, (double *)&r->value);
     r->friction.coefficient = r->value.mu + r->law->offset;
-    r->friction.stress = r->par->normal * r->friction.coefficient;
-    r->friction.by_rate = r->value.by_rate * r->par->normal;
+    r->friction.stress = r->params->normal * r->friction.coefficient;
+    r->friction.by_rate = r->value.by_rate * r->params->normal;
 }
 
 static double rest_limit(Run *r) {
     friction_at(r, r->state->law_slip, 0.0);
-    return r->par->normal * (r->friction.coefficient + r->par->static_excess) + r->par->stick_to;
+    return r->params->normal * (r->friction.coefficient + r->params->static_excess) + r->params->stick_to;
 }
 
-static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->par->reference; }
+static double towards(Run *r, double load, int64_t direction) { return direction > 0 ? load : -load - 2.0 * r->params->reference; }
 
 static double rate_on_branch(Run *r, double load, double guess) {
     int64_t branch = r->count->branch;
     double low = r->branch[branch].rate_from, high = r->branch[branch].rate_to;
     if (load <= r->branch[branch].excess_from) return low;
     if (load >= r->branch[branch].excess_to) return high;
-    high = fmin(high, (load + r->par->largest_drop) / r->par->impedance * (1.0 + 1e-12));
+    high = fmin(high, (load + r->params->largest_drop) / r->params->impedance * (1.0 + 1e-12));
     double s = low < guess && guess < high ? guess : 0.5 * (low + high);
     for (int i = 0; i < 200; i++) {
         friction_at(r, r->state->law_slip, s);
-        double error = r->par->impedance * s + r->friction.stress - load, slope = r->par->impedance + r->friction.by_rate;
+        double error = r->params->impedance * s + r->friction.stress - load, slope = r->params->impedance + r->friction.by_rate;
         if (error > 0.0) high = s;
         else if (error < 0.0) low = s;
         else return s;
@@ -218,7 +218,7 @@ static void leave_branch(Run *r, double load) {
 
 static void note_jump(Run *r, double rate, int64_t cause) {
     double before = r->state->rate_now, size = fabs(rate - before);
-    if (size > r->par->smallest_jump && size > r->par->relative_jump * fmax(fabs(rate), fabs(before)))
+    if (size > r->params->smallest_jump && size > r->params->relative_jump * fmax(fabs(rate), fabs(before)))
         r->count->cause = cause, r->count->jump = 1;
 }
 
@@ -231,7 +231,7 @@ static double branch_exit(Run *r) {
         restrict_to(r->load, xi, 1.0 - xi, part);
         double start = sign * (towards(r, part[0], mode) - bound);
         for (int k = 0; k < TERMS; k++) part[k] *= sign * mode;
-        part[0] = r->count->edge != 0 && start < 0.0 ? 0.0 : start;
+        part[0] = r->count->leaving_rest != 0 && start < 0.0 ? 0.0 : start;
         first = fmin(first, first_descent(part));
     }
     return first < 1.0 - TIE ? xi + first * (1.0 - xi) : NONE;
@@ -243,21 +243,21 @@ static void end_branch(Run *r) {
     int upper = fabs(seen - r->branch[branch].keep_to) < fabs(seen - r->branch[branch].keep_from);
     leave_branch(r, upper ? r->branch[branch].keep_to : r->branch[branch].keep_from);
     if (r->count->mode == 0) note_jump(r, 0.0, FOLD), r->state->rate_now = 0.0;
-    else r->count->edge = direction;
+    else r->count->leaving_rest = direction;
 }
 
-static double theta_at(Run *r, double xi) {
-    return xi >= 1.0 ? r->state->theta_to : r->state->theta_from + xi * (r->state->speed + xi * r->state->bend);
+static double phase_at(Run *r, double xi) {
+    return xi >= 1.0 ? r->state->phase_to : r->state->phase_from + xi * (r->state->speed + xi * r->state->bend);
 }
 
 static void record(Run *r, double xi_to) {
-    double xi = r->state->xi, width = xi_to - xi, theta_from = theta_at(r, xi), theta_to = theta_at(r, xi_to);
-    if (theta_to > theta_from) {
+    double xi = r->state->xi, width = xi_to - xi, phase_from = phase_at(r, xi), phase_to = phase_at(r, xi_to);
+    if (phase_to > phase_from) {
         HistoryPiece *kept = r->history + r->count->length;
-        kept->row = r->count->row, kept->mode = r->count->mode, kept->law_piece = r->count->piece;
+        kept->trip = r->count->trip, kept->mode = r->count->mode, kept->law_piece = r->count->piece;
         kept->jump = r->count->jump, kept->cause = r->count->cause, kept->echo_of = r->count->echo_of;
         kept->amplified = kept->gain = NAN;
-        kept->theta_from = theta_from, kept->theta_to = theta_to;
+        kept->phase_from = phase_from, kept->phase_to = phase_to;
         kept->speed = (r->state->speed + 2.0 * r->state->bend * xi) * width, kept->bend = r->state->bend * width * width;
         kept->slip = r->state->slip_now, kept->law_slip = r->state->law_slip;
         r->count->length++;
@@ -277,7 +277,7 @@ static void arrive(Run *r) {
         friction_at(r, r->state->law_slip, 0.0);
         if (towards(r, load, mode) < r->friction.stress) r->count->mode = 0;
     }
-    if (r->count->mode == 0 && r->count->edge == 0)
+    if (r->count->mode == 0 && r->count->leaving_rest == 0)
         for (int direction = 1; direction >= -1; direction -= 2)
             if (towards(r, load, direction) > limit) r->count->mode = direction, choose_branch(r, towards(r, load, direction));
     if (r->count->mode == 0) note_jump(r, 0.0, r->count->arriving), r->state->rate_now = 0.0;
@@ -290,7 +290,7 @@ static void stick(Run *r, double xi_to) {
     restrict_to(r->load, r->state->xi, width, load);
     for (int way = 1; way >= -1; way -= 2) {
         for (int k = 0; k < TERMS; k++) part[k] = -way * load[k];
-        part[0] = r->count->edge == way ? 0.0 : limit - towards(r, load[0], way);
+        part[0] = r->count->leaving_rest == way ? 0.0 : limit - towards(r, load[0], way);
         double first = first_descent(part);
         if (first < onset) onset = first, direction = way;
     }
@@ -301,14 +301,14 @@ static void stick(Run *r, double xi_to) {
     }
     memset(rate, 0, TERMS * sizeof(double));
     record(r, slips ? r->state->xi + onset * width : xi_to);
-    r->count->edge = 0;
-    if (slips) r->count->mode = r->count->edge = direction, choose_branch(r, limit);
+    r->count->leaving_rest = 0;
+    if (slips) r->count->mode = r->count->leaving_rest = direction, choose_branch(r, limit);
 }
 
 static void come_to_rest(Run *r) {
     int64_t before = r->count->mode;
     r->state->rate_now = 0.0, r->count->mode = 0;
-    if (!r->count->has_inertia) { r->count->edge = before; return; }
+    if (!r->count->has_inertia) { r->count->leaving_rest = before; return; }
     double load = evaluate(r->load, r->state->xi), limit = rest_limit(r);
     for (int direction = 1; direction >= -1; direction -= 2)
         if (towards(r, load, direction) > limit) r->count->mode = direction;
@@ -354,19 +354,19 @@ static void series(Run *r, double guess) {
     double xi = r->state->xi;
     if (n <= 1) r->local[0] = r->load[0] + xi * r->load[1], r->local[1] = guess * r->load[1], n = 1;
     else restrict_low(r->load, n, xi, guess, r->local);
-    for (int i = 1; i <= n; i++) r->seen[i] = direction * r->local[i];
-    r->seen[0] = towards(r, r->local[0], direction);
-    int edge = r->count->edge != 0;
-    k->impedance = r->par->impedance, k->normal = r->par->normal, k->inertia = r->par->inertia;
-    k->stiffness = r->par->stiffness;
-    k->chi = r->par->counts_net == 1.0 ? direction : 1.0;
+    for (int i = 1; i <= n; i++) r->load_along_slip[i] = direction * r->local[i];
+    r->load_along_slip[0] = towards(r, r->local[0], direction);
+    int edge = r->count->leaving_rest != 0;
+    k->impedance = r->params->impedance, k->normal = r->params->normal, k->inertia = r->params->inertia;
+    k->stiffness = r->params->stiffness;
+    k->chi = r->params->counts_net == 1.0 ? direction : 1.0;
     k->speed = (r->state->speed + 2.0 * r->state->bend * xi) * guess, k->bend = 2.0 * r->state->bend * guess * guess;
     k->slip = r->state->law_slip + r->law->slip_shift, k->offset = r->law->offset;
     k->rate = fabs(r->state->rate_now), k->free = edge ? 0.0 : 1.0;
-    k->force = edge ? r->par->normal * r->par->static_excess : 0.0;
-    if (r->count->is_algebraic) k->rate = rate_on_branch(r, r->seen[0], fabs(r->state->rate_now));
-    if (r->count->has_inertia) motion_jet(r->c, (double *)k, r->seen, r->jet);
-    else rate_jet(r->c, (double *)k, r->seen, r->jet);
+    k->force = edge ? r->params->normal * r->params->static_excess : 0.0;
+    if (r->count->is_algebraic) k->rate = rate_on_branch(r, r->load_along_slip[0], fabs(r->state->rate_now));
+    if (r->count->has_inertia) motion_jet(r->c, (double *)k, r->load_along_slip, r->jet);
+    else rate_jet(r->c, (double *)k, r->load_along_slip, r->jet);
 }
 
 static void stretch(Run *r, double length, double *restrict rate) {
@@ -384,25 +384,25 @@ static int within_guards(const Run *r, double length) {
 
 /* Whether the contact equation holds at the end of a step, to the tolerance or to rounding. */
 static int obeys_contact(Run *r, const double *rate, double length, double grown, double rate_end) {
-    double dx = r->k.slip + r->k.chi * grown, load = r->seen[0], now[4], unbalanced = 0.0, slope = 0.0;
-    for (int k = 1; k <= r->count->degree; k++) load += r->powers[k] * r->seen[k];
+    double dx = r->k.slip + r->k.chi * grown, load = r->load_along_slip[0], now[4], unbalanced = 0.0, slope = 0.0;
+    for (int k = 1; k <= r->count->degree; k++) load += r->powers[k] * r->load_along_slip[k];
     if (r->k.free == 0.0) {
         value(r->c, r->k.slip, 0.0, now);
-        unbalanced = r->seen[0] - r->par->normal * (now[0] + r->law->offset) - r->k.force;
+        unbalanced = r->load_along_slip[0] - r->params->normal * (now[0] + r->law->offset) - r->k.force;
     }
     value(r->c, dx, rate_end, now);
-    double friction = now[0] + r->law->offset, normal = r->par->normal, impedance = r->par->impedance;
+    double friction = now[0] + r->law->offset, normal = r->params->normal, impedance = r->params->impedance;
     double missing = load - impedance * rate_end - normal * friction - unbalanced;
-    double terms = r->par->reference + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
+    double terms = r->params->reference + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
     double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
-    double size = (r->count->has_inertia ? 300.0 : 10.0) * r->par->tolerance * largest;
+    double size = (r->count->has_inertia ? 300.0 : 10.0) * r->params->tolerance * largest;
     if (!r->count->has_inertia) {
         double resistance = impedance + normal * fmax(now[1], 0.0);
         return fabs(missing) / resistance <= size + 1e-14 * terms / resistance;
     }
     for (int k = 1; k < TERMS; k++) slope += k * rate[k];
-    double pace = (r->k.speed + r->k.bend * length) * length / r->par->inertia;
-    return fabs((missing - r->par->stiffness * grown) * pace - slope) <= size + 1e-14 * terms * pace;
+    double pace = (r->k.speed + r->k.bend * length) * length / r->params->inertia;
+    return fabs((missing - r->params->stiffness * grown) * pace - slope) <= size + 1e-14 * terms * pace;
 }
 
 static void keep_step(Run *r, double *restrict rate, double length, double to) {
@@ -412,14 +412,14 @@ static void keep_step(Run *r, double *restrict rate, double length, double to) {
     if (!within_guards(r, length) || !obeys_contact(r, rate, length, grown, rate_end)) abort();
     for (int k = 0; k < TERMS; k++) load[k] = r->local[k] * r->powers[k];
     if (r->count->is_block) {
-        double straight = direction * r->par->stiffness * speed;
+        double straight = direction * r->params->stiffness * speed;
         for (int k = 1; k < TERMS; k++) load[k] -= straight * reciprocal[k] * rate[k - 1];
-        r->load[0] -= r->par->stiffness * direction * grown;
+        r->load[0] -= r->params->stiffness * direction * grown;
     }
     if (direction < 0)
         for (int k = 0; k < TERMS; k++) rate[k] = -rate[k];
     record(r, to);
-    r->count->moved = 1, r->count->edge = 0;
+    r->count->moved = 1, r->count->leaving_rest = 0;
     r->state->slip_now += direction * grown, r->state->law_slip += r->k.chi * grown;
     r->state->rate_now = direction * fmax(rate_end, 0.0);
 }
@@ -439,9 +439,9 @@ static void slip(Run *r, double xi_to) {
     series(r, guess);
     while (!isfinite(r->jet[TERMS - 1]) && guess > 1e-300) guess *= 1e-3, series(r, guess);
     if (r->state->xi == 0.0 && r->count->arriving != NO_CAUSE) note_jump(r, r->count->mode * r->jet[0], r->count->arriving);
-    else if (r->count->edge != 0 && !r->count->has_inertia) note_jump(r, r->count->mode * r->jet[0], FOLD);
+    else if (r->count->leaving_rest != 0 && !r->count->has_inertia) note_jump(r, r->count->mode * r->jet[0], FOLD);
 
-    double limit = left / guess, length = usable_length(r->jet, r->par->tolerance), end = NONE;
+    double limit = left / guess, length = usable_length(r->jet, r->params->tolerance), end = NONE;
     r->state->last_step = length * fabs(r->k.speed + 0.5 * r->k.bend * fmin(length, 1.0));
     int reached = length >= limit;
     if (reached) length = limit;
@@ -463,31 +463,31 @@ static void slip(Run *r, double xi_to) {
 static int next_piece(Run *r) {
     State *state = r->state;
     memset(r->load, 0, sizeof r->load);
-    if (r->count->is_block || r->count->row == 0) {
+    if (r->count->is_block || r->count->trip == 0) {
         int64_t source = r->count->source;
         if (source >= r->loads - 1) return 0;
         const FirstLoad *first = r->first_load + source;
-        state->theta_from = first->theta, state->theta_to = first[1].theta;
-        state->speed = state->theta_to - state->theta_from, state->bend = 0.0, r->count->echo_of = -1;
-        r->load[0] = r->count->is_block && r->count->row > 0 ? state->load_now : first->load;
+        state->phase_from = first->phase, state->phase_to = first[1].phase;
+        state->speed = state->phase_to - state->phase_from, state->bend = 0.0, r->count->echo_of = -1;
+        r->load[0] = r->count->is_block && r->count->trip > 0 ? state->load_now : first->load;
         r->load[1] = first->slope * state->speed;
-        r->count->arriving = r->count->row == 0 && source == 0 ? START : NO_CAUSE;
+        r->count->arriving = r->count->trip == 0 && source == 0 ? START : NO_CAUSE;
     } else {
         int64_t source = r->count->previous_from + r->count->source;
         if (source >= r->count->previous_to) return 0;
         r->count->echo_of = source;
         const HistoryPiece *left = r->history + source;
         const double *rate = left->rate, *load = left->load;
-        state->theta_from = left->theta_from, state->theta_to = left->theta_to;
+        state->phase_from = left->phase_from, state->phase_to = left->phase_to;
         state->speed = left->speed, state->bend = left->bend;
-        for (int k = 0; k < TERMS; k++) r->load[k] = r->par->reflection * (2.0 * r->par->impedance * rate[k] - load[k]);
-        r->load[0] += r->par->inflow;
-        r->count->arriving = left->jump && r->par->reflection != 0.0 ? ECHO : NO_CAUSE;
+        for (int k = 0; k < TERMS; k++) r->load[k] = r->params->reflection * (2.0 * r->params->impedance * rate[k] - load[k]);
+        r->load[0] += r->params->inflow;
+        r->count->arriving = left->jump && r->params->reflection != 0.0 ? ECHO : NO_CAUSE;
     }
     r->count->source++;
     state->xi = 0.0, state->exit = NAN;
     r->count->degree = degree(r->load);
-    memset(r->local, 0, sizeof r->local), memset(r->seen, 0, sizeof r->seen);
+    memset(r->local, 0, sizeof r->local), memset(r->load_along_slip, 0, sizeof r->load_along_slip);
     if (r->count->arriving != NO_CAUSE) r->count->jump = 1;
     r->count->ready = 1;
     arrive(r);
@@ -496,14 +496,14 @@ static int next_piece(Run *r) {
 
 static void end_row(Run *r) {
     if (r->count->is_block) r->state->load_now = total(r->history[r->count->length - 1].load);
-    r->count->row++;
-    r->count->previous_from = r->count->row_from, r->count->previous_to = r->count->row_from = r->count->length;
+    r->count->trip++;
+    r->count->previous_from = r->count->trip_from, r->count->previous_to = r->count->trip_from = r->count->length;
     r->count->source = r->count->moved = 0;
 }
 
-int64_t advance(Memory *m, int64_t last_row, double last_theta, int64_t budget) {
+int64_t advance(Memory *m, int64_t last_trip, double last_phase, int64_t budget) {
     Run run, *r = &run;
-    run.par = &m->par, run.state = &m->state, run.count = &m->counts, run.c = m->constants;
+    run.params = &m->params, run.state = &m->state, run.count = &m->counts, run.c = m->constants;
     run.law = m->law, run.branch = m->branch_table, run.first_load = m->first_load, run.history = m->history;
     run.branches = m->branches, run.loads = m->loads, run.capacity = m->capacity;
     while (1) {
@@ -511,14 +511,14 @@ int64_t advance(Memory *m, int64_t last_row, double last_theta, int64_t budget) 
         if (run.count->stalled > 200) return STORM;
         if (--budget < 0) return -1;
         if (!run.count->ready) {
-            if (run.count->row > last_row) return FINISHED;
+            if (run.count->trip > last_trip) return FINISHED;
             if (!next_piece(r)) { end_row(r); continue; }
         }
         State *state = run.state;
         double xi_to = 1.0;
-        int is_last = run.count->row == last_row && state->theta_to >= last_theta;
-        if (is_last && state->theta_to > last_theta) {
-            double rest = last_theta - state->theta_from;
+        int is_last = run.count->trip == last_trip && state->phase_to >= last_phase;
+        if (is_last && state->phase_to > last_phase) {
+            double rest = last_phase - state->phase_from;
             double root = sqrt(fmax(state->speed * state->speed + 4.0 * state->bend * rest, 0.0));
             xi_to = fmin(2.0 * rest / (state->speed + root), 1.0);
         }
@@ -534,11 +534,11 @@ int64_t advance(Memory *m, int64_t last_row, double last_theta, int64_t budget) 
 /* ---- many runs ------------------------------------------------------------------------------------------------------------ */
 
 /* Members one after the other, as `stickslip.batch` does: the addresses of member n are base[k] + n stride[k], a state and a history
-   per thread. par: the problem's numbers, par_stride apart. slip: of each member, from its start to its end. Returns how many did
+   per thread. params: the problem's numbers, par_stride apart. slip: of each member, from its start to its end. Returns how many did
    not finish. */
-int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *lent, const Params *par, int64_t par_stride,
-                    const int64_t *branches, const State *state, const Counts *count, const int64_t *last_row,
-                    const double *last_theta, int64_t members, int threads, double *slip) {
+int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *lent, const Params *params, int64_t par_stride,
+                    const int64_t *branches, const State *state, const Counts *count, const int64_t *last_trip,
+                    const double *last_phase, int64_t members, int threads, double *slip) {
     int64_t failed = 0;
 #pragma omp parallel num_threads(threads) reduction(+ : failed)
     {
@@ -548,9 +548,9 @@ int64_t run_members(const int64_t *base, const int64_t *stride, const Memory *le
 #pragma omp for schedule(dynamic, 256)
         for (int64_t n = 0; n < members; n++) {
             for (int64_t k = 0; k < ADDRESSES; k++) addresses[k] = base[k] + n * stride[k];
-            own.par = par[n * par_stride], own.state = *state, own.counts = *count, own.counts.to_the_end = 1;
+            own.params = params[n * par_stride], own.state = *state, own.counts = *count, own.counts.to_the_end = 1;
             own.history = history, own.branches = branches[n];
-            failed += advance(&own, last_row[n], last_theta[n], INT64_MAX) != FINISHED;
+            failed += advance(&own, last_trip[n], last_phase[n], INT64_MAX) != FINISHED;
             slip[n] = own.state.slip_now;
         }
         free(history);

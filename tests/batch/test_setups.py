@@ -49,9 +49,11 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
             problem = alone.problem
             setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
             wait_for_creep(count, problem, alone.creep_rtol)
-            assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
+            assert Params(row_of(setups.params, n)).stick_to == pytest.approx(
+                setup.params.stick_to, rel=0, abs=LEVEL * problem.strength
+            )
             others = [place for place in range(Params.total) if place != Params.places["stick_to"].first]
-            assert np.array_equal(row_of(setups.par, n)[others], setup.par.numbers[others])
+            assert np.array_equal(row_of(setups.params, n)[others], setup.params.numbers[others])
             assert np.array_equal(row_of(setups.constants, n), setup.constants)
             assert np.array_equal(row_of(setups.law, n), setup.law)
             assert np.array_equal(row_of(setups.first_load, n), setup.first_load)
@@ -59,7 +61,7 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
             assert np.array_equal(setups.counts, count.numbers)
             assert setups.threshold[n] == default_event_rate(problem)
             assert setups.excess[n] == problem.excess
-            assert (setups.last_row[n], setups.last_theta[n]) == split_time(alone.duration, problem.round_trip_time)
+            assert (setups.last_trip[n], setups.last_phase[n]) == split_time(alone.duration, problem.round_trip_time)
             found = branch_of(setups, n)
             assert found[:2] == pytest.approx(setup.branches.T[:2], rel=1e-14, abs=0)
             assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
@@ -85,7 +87,9 @@ def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule
         assert setups.irregular[n] == (contact.regime == "irregular")
         assert branch_of(setups, n)[:2] == pytest.approx(setup.branches.T[:2], rel=1e-9, abs=0)
         assert branch_of(setups, n)[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
-        assert Params(row_of(setups.par, n)).stick_to == pytest.approx(setup.par.stick_to, rel=0, abs=LEVEL * problem.strength)
+        assert Params(row_of(setups.params, n)).stick_to == pytest.approx(
+            setup.params.stick_to, rel=0, abs=LEVEL * problem.strength
+        )
 
 
 @pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])

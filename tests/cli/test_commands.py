@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pandas
@@ -21,7 +22,6 @@ from stickslip.cli.names import (
 )
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
-from stickslip.studies import ensemble as ensembles
 from tests.limits import limit_of_process
 
 COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
@@ -210,7 +210,7 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = ensembles.simulate
+    original = import_module("stickslip.studies.ensemble").simulate
     done = []
 
     def stops(*arguments, **options):
@@ -219,7 +219,7 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
         done.append(original(*arguments, **options))
         return done[-1]
 
-    monkeypatch.setattr(ensembles, "simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.nc")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out

@@ -39,7 +39,7 @@ def by_engine(problem: ss.Problem) -> float:
     """Time (s) at which slip has grown by GROWN, by the exact engine, one round trip at a time."""
     setup, state, count = prepare(problem, 1e-10)
     store, trees = at.new_store(4096), at.EchoNode.table(4096)
-    memory = memory_of(setup.par, state, count)
+    memory = memory_of(setup.params, state, count)
     state, count = state_in(memory), counts_in(memory)
     lend(memory, setup, store, trees)
     count.pause_at = 1
@@ -54,11 +54,11 @@ def by_engine(problem: ss.Problem) -> float:
         row = slice(int(count.previous_from), int(count.previous_to))
         pieces = row.stop - row.start
         if state.slip_now > GROWN:
-            return _crossing(at.Store(*(part[row].copy() for part in store)), problem, int(count.row) - 1)
+            return _crossing(at.Store(*(part[row].copy() for part in store)), problem, int(count.trip) - 1)
         for part in store:
             part[:pieces] = part[row]
         count.previous_from, count.previous_to = 0, pieces
-        count.row_from, count.length, count.pause_at = pieces, pieces, count.row + 1
+        count.trip_from, count.length, count.pause_at = pieces, pieces, count.trip + 1
 
 
 def _crossing(store: at.Store, problem: ss.Problem, row: int) -> float:

@@ -106,7 +106,7 @@ def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
 def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
     """Bit for bit the run that resolves every event, up to the round trip after the one with too many pieces."""
     exact, lumping = ss.simulate(weakening(0.15), 17 * ROUND, shortest_event=0.0), ss.simulate(weakening(0.15), 17 * ROUND)
-    rows = np.bincount(lumping.history.store.row)
+    rows = np.bincount(lumping.history.store.trip)
     first = int(np.argmax(rows > MOST_PIECES)) + 1
     assert 10 < first < 17
     assert same_pieces(exact, lumping, rows[:first].sum())
@@ -132,7 +132,7 @@ def test_runs_below_the_critical_value_finish(alpha: float) -> None:
     run = ss.simulate(weakening(alpha, thickness=1e3), 60.0)
     assert run.status.name == "finished"
     assert f"shorter than {AUTOMATIC_SHARE * 0.1 * ROUND:.3g} s" in run.lumping_note
-    assert np.bincount(run.history.store.row).max() < 3 * MOST_PIECES
+    assert np.bincount(run.history.store.trip).max() < 3 * MOST_PIECES
 
 
 def test_lumped_runs_can_be_resumed_streamed_and_batched(tmp_path: Path) -> None:

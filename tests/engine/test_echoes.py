@@ -27,7 +27,7 @@ def intervals(count: int, seed: int) -> at.Store:
     ends[ends[:, 0] == ends[:, 1], 1] += 1.0 / 40.0
     ends[0] = 0.0, 1.0
     store = at.new_store(count)
-    store.theta_from[:], store.theta_to[:] = ends.T
+    store.phase_from[:], store.phase_to[:] = ends.T
     return store
 
 
@@ -36,7 +36,7 @@ def test_the_phase_index_finds_the_latest_piece_at_every_phase(seed: int) -> Non
     store = intervals(60, seed)
     phases, phase = Phases.of(store, 1.0), (np.arange(40) + 0.5) / 40.0
     for upto in (0, 7, 59):
-        covers = (store.theta_from[: upto + 1] < phase[:, None]) & (phase[:, None] < store.theta_to[: upto + 1])
+        covers = (store.phase_from[: upto + 1] < phase[:, None]) & (phase[:, None] < store.phase_to[: upto + 1])
         last = np.where(covers.any(axis=1), upto - np.argmax(covers[:, ::-1], axis=1), -1)
         assert phases.latest(phase, np.full(40, upto)).tolist() == last.tolist()
         stands = np.full(40, -1)
@@ -47,7 +47,7 @@ def test_the_phase_index_finds_the_latest_piece_at_every_phase(seed: int) -> Non
 
 def test_the_side_decides_which_piece_is_read_at_a_border() -> None:
     store = at.new_store(2)
-    store.theta_from[:], store.theta_to[:] = [0.0, 0.5], [0.5, 1.0]
+    store.phase_from[:], store.phase_to[:] = [0.0, 0.5], [0.5, 1.0]
     edge, upto = np.array([0.5]), np.array([1])
     assert Phases.of(store, 1.0).latest(edge, upto, "left").tolist() == [0]
     assert Phases.of(store, 1.0).latest(edge, upto, "right").tolist() == [1]
@@ -57,7 +57,7 @@ def test_the_side_decides_which_piece_is_read_at_a_border() -> None:
 def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
     run, last, met = Session.begin(problem, RunOptions(2000.0)), split_time(2000.0, problem.round_trip_time), 0
-    impedance, ramp = SLAB.impedance, float(run.setup.par.ramp)
+    impedance, ramp = SLAB.impedance, float(run.setup.params.ramp)
     while run.advance(last, 1) == -1 and met < 150:
         between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING
         if not between_trips or run.count.new_from != run.length or run.count.mode != 0:
@@ -67,7 +67,7 @@ def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
         assert low[0] == 0.0
         assert (low[1:] == high[:-1]).all()
         leaves = np.polynomial.polynomial.polyval(PLACES, (store.load[piece] - 2.0 * impedance * store.rate[piece]).T)
-        ahead = run.count.row - store.row[piece]
+        ahead = run.count.trip - store.trip[piece]
         highest = float((leaves.max(axis=1) + (ahead - 1) * ramp)[ahead > 1].max(initial=-np.inf))
         assert highest < 1e-6
         assert float((leaves.max(axis=1) + ahead * ramp).max()) > -1e-6  # and there it breaks

@@ -205,7 +205,7 @@ def test_energy_balances_across_leaped_rest() -> None:
         run = ss.simulate(ss.Problem(SLAB, COULOMB, pull_rate=history, initial_excess=0.0), 60_000.0, max_events=40)
         energy = run.energy(np.linspace(0.0, run.history.duration, 50))
         assert len(run.events) >= 4
-        assert np.diff(run.history.store.row).max() > 20
+        assert np.diff(run.history.store.trip).max() > 20
         assert np.abs(energy.balance).max() < 1e-11 * energy.heat.max()
         assert (energy.radiated == 0.0).all()
 
@@ -218,7 +218,7 @@ def test_a_lossy_slab_rests_until_the_loading_changes(impedance: float) -> None:
     run = ss.simulate(ss.Problem(slab, COULOMB, far_stress=far, initial_load=5e7), 1e6 + 30.0)
     assert run.status.ok
     assert run.events.start.to_numpy() == pytest.approx([1e6 + 0.5 * ROUND], rel=1e-12)
-    assert np.diff(run.history.store.row).max() > 100_000 or impedance == 0.0
+    assert np.diff(run.history.store.trip).max() > 100_000 or impedance == 0.0
     energy = run.energy(np.linspace(0.0, run.history.duration, 20))
     assert np.abs(energy.balance).max() < 1e-11 * energy.heat.max()
     assert (np.diff(energy.radiated) >= 0.0).all()

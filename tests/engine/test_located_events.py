@@ -82,8 +82,8 @@ def test_echoes_come_back_at_the_same_phase() -> None:
     law = F.LinearSlipWeakening(0.8, 0.6, 1.0)
     run = ss.simulate(ss.Problem(SLAB, law, pull_rate=0.5, initial_excess=1e6), 8 * ROUND)
     store = run.history.store
-    for row in range(1, int(store.row[-1])):
-        here, before = (set(store.theta_from[store.row == n]) for n in (row, row - 1))
+    for row in range(1, int(store.trip[-1])):
+        here, before = (set(store.phase_from[store.trip == n]) for n in (row, row - 1))
         assert before <= here
 
 

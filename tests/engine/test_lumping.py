@@ -58,7 +58,7 @@ def test_a_long_lumped_catalogue_fits_in_bounded_memory() -> None:
 def test_pieces_in_a_round_trip_are_bounded() -> None:
     """At most a few for each shortest event that fits into it."""
     run = ss.simulate(SLOW, 25_000 * ss.YEAR, shortest_event=2e-2)
-    standing, _, _ = run.history.standing(int(run.history.store.row[-1]))
+    standing, _, _ = run.history.standing(int(run.history.store.trip[-1]))
     assert run.status.ok
     assert len(standing) < 4 * TRIP / 2e-2
 

@@ -110,8 +110,8 @@ def plain_pulses(event: PlainEvent) -> int:
 
 def place(history: History, n: int, xi: float) -> Epoch:
     store = history.store
-    offset = store.theta_to[n] if xi == 1.0 else store.theta_from[n] + xi * (store.speed[n] + xi * store.bend[n])
-    return Epoch(int(store.row[n]), float(offset))
+    offset = store.phase_to[n] if xi == 1.0 else store.phase_from[n] + xi * (store.speed[n] + xi * store.bend[n])
+    return Epoch(int(store.trip[n]), float(offset))
 
 
 def traction(history: History, when: Epoch, side: str) -> float:
@@ -138,23 +138,23 @@ def plain_row(history: History, event: PlainEvent) -> dict[str, float]:
     top, peak_piece, peak_xi = max(event.points, key=lambda point: point[0])
     start, end, peak = place(history, first, low), place(history, last, high), place(history, peak_piece, peak_xi)
     before, after = traction(history, start, "left"), traction_after(history, last, high)
-    row, slip = history.row_time, slip_of(history, event)
-    lasts = (end.row - start.row) * row + (end.offset - start.offset)
+    row, slip = history.round_trip_time, slip_of(history, event)
+    lasts = (end.trip - start.trip) * row + (end.offset - start.offset)
     return {
-        "start": start.row * row + start.offset,
-        "end": end.row * row + end.offset if event.is_over else np.nan,
+        "start": start.trip * row + start.offset,
+        "end": end.trip * row + end.offset if event.is_over else np.nan,
         "duration": lasts if event.is_over else np.nan,
         "slip": slip,
         "peak_rate": top,
-        "peak_time": peak.row * row + peak.offset,
-        "peak_after": (peak.row - start.row) * row + (peak.offset - start.offset),
+        "peak_time": peak.trip * row + peak.offset,
+        "peak_after": (peak.trip - start.trip) * row + (peak.offset - start.offset),
         "traction_before": before,
         "traction_after": after,
         "traction_drop": before - after,
         "static_drop": history.problem.body.stiffness * slip,
         "pulses": plain_pulses(event),
         "phase": start.offset / row,
-        "start_row": start.row,
+        "start_row": start.trip,
         "start_offset": start.offset,
     }
 
@@ -173,7 +173,7 @@ def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, 
     width = history.store.speed.max() + history.store.bend.max()
     strength = abs(run.problem.strength)
     slack = {"start": 1e-9 * width, "peak_time": 1e-7 * width, "peak_after": 1e-7 * width}
-    slack |= dict.fromkeys(("end", "duration", "start_offset"), 1e-9 * width) | {"phase": 1e-9 * width / history.row_time}
+    slack |= dict.fromkeys(("end", "duration", "start_offset"), 1e-9 * width) | {"phase": 1e-9 * width / history.round_trip_time}
     slack |= dict.fromkeys(("traction_before", "traction_after", "traction_drop"), 1e-11 * strength)
     for name in rows[0]:
         wanted = np.array([row[name] for row in rows], float)
@@ -181,7 +181,8 @@ def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, 
         tolerance = slack.get(name, 1e-12 * largest) + 1e-15 * largest
         assert table[name].to_numpy() == pytest.approx(wanted, rel=0.0, abs=tolerance, nan_ok=True), name
     since = [
-        (b["start_row"] - a["start_row"]) * history.row_time + (b["start_offset"] - a["start_offset"]) for a, b in pairwise(rows)
+        (b["start_row"] - a["start_row"]) * history.round_trip_time + (b["start_offset"] - a["start_offset"])
+        for a, b in pairwise(rows)
     ]
     assert table.recurrence.to_numpy() == pytest.approx([np.nan, *since], rel=1e-15, abs=2e-9 * width, nan_ok=True)
 
@@ -231,8 +232,8 @@ def test_a_search_from_the_end_finds_the_waves_in_the_body(name: str, monkeypatc
     monkeypatch.setattr("stickslip.trajectory.phase_index.FEW", 4)
     history = ss.simulate(*RUNS[name]).history
     for one, other in zip(
-        standing_behind(history.store, history.row_time),
-        Phases.of(history.store, history.row_time).standing(len(history) - 1),
+        standing_behind(history.store, history.round_trip_time),
+        Phases.of(history.store, history.round_trip_time).standing(len(history) - 1),
         strict=True,
     ):
         assert np.array_equal(one, other)

@@ -125,7 +125,7 @@ def test_slab_rate_law_just_above_critical() -> None:
     after_arrest = run.shocks.time.iloc[2] - ROUND
     assert round(after_arrest / ROUND) == 16_429
     assert close(after_arrest, "93880.000")
-    assert run.history.store.theta_from[run.history.store.cause > 0][2] == 0.0
+    assert run.history.store.phase_from[run.history.store.cause > 0][2] == 0.0
 
 
 @pytest.mark.parametrize(

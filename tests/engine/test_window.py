@@ -55,7 +55,7 @@ def test_an_event_is_as_sharp_after_900_years_as_after_a_second(kind: str) -> No
     local, seconds = same_slip(early, late)
     assert local < 1e-12
     assert seconds > 1e-9
-    assert late.window(0).epoch.row > 1e9
+    assert late.window(0).epoch.trip > 1e9
     for name in ("duration", "slip", "peak_rate", "traction_drop", "static_drop"):
         assert late.events[name][0] == pytest.approx(early.events[name][0], rel=1e-12, abs=0.0), name
 
@@ -182,7 +182,7 @@ def test_epochs_and_windows_survive_a_file(tmp_path: Path) -> None:
 def test_a_window_becomes_a_dataset_with_its_epoch() -> None:
     window = ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1)
     dataset = window.to_dataset([0.0, 1.0])
-    assert (dataset.epoch_row, dataset.epoch_offset, dataset.row_time) == (2_589_011_266, 0.0, ROUND)
+    assert (dataset.epoch_trip, dataset.epoch_offset, dataset.round_trip_time) == (2_589_011_266, 0.0, ROUND)
     assert dataset.event_slip.attrs["units"] == "m"
     assert float(dataset.event_slip[1]) == pytest.approx(4.10204082, rel=1e-8, abs=0.0)
 

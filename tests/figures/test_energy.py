@@ -31,8 +31,12 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     axes = energy.draw(dataset).axes[0]
     (line,) = axes.lines
     time, total = (np.asarray(values, float) for values in (line.get_xdata(), line.get_ydata()))
-    vertices = np.asarray(axes.collections[-1].get_paths()[0].vertices)
-    top = np.array([vertices[vertices[:, 0] == at, 1].max() for at in time])
+    x, y = np.asarray(axes.collections[-1].get_paths()[0].vertices).T
+    places, place = np.unique(x, return_inverse=True)
+    highest = np.full(len(places), -np.inf)
+    np.maximum.at(highest, place, y)
+    assert np.isin(time, places).all()
+    top = highest[np.searchsorted(places, time)]
     assert top == pytest.approx(total, rel=0.0, abs=1e-9 * total.max())
     assert [name for name in energy.PARTS if energy.PARTS[name][0] in [area.get_label() for area in axes.collections]] == parts
     assert all((dataset[part] >= -1e-12 * dataset.total.max()).all() for part in parts)

@@ -26,7 +26,7 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-KEPT, NOT_KEPT = "from stickslip.engine.codegen.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
+SAVED, NOT_KEPT = "from stickslip.engine.codegen.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
 """A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),
@@ -99,5 +99,5 @@ def _compiled(tree: Expression, parameters: tuple[str, ...], change: Expression 
     value = "value" if change is None else "state_value"
     scope: dict[str, Any] = {}
     for part in ("prepare", value):
-        exec(writer.module(part).replace(KEPT, NOT_KEPT), scope)
+        exec(writer.module(part).replace(SAVED, NOT_KEPT), scope)
     return scope["prepare"].ctypes, scope[value].ctypes, writer.size

@@ -122,7 +122,7 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     problem, duration = bundled("cycles-block", 1500.0)
     run = Session.begin(problem, RunOptions(duration))
     monkeypatch.setattr(EventRows, "record", lambda self, run, stream, look: (look.tell(), self._remember(run, stream)))
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
+    stream = EventStream(problem, default_event_rate(problem), float(run.setup.params.ramp))
     monitor = Monitor.of(run, EventRows(RowsInMemory()), stream)
     capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):

@@ -199,9 +199,9 @@ def test_time_after_years_of_creep_is_sharp(years_of_creep: ss.Solution) -> None
     """At the second pulse, local times count from a whole number of round trips."""
     run = years_of_creep
     window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
-    assert window.epoch.row > 5_000_000
+    assert window.epoch.trip > 5_000_000
     assert 0.0 <= window.epoch.offset < ROUND
-    assert window.event.start == pytest.approx(window.epoch.row * ROUND + window.epoch.offset, rel=1e-15, abs=0.0)
+    assert window.event.start == pytest.approx(window.epoch.trip * ROUND + window.epoch.offset, rel=1e-15, abs=0.0)
     peak = float(window.event.peak_after)
     near = peak + np.array([0.0, 1e-9, 2e-9])  # a float of seconds since the start has a resolution of 4e-9 s here
     np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)

@@ -43,7 +43,7 @@ def test_every_event_balances(name: str) -> None:
 def test_balance_notices_a_wrong_slip_rate() -> None:
     run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
     wrong = scaled_rate(run.history.store, 1.001)
-    history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration)
+    history = History(wrong, run.problem, run.history.round_trip_time, run.history.ramp, run.history.duration)
     table = replace(run, history=history).energetics()
     assert (table.balance.abs() > 1e-7 * table.heat).all()
 

@@ -57,7 +57,7 @@ def test_balance_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     store = run.history.store
     wrong = scaled_rate(store, 1.001)
-    history = History(wrong, run.problem, run.history.row_time, run.history.ramp, run.duration)
+    history = History(wrong, run.problem, run.history.round_trip_time, run.history.ramp, run.duration)
     assert worst_imbalance(replace(run, history=history)) > 1e-6
 
 

@@ -28,7 +28,7 @@ def test_every_event_balances(name: str) -> None:
 def test_balance_of_an_event_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     wrong = scaled_rate(run.history.store, 1.001)
-    run = replace(run, history=History(wrong, run.problem, run.history.row_time, run.history.ramp, run.history.duration))
+    run = replace(run, history=History(wrong, run.problem, run.history.round_trip_time, run.history.ramp, run.history.duration))
     table = run.catalogue(energies=True)
     assert (table.balance.abs() > 1e-7 * table.released).all()
 

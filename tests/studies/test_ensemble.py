@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -278,7 +279,7 @@ def test_an_interrupted_run_is_no_member(monkeypatch: pytest.MonkeyPatch) -> Non
         done.append(found)
         return found if len(done) < 3 else replace(found, status=replace(found.status, name="interrupted", ok=False))
 
-    monkeypatch.setattr("stickslip.studies.ensemble.simulate", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
     found = ensemble(FAST, 20 * TRIP, members=4)
     assert len(found.runs) == 1
     assert found.stopped == "interrupted: 1 of 4 members"
@@ -311,7 +312,7 @@ BAD = [
     ({"seed": -1}, "seed must be a whole number, 0 or more, got -1"),
     ({"duration": 0.0}, "duration must be a positive time"),
     ({"rtol": 1.0}, "rtol must lie between"),
-    ({"events": 0}, "events must be a whole number above 0"),
+    ({"max_events": 0}, "max_events must be a whole number above 0"),
     ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
     ({"problem": ss.Problem(SLAB, STATE, initial_load=0.0, initial_state=1.0)}, "neither a strength nor an initial load"),
 ]

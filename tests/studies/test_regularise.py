@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -196,6 +197,6 @@ def test_an_interrupted_run_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> Non
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stickslip.studies.regularise.simulate", partial(ss.simulate, progress=stop))
+    monkeypatch.setattr(import_module("stickslip.studies.regularise"), "simulate", partial(ss.simulate, progress=stop))
     with pytest.raises(KeyboardInterrupt):
         regularise(LOOP.problem, 1.0)

@@ -12,13 +12,13 @@ import stickslip as ss
 
 VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": np.linspace(5e3, 20e3, 6)}
 """The second half fails: a rigid driver has no far stress."""
-KEPT = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
+SAVED = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
 MEMBERS, FINE = 12, 6
 
 
 def sweep(out: Path | None, **asked: Any) -> xr.Dataset:
     """Return the results of the sweep, or of one that differs from it by what is `asked`."""
-    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(KEPT | asked))
+    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(SAVED | asked))
 
 
 def files(store: Path) -> dict[str, bytes]:

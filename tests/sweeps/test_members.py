@@ -79,7 +79,7 @@ def test_keys_of_every_table_are_put_in_their_place() -> None:
     member = plan.work.member(vary | {"run.selection": "maxwell", "run.events": 4.0})
     problem = member.problem
     assert (problem.body.density, problem.pull_rate, problem.initial_load, problem.initial_excess) == (2000.0, 1e-9, 7e7, None)  # type: ignore[union-attr]
-    assert (member.rtol, member.duration, member.events, problem.rule) == (1e-7, 3.0, 4, "maxwell")
+    assert (member.rtol, member.duration, member.max_events, problem.rule) == (1e-7, 3.0, 4, "maxwell")
     assert problem.friction == RATE.problem.friction
 
 

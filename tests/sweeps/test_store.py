@@ -22,7 +22,7 @@ from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
-from tests.sweeps.stores import FINE, KEPT, MEMBERS, VARY, files, sweep
+from tests.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +110,7 @@ def test_ctrl_c_in_the_last_moment_of_a_run_ends_the_sweep(monkeypatch: pytest.M
 
 
 def test_the_order_of_chunks_does_not_matter(tmp_path: Path, whole: dict[str, bytes]) -> None:
-    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    plan, path = make_plan("fig6-slab", VARY, **SAVED), tmp_path / "map.zarr"
     forwards = on_threads(1)
     carry_out(plan, path, lambda work, chunks: forwards(work, reversed(list(chunks))))
     assert files(path) == whole
@@ -244,7 +244,7 @@ def test_another_scenario_and_another_version_are_refused(tmp_path: Path, monkey
     path = tmp_path / "map.zarr"
     sweep(path)
     with pytest.raises(ss.InputError, match="was made from another scenario"):
-        ss.sweep("second-event-maxwell", VARY, out=path, **KEPT)
+        ss.sweep("second-event-maxwell", VARY, out=path, **SAVED)
     monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
         sweep(path)
@@ -269,7 +269,7 @@ def test_what_is_no_sweep_is_left_alone(tmp_path: Path, kind: str) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="needs locks")
 def test_two_sweeps_do_not_write_into_one_store(tmp_path: Path) -> None:
-    plan, path = make_plan("fig6-slab", VARY, **KEPT), tmp_path / "map.zarr"
+    plan, path = make_plan("fig6-slab", VARY, **SAVED), tmp_path / "map.zarr"
     with ResultStore.at(plan, path), pytest.raises(ss.InputError, match="another sweep is writing into it"):
         sweep(path)
     assert (sweep(path).status.values != NOT_RUN).all()

@@ -107,7 +107,7 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     problem = scenario.problem
     run = Session.begin(problem, RunOptions.of(scenario))
     run.reserve(capacity)
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.par.ramp))
+    stream = EventStream(problem, default_event_rate(problem), float(run.setup.params.ramp))
     out[:] = np.nan
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0

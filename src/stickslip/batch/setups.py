@@ -34,7 +34,7 @@ class Setups(NamedTuple):
     The engine's tables (see `engine.state.layout.Setup`) have one row for each member, or a single row if all members share it.
     """
 
-    par: Floats  # (members, numbers of Params)
+    params: Floats  # (members, numbers of Params)
     jets: Integers  # (pieces,): addresses of the formulas' series for lanes; (0,) if members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Integers  # (members, pieces of the law, LawPiece.total)
@@ -44,8 +44,8 @@ class Setups(NamedTuple):
     irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
     state: Floats  # at t = 0, the same for all members
     counts: Integers  # at t = 0, the same for all members
-    last_row: Integers  # (members,): the round trip in which each run ends
-    last_theta: Floats  # (members,): the offset (s) in this round trip at which it ends
+    last_trip: Integers  # (members,): the round trip in which each run ends
+    last_phase: Floats  # (members,): the offset (s) in this round trip at which it ends
     duration: Floats  # (members,), s
     threshold: Floats  # (members,): slip rate (m/s) above which slip is an event
     stiffness: Floats  # (members,): Pa/m for a slab, N/m for a block
@@ -86,18 +86,18 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
     """
     count, group = len(next(iter(values.values()))), group or alike(scenario, values)
     problem = vectorised_problem(scenario, values)
-    duration, par = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
-    last_row, last_theta = split_times(duration, spread(par.row_time, count))
+    duration, params = spread(values.get("run.duration", scenario.duration), count), parameters_of(problem)
+    last_trip, last_phase = split_times(duration, spread(params.round_trip_time, count))
     constants, law = formulas(problem, group)
     branch_table, branches, irregular, stick_to = branches_of(problem, group, constants, count)
     rtol = values.get("run.rtol", scenario.rtol)
-    if par.numbers.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
-        par = Params(spread(par.numbers[:, None], count))
-    set_tolerance(par, rtol, scenario.shortest_event)
-    if par.numbers.ndim > 1:
-        par.numbers[Params.places["stick_to"].first] = stick_to
+    if params.numbers.ndim == 1 and (np.ndim(rtol) or stick_to.any()):
+        params = Params(spread(params.numbers[:, None], count))
+    set_tolerance(params, rtol, scenario.shortest_event)
+    if params.numbers.ndim > 1:
+        params.numbers[Params.places["stick_to"].first] = stick_to
     return Setups(
-        par=rows(par.numbers),
+        params=rows(params.numbers),
         jets=group.jets,
         constants=constants,
         law=law,
@@ -107,8 +107,8 @@ def set_up(scenario: Scenario, values: Values, group: Alike | None = None) -> Se
         irregular=irregular,
         state=group.state.numbers,
         counts=group.counts.numbers,
-        last_row=last_row,
-        last_theta=last_theta,
+        last_trip=last_trip,
+        last_phase=last_phase,
         duration=duration,
         threshold=spread(default_event_rate(problem), count),
         stiffness=spread(problem.body.stiffness, count),

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lanes import CONSTANTS, Waits
+from stickslip.batch.kernels.lanes import Block, Waits
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
@@ -86,7 +86,7 @@ def apart(*shape: int, dtype: type = float) -> Any:
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
     """Return `Workspace.numbers` and `Workspace.block` for a law with the given number of constants."""
-    numbers = apart(WIDTH * (CONSTANTS + constants))
+    numbers = apart(WIDTH * (Block.total + constants))
     return numbers, np.array([numbers.ctypes.data])
 
 
@@ -112,12 +112,12 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
 
     The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
     """
-    par = Params(setups.par[0])
-    own = Setup(par, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
+    params = Params(setups.params[0])
+    own = Setup(params, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])
-        lend_parts_of_batch(work.table[n], par, Counts(setups.counts))
+        lend_parts_of_batch(work.table[n], params, Counts(setups.counts))
         addresses[n] = work.table[n, :ADDRESSES]
     stride = np.zeros(ADDRESSES, np.int64)
     for name in ("law", "constants", "branch_table", "first_load"):

@@ -29,52 +29,52 @@ class Body(Protocol):
 
     @property
     def normal_load(self) -> float:
-        """Return the normal load S on the contact (Pa), compression positive."""
+        """The normal load S on the contact (Pa), compression positive."""
         ...
 
     @property
     def stiffness(self) -> float:
-        """Return the decrease of the load per metre of slow slip (Pa/m)."""
+        """The decrease of the load per metre of slow slip (Pa/m)."""
         ...
 
     @property
     def impedance(self) -> float:
-        """Return the load per slip rate that is characteristic of the body (Pa s/m): Z of a slab, sqrt(K m) of a block."""
+        """The load per slip rate that is characteristic of the body (Pa s/m): Z of a slab, sqrt(K m) of a block."""
         ...
 
     @property
     def damping(self) -> float:
-        """Return the load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        """The load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
         ...
 
     @property
     def inertia(self) -> float:
-        """Return the mass that slips with the contact (kg/m^2): the contact mass of a slab, the whole mass of a block."""
+        """The mass that slips with the contact (kg/m^2): the contact mass of a slab, the whole mass of a block."""
         ...
 
     @property
     def has_inertia(self) -> bool:
-        """Return True if a mass slips with the contact, so that its slip rate cannot jump."""
+        """True if a mass slips with the contact, so that its slip rate cannot jump."""
         ...
 
     @property
     def driver_impedance(self) -> float:
-        """Return the impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
+        """The impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
         ...
 
     @property
     def is_driven_rigidly(self) -> bool:
-        """Return True if the driver gives way by nothing, or by so little that it makes no difference to rounding."""
+        """True if the driver gives way by nothing, or by so little that it makes no difference to rounding."""
         ...
 
     @property
     def reflection(self) -> float:
-        """Return the share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
+        """The share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
         ...
 
     @property
     def round_trip_time(self) -> float:
-        """Return the time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
+        """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
         ...
 
 

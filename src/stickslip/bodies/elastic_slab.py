@@ -76,47 +76,47 @@ class ElasticSlab:
 
     @property
     def impedance(self) -> float:
-        """Return the wave impedance Z = rho c (Pa s/m)."""
+        """The wave impedance Z = rho c (Pa s/m)."""
         return self.density * self.wave_speed
 
     @property
     def damping(self) -> float:
-        """Return the radiation damping, traction per slip rate that leaves with the waves (Pa s/m): the impedance."""
+        """The radiation damping, traction per slip rate that leaves with the waves (Pa s/m): the impedance."""
         return self.impedance
 
     @property
     def shear_modulus(self) -> float:
-        """Return the shear modulus G = rho c^2 (Pa)."""
+        """The shear modulus G = rho c^2 (Pa)."""
         return self.density * self.wave_speed**2
 
     @property
     def two_way_time(self) -> float:
-        """Return the two-way travel time R = 2 h / c (s)."""
+        """The two-way travel time R = 2 h / c (s)."""
         return 2.0 * self.thickness / self.wave_speed
 
     @property
     def round_trip_time(self) -> float:
-        """Return the two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
+        """The two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
         return self.two_way_time
 
     @property
     def normal_load(self) -> float:
-        """Return the normal stress S (Pa)."""
+        """The normal stress S (Pa)."""
         return self.normal_stress
 
     @property
     def inertia(self) -> float:
-        """Return the contact mass (kg/m^2)."""
+        """The contact mass (kg/m^2)."""
         return self.contact_mass
 
     @property
     def has_inertia(self) -> bool:
-        """Return True if the contact has a mass, so that its slip rate cannot jump."""
+        """True if the contact has a mass, so that its slip rate cannot jump."""
         return self.contact_mass > 0.0
 
     @property
     def reflection(self) -> float:
-        """Return the reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
+        """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
 
         It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load.
         """
@@ -126,17 +126,17 @@ class ElasticSlab:
 
     @property
     def is_driven_rigidly(self) -> bool:
-        """Return True if the driver reflects the whole wave with its sign reversed, r = -1."""
+        """True if the driver reflects the whole wave with its sign reversed, r = -1."""
         return bool(np.all(self.reflection == -1.0))
 
     @property
     def stiffness(self) -> float:
-        """Return the stiffness G / h (Pa/m), the decrease of the load per metre of slow slip under a rigid driver."""
+        """The stiffness G / h (Pa/m), the decrease of the load per metre of slow slip under a rigid driver."""
         return self.shear_modulus / self.thickness
 
     @property
     def normal_strain(self) -> float:
-        """Return the normal strain -S / (lambda + 2 G), no unit, which is constant through the slab.
+        """The normal strain -S / (lambda + 2 G), no unit, which is constant through the slab.
 
         Raises
         ------

@@ -51,27 +51,27 @@ class SpringBlock:
 
     @property
     def period(self) -> float:
-        """Return the period of free undamped oscillation, 2 pi sqrt(m / K) (s)."""
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s)."""
         found: float = 2.0 * math.pi * np.sqrt(self.mass / self.stiffness)
         return found
 
     @property
     def round_trip_time(self) -> float:
-        """Return the period (s), after which the spring has brought the block's motion back."""
+        """The period (s), after which the spring has brought the block's motion back."""
         return self.period
 
     @property
     def impedance(self) -> float:
-        """Return sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
         found: float = np.sqrt(self.stiffness * self.mass)
         return found
 
     @property
     def normal_load(self) -> float:
-        """Return the normal force S (N)."""
+        """The normal force S (N)."""
         return self.normal_force
 
     @property
     def inertia(self) -> float:
-        """Return the mass (kg)."""
+        """The mass (kg)."""
         return self.mass

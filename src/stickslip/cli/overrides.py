@@ -40,7 +40,7 @@ def _readers(problem: Problem) -> dict[str, tuple[str, Reader]]:
     return {
         "until": ("duration", read_duration),
         "duration": ("duration", read_duration),
-        "events": ("events", check_events),
+        "events": ("max_events", check_events),
         "rtol": ("rtol", check_rtol),
         "creep_rtol": ("creep_rtol", partial(check_creep_rtol, problem)),
         "shortest_event": ("shortest_event", partial(_shortest_event, problem)),

@@ -61,7 +61,7 @@ class Critical:
 
     @property
     def value(self) -> float | None:
-        """Return the critical value nearest to the present value, or None if none was found."""
+        """The critical value nearest to the present value, or None if none was found."""
         return min(self.values, key=lambda one: abs(one - self.present), default=None)
 
 

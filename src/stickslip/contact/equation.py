@@ -47,12 +47,12 @@ class Resistance:
 
     @property
     def strength(self) -> float:
-        """Return the static strength S mu_static (Pa)."""
+        """The static strength S mu_static (Pa)."""
         return self.normal * float(self.law.static_coefficient(self.law_slip))
 
     @property
     def start(self) -> float:
-        """Return the excess at s = 0+ (Pa), which is minus the step from static to sliding friction."""
+        """The excess at s = 0+ (Pa), which is minus the step from static to sliding friction."""
         return -self.normal * self.law.static_excess if self.law.static_excess else 0.0
 
     def excess_and_slope(self, rate: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -87,12 +87,12 @@ class Resistance:
 
     @cached_property
     def rate_knots(self) -> tuple[float, ...]:
-        """Return the slip rates (m/s) above 0 at which the law changes its formula."""
+        """The slip rates (m/s) above 0 at which the law changes its formula."""
         return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
 
     @cached_property
     def _levels(self) -> NDArray[np.float64]:
-        """Return the excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
+        """The excess (Pa) of each piece on which friction falls exactly as fast as Z s rises, NaN for the others.
 
         "Exactly" means that g varies by no more than its own rounding. Only a whole piece can be flat, because formulas are
         analytic within a piece.
@@ -113,7 +113,7 @@ class Resistance:
 
     @cached_property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """Return the intervals on which g is flat, slowest first: all their slip rates solve the contact equation at one load."""
+        """The intervals on which g is flat, slowest first: all their slip rates solve the contact equation at one load."""
         found: list[Plateau] = []
         for low, high in pairwise((0.0, *self.rate_knots)):
             level = float(self._levels[int(self.law.piece_at(self.law_slip, low))])
@@ -130,7 +130,7 @@ class Resistance:
 
     @cached_property
     def trees(self) -> tuple[Expression, ...]:
-        """Return the law's formulas, one for each piece."""
+        """The law's formulas, one for each piece."""
         return self.law.trees()
 
     def _at_rest(self, tree: Expression, numbers: Mapping[str, Any]) -> Any:
@@ -147,7 +147,7 @@ class Resistance:
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
-        """Return the characteristic slip rates (m/s) of the contact: S (variation of mu)/Z and those of the law.
+        """The characteristic slip rates (m/s) of the contact: S (variation of mu)/Z and those of the law.
 
         Scales of the law that exceed the first by the factor `_FASTEST` are left out: g rises there whatever the law does.
         """

@@ -59,7 +59,7 @@ class Axis:
 
     @property
     def values(self) -> Floats:
-        """Return the values along the axis (SI), ascending, shape (points,)."""
+        """The values along the axis (SI), ascending, shape (points,)."""
         spaced = np.geomspace if self.log else np.linspace
         return np.asarray(spaced(self.low, self.high, self.points))
 

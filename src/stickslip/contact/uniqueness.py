@@ -60,12 +60,12 @@ class Uniqueness:
 
     @property
     def loop_area(self) -> float:
-        """Return the area of the `loop` (Pa m/s), 0 if the slip rate is a state."""
+        """The area of the `loop` (Pa m/s), 0 if the slip rate is a state."""
         return self.loop.area if self.loop else 0.0
 
     @property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """Return the intervals on which g is flat: at one load all their slip rates solve the equation, and no rule picks one."""
+        """The intervals on which g is flat: at one load all their slip rates solve the equation, and no rule picks one."""
         return self.resistance.plateaus if self.resistance else ()
 
     def g(self, rate: ArrayLike) -> NDArray[np.float64]:

@@ -52,6 +52,7 @@ class Strength:
     step: float  # slip over which a second derivative is taken, m: that of a round trip
 
     def __call__(self, x: float) -> float:
+        """Return the static strength (Pa) after slip x (m), minus that at the start of the run."""
         return strength_change(self.problem, self.law_slip + self.sign * x)
 
     @cached_property
@@ -161,7 +162,7 @@ class AveragedCreep:
         ends of its pieces and the slip (m) since its start.
         """
         areas, lengths = (np.cumsum([0.0, *share]) for share in self.pattern.shares(lift))
-        ends = np.append(0.0, self.pattern.parts.theta_from + self.pattern.width)
+        ends = np.append(0.0, self.pattern.parts.phase_from + self.pattern.width)
         first = before[1] - creep.mean_rate * np.interp(before[0], ends, lengths)
         second = first[-1] + areas / self.impedance - creep.mean_rate * lengths
         return float(np.ptp([0.0, *first, *second])) / creep.seen

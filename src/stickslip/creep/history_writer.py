@@ -26,12 +26,12 @@ def seen(load: Floats, strength: float, direction: int) -> Floats:
 
 
 @dataclass(frozen=True)
-class Scribe:
+class HistoryWriter:
     """Write pieces, seen in the direction of slip, into the rows of the history."""
 
     store: Store
     problem: Problem
-    row_time: float
+    round_trip_time: float
     direction: int
     sign: float  # change of the law's slip with slip in that direction
     state: State  # where the leap begins
@@ -49,11 +49,11 @@ class Scribe:
             grown, rate, load = hermite(t1 - t0, x1 - x0, v0, v1), np.zeros(TERMS), np.zeros(TERMS)
             rate[:3] = grown[1:] * np.arange(1, 4) / (t1 - t0)
             load[:4] = -unload * grown
-            load[0] += whole / width + averaged.gain * (t0 / self.row_time - 0.5) - unload * x0
-            load[1] += averaged.gain * (t1 - t0) / self.row_time
+            load[0] += whole / width + averaged.gain * (t0 / self.round_trip_time - 0.5) - unload * x0
+            load[1] += averaged.gain * (t1 - t0) / self.round_trip_time
             self._write(n, row, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
             n += 1
-        self.store.theta_to[n - 1] += np.spacing((row + plan.trips) * self.row_time)  # no gap before the next row
+        self.store.phase_to[n - 1] += np.spacing((row + plan.trips) * self.round_trip_time)  # no gap before the next row
         return n
 
     def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
@@ -64,24 +64,24 @@ class Scribe:
         first, second, last = plan.states[0], plan.states[1], plan.states[-1]
         inside = [c for c in plan.states[:-1] if 0.0 < c.trips < plan.trips - 1.0]
         return [
-            (0.0, 0.0, (first.rate - 0.5 * second.bend) / self.row_time),
-            *(((c.trips + 0.5) * self.row_time, c.slip, c.rate / self.row_time) for c in inside),
-            (plan.trips * self.row_time, last_slip, (last.rate - 0.5 * last.bend) / self.row_time),
+            (0.0, 0.0, (first.rate - 0.5 * second.bend) / self.round_trip_time),
+            *(((c.trips + 0.5) * self.round_trip_time, c.slip, c.rate / self.round_trip_time) for c in inside),
+            (plan.trips * self.round_trip_time, last_slip, (last.rate - 0.5 * last.bend) / self.round_trip_time),
         ]
 
     def write_landing(self, n: int, row: int, pieces: list[Piece]) -> None:
         """Write the round trip on which the leap lands, from piece n on."""
         for k, piece in enumerate(pieces):
             self._write(n + k, row, piece)
-            self.store.theta_to[n + k] = pieces[k + 1].theta_from if k + 1 < len(pieces) else self.row_time
+            self.store.phase_to[n + k] = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
 
     def _write(self, n: int, row: int, piece: Piece) -> None:
         store, state = self.store, self.state
         slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
         kept = HistoryPiece(store.pieces[n])
-        kept.row, kept.mode, kept.law_piece = row, self.direction * piece.slips, self.count.piece
+        kept.trip, kept.mode, kept.law_piece = row, self.direction * piece.slips, self.count.piece
         kept.jump, kept.cause, kept.echo_of = 0, 0, -1
-        kept.theta_from, kept.theta_to, kept.speed, kept.bend = piece.theta_from, piece.theta_to, piece.speed, piece.bend
+        kept.phase_from, kept.phase_to, kept.speed, kept.bend = piece.phase_from, piece.phase_to, piece.speed, piece.bend
         kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan
         store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
         store.rate[n] = self.direction * piece.rate

@@ -20,7 +20,7 @@ class Piece:
     """A piece of the history, seen in the direction of slip."""
 
     slips: bool
-    theta_from: float  # s
+    phase_from: float  # s
     speed: float
     bend: float
     slip: float  # at its start, m, counted as in `Creep`
@@ -28,9 +28,9 @@ class Piece:
     rate: Floats  # m/s
 
     @property
-    def theta_to(self) -> float:
+    def phase_to(self) -> float:
         """The offset at which the piece ends, s."""
-        return self.theta_from + self.speed + self.bend
+        return self.phase_from + self.speed + self.bend
 
     @property
     def grown(self) -> float:
@@ -64,7 +64,7 @@ class Walk:
         parts, end = self.averaged.pattern.parts, 0.0
         for k in range(len(parts.speed)):
             self._part(k)
-            end = float(parts.theta_from[k] + parts.speed[k] + parts.bend[k])
+            end = float(parts.phase_from[k] + parts.speed[k] + parts.bend[k])
         self._close_core(end)
 
     def _part(self, k: int) -> None:
@@ -72,7 +72,7 @@ class Walk:
         parts = self.averaged.pattern.parts
         load = parts.load[k].copy()
         load[0] += self.averaged.gain * self.creep.trips
-        begin, cuts = float(parts.theta_from[k]), [0.0, 1.0]
+        begin, cuts = float(parts.phase_from[k]), [0.0, 1.0]
         for _ in range(ROUNDS):  # the strength at a border depends on the slip up to it
             strength = self._strength_at(begin + self._theta(k, cuts[-2] if load[0] > load.sum() else 0.0))
             levels = (strength, strength + self.averaged.impedance * self.creep.mean_rate)
@@ -107,7 +107,7 @@ class Walk:
         part = np.empty(TERMS)
         restrict(load, left, width, part)
         middle = float(part @ 0.5 ** np.arange(TERMS))
-        begin = float(parts.theta_from[k]) + self._theta(k, left)
+        begin = float(parts.phase_from[k]) + self._theta(k, left)
         if middle >= levels[1]:
             self.core_from = begin if self.core_from is None else self.core_from
             return

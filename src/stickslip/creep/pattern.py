@@ -19,16 +19,16 @@ SMALLEST = 1e-300
 
 @dataclass(frozen=True)
 class Parts:
-    """Monotone parts of a load: polynomials in xi on [0, 1], theta = theta_from + speed xi + bend xi^2."""
+    """Monotone parts of a load: polynomials in xi on [0, 1], theta = phase_from + speed xi + bend xi^2."""
 
     load: Floats  # (n, TERMS), Pa
-    theta_from: Floats  # s
+    phase_from: Floats  # s
     speed: Floats
     bend: Floats
 
     def theta(self, part: NDArray[np.intp], xi: Floats) -> Floats:
         """Return the offset of places in parts, s."""
-        return np.asarray(self.theta_from[part] + xi * (self.speed[part] + xi * self.bend[part]))
+        return np.asarray(self.phase_from[part] + xi * (self.speed[part] + xi * self.bend[part]))
 
     def pace(self, part: NDArray[np.intp], xi: Floats) -> Floats:
         """Return d theta / d xi, s."""
@@ -56,11 +56,11 @@ class Parts:
         return float(abs(shifted.sum()) < abs(shifted[0]))  # at an end, within rounding
 
 
-def monotone_parts(load: Floats, theta_from: Floats, speed: Floats, bend: Floats) -> Parts:
+def monotone_parts(load: Floats, phase_from: Floats, speed: Floats, bend: Floats) -> Parts:
     """Cut the pieces of a load at their extrema."""
     slope, places = np.zeros(TERMS), np.empty(TERMS)
     rows: list[tuple[Floats, float, float, float]] = []
-    for p, start, a, b in zip(load, theta_from, speed, bend, strict=True):
+    for p, start, a, b in zip(load, phase_from, speed, bend, strict=True):
         slope[:-1] = p[1:] * np.arange(1, TERMS)
         cuts = [0.0, *places[: crossings(slope, places)].tolist(), 1.0]
         for left, right in pairwise(cuts):
@@ -119,7 +119,7 @@ class Pattern:
         """Return the same as `shares`, from crossings that are known."""
         inside = self.ends[0] >= -lift
         areas, lengths = self.whole * inside, self.width * inside
-        covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.theta_from[part]
+        covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.phase_from[part]
         areas[part] = np.where(rises, self.whole[part] - covered, covered)
         lengths[part] = np.where(rises, self.width[part] - time, time)
         return areas + lift * lengths, lengths

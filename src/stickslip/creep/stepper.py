@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.creep.averaged import AveragedCreep, Strength
-from stickslip.creep.history_writer import Scribe, seen
+from stickslip.creep.history_writer import HistoryWriter, seen
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner
@@ -72,9 +72,9 @@ class CreepLeaps:
         """Set the leaps of a run that is resumed."""
         self.taken = [tuple(leap) for leap in table.tolist()]
 
-    def are_due(self, count: Counts, last_row: int) -> bool:
+    def are_due(self, count: Counts, last_trip: int) -> bool:
         """Return True if the engine has paused for an attempt to leap."""
-        return bool(count.ready == Incoming.NONE and count.source == 0 and count.pause_at <= count.row <= last_row)
+        return bool(count.ready == Incoming.NONE and count.source == 0 and count.pause_at <= count.trip <= last_trip)
 
     def at_row_end(self, run: Session, last: tuple[int, float]) -> None:
         """Leap if there is creep, and set when to try again.
@@ -83,9 +83,9 @@ class CreepLeaps:
         """
         count = run.count
         if not self._creeps(run):
-            count.pause_at, count.pause_for = count.row + 1, 1
+            count.pause_at, count.pause_for = count.trip + 1, 1
             return
-        planner = self._planner(run, last[0] - CHECKED - 2 - int(count.row))
+        planner = self._planner(run, last[0] - CHECKED - 2 - int(count.trip))
         plan = planner.plan()
         if planner.at_end and count.to_the_end == 0:
             run.cut_at_end()
@@ -96,7 +96,7 @@ class CreepLeaps:
                 return  # the next leap may follow at once
             run.restore(before)
             plan = self._planner(run, plan.trips // 2).plan()
-        count.pause_at = count.row + count.pause_for
+        count.pause_at = count.trip + count.pause_for
         unproven = self.patient and count.creep_leaps == 0
         count.pause_for = min(2 * count.pause_for, LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
 
@@ -112,7 +112,7 @@ class CreepLeaps:
         slow = np.abs([rate[:, 0], rate.sum(axis=1)]).max() <= FAST * self.speed
         return bool(
             slow
-            and run.store.row[rows][-1] == run.count.row - 1
+            and run.store.trip[rows][-1] == run.count.trip - 1
             and (modes == self.direction).any()
             and not (modes == -self.direction).any()
         )
@@ -127,14 +127,14 @@ class CreepLeaps:
         """Return the last round trip in the form that `AveragedCreep.swing` takes."""
         rows, store = self._previous(run.count), run.store
         slip = np.append(store.slip[rows], run.state.slip_now)
-        return np.stack([store.theta_to[rows], self.direction * (slip[1:] - slip[0])])
+        return np.stack([store.phase_to[rows], self.direction * (slip[1:] - slip[0])])
 
     def _averaged(self, run: Session) -> AveragedCreep:
         """Return the averaged creep from the coming round trip on."""
         rows, store = self._previous(run.count), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
         load[:, 0] += 2.0 * self.impedance * self.speed
-        pattern = Pattern(monotone_parts(load, store.theta_from[rows], store.speed[rows], store.bend[rows]))
+        pattern = Pattern(monotone_parts(load, store.phase_from[rows], store.speed[rows], store.bend[rows]))
         sign = self.direction if self.problem.friction.counts == "net" else 1.0
         strength = Strength(self.problem, float(run.state.law_slip), sign, self.speed * self.problem.round_trip_time)
         return AveragedCreep(pattern, strength, self.impedance, self.speed)
@@ -143,7 +143,7 @@ class CreepLeaps:
 
     def _leap(self, run: Session, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
-        begun, slip = int(run.count.row), float(run.state.slip_now)
+        begun, slip = int(run.count.trip), float(run.state.slip_now)
         self._write(run, averaged, plan)
         delay = plan.error / plan.states[-1].rate * self.problem.round_trip_time
         self.taken[run.count.creep_leaps :] = [(begun, plan.trips, plan.error, delay)]
@@ -159,14 +159,14 @@ class CreepLeaps:
         """Write the leap as pieces of the history, and set the engine to its end."""
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))
-        count, landed_on, sign = run.count, int(run.count.row) + plan.trips, averaged.strength.sign
-        scribe = Scribe(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
+        count, landed_on, sign = run.count, int(run.count.trip) + plan.trips, averaged.strength.sign
+        scribe = HistoryWriter(run.store, self.problem, self.problem.round_trip_time, self.direction, sign, run.state, count)
         landed_from = scribe.write_way(run.length, landed_on - plan.trips, averaged, plan, pieces[0].slip)
         scribe.write_landing(landed_from, landed_on, pieces)
         self._move(run, pieces[-1], sign)
         count.length = landed_from + len(pieces)
-        count.previous_from, count.previous_to, count.row_from = landed_from, count.length, count.length
-        count.row, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
+        count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
+        count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
 
     def _move(self, run: Session, end: Piece, sign: float) -> None:
         """Move the contact to the end of the last piece of a landing."""
@@ -175,11 +175,11 @@ class CreepLeaps:
         state.law_slip += sign * grown
         state.rate_now = self.direction * end.rate.sum()
         count.mode = self.direction if end.slips else 0
-        count.source = count.moved = count.stuck_rows = count.edge = count.jump = count.cause = count.stalled = 0
+        count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
 
     def _goes_on(self, run: Session, row: int, last: tuple[int, float]) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
         while (code := run.step(last, STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
                 run.reserve(2 * len(run.store.pieces))
-        return code == Stop.PAUSED and run.count.row == row
+        return code == Stop.PAUSED and run.count.trip == row

@@ -32,7 +32,7 @@ The loop knows its state by these fields:
     slip          counts.ready is Incoming.MET and counts.mode is +1 or -1
     near a fold   counts.at_fold is not NearFold.NONE (`folds.fold`)
 
-Where folds move with slip, counts.leaving = 1 says that a branch has ended: the loop returns NEED_BRANCHES, unless the table of
+Where folds move with slip, a branch may have ended (counts.branch_ended is 1): the loop returns NEED_BRANCHES, unless the table of
 branches already holds at this slip, and then takes another branch or rest.
 """
 
@@ -61,8 +61,8 @@ LARGEST_STORM = 10_000
 
 
 @kernel
-def run_until(table: Integers, last_row: int, last_theta: float, passes: int) -> int:
-    """Advance a run to the phase `last_theta` (s) of round trip `last_row`, and return a code of `Stop`.
+def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -> int:
+    """Advance a run to the phase `last_phase` (s) of round trip `last_trip`, and return a code of `Stop`.
 
     Stop.NONE means that the loop has made the given number of passes. The other codes that end a call but not the run ask
     something of the caller before the next call:
@@ -77,30 +77,30 @@ def run_until(table: Integers, last_row: int, last_theta: float, passes: int) ->
     `table` is the memory that `workspace.lend` has filled. Its scratch space must be kept between calls.
     """
     run = borrow(table)
-    run.k.impedance, run.k.normal = run.par.impedance, run.par.normal
-    run.k.inertia, run.k.stiffness = run.par.inertia, run.par.stiffness
+    run.k.impedance, run.k.normal = run.params.impedance, run.params.normal
+    run.k.inertia, run.k.stiffness = run.params.inertia, run.params.stiffness
     for _ in range(passes):
-        code = make_pass(run, last_row, last_theta)
+        code = make_pass(run, last_trip, last_phase)
         if code != Stop.NONE:
             return code
     return Stop.NONE
 
 
 @kernel
-def make_pass(run: Run, last_row: int, last_theta: float) -> int:
+def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
     """Make one pass of the loop: bring a piece of load, answer it, or take a step along it. Return Stop.NONE if it goes on."""
     code = obstacle(run)
     if code != Stop.NONE:
         return code
-    if run.counts.leaving == 1:
+    if run.counts.branch_ended == 1:
         leave_moving_branch(run)
     if run.counts.ready == Incoming.NONE:
-        return bring_load(run, last_row)
+        return bring_load(run, last_trip)
     if run.counts.ready == Incoming.BROUGHT:
         arrive(run)
         run.counts.ready = Incoming.MET
         return Stop.NONE
-    return walk_along_load(run, last_row, last_theta)
+    return walk_along_load(run, last_trip, last_phase)
 
 
 @kernel
@@ -108,7 +108,7 @@ def obstacle(run: Run) -> int:
     """Return the code of what keeps the run from going on, or Stop.NONE."""
     if run.counts.length + ROOM > run.capacity:
         return Stop.FULL
-    if run.counts.stalled > LARGEST_STALL or run.counts.tiny > LARGEST_STORM:
+    if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
         return Stop.STORM
     run.missing = missing_part(run)
     if run.missing != Part.NONE:
@@ -129,24 +129,24 @@ def missing_part(run: Run) -> int:
 
 
 @kernel
-def bring_load(run: Run, last_row: int) -> int:
+def bring_load(run: Run, last_trip: int) -> int:
     """Bring the next piece of load, or close the round trip if there is none left."""
-    if run.counts.row > last_row or (run.counts.sparse == 1 and run.counts.is_locked == 1):
+    if run.counts.trip > last_trip or (run.counts.sparse == 1 and run.counts.is_locked == 1):
         return end_of_run(run)
     if next_piece(run):
         return Stop.NONE
-    code = close_round_trip(run, last_row)
-    return Stop.PAUSED if code == Stop.NONE and run.counts.row >= run.counts.pause_at else code
+    code = close_round_trip(run, last_trip)
+    return Stop.PAUSED if code == Stop.NONE and run.counts.trip >= run.counts.pause_at else code
 
 
 @kernel
-def walk_along_load(run: Run, last_row: int, last_theta: float) -> int:
+def walk_along_load(run: Run, last_trip: int, last_phase: float) -> int:
     """Take one step along the present piece of load, which the end of the run may cut, or leave the piece at its end."""
-    is_last = run.counts.row == last_row and run.counts.at_fold == NearFold.NONE and run.state.theta_to >= last_theta
-    is_cut = is_last and run.state.theta_to > last_theta
+    is_last = run.counts.trip == last_trip and run.counts.at_fold == NearFold.NONE and run.state.phase_to >= last_phase
+    is_cut = is_last and run.state.phase_to > last_phase
     if is_cut and run.counts.to_the_end == 0:
         return Stop.END_AHEAD
-    xi_to = min(xi_at(run, last_theta), 1.0) if is_cut else 1.0
+    xi_to = min(xi_at(run, last_phase), 1.0) if is_cut else 1.0
     if run.state.xi < xi_to:
         return take_step(run, xi_to)
     if run.counts.at_fold != NearFold.NONE:

@@ -15,7 +15,7 @@ from stickslip.engine.implicit_step.implicit_step import slip_implicitly, stick_
 from stickslip.engine.state.layout import Counts, Integers, Params, Part, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
-from stickslip.engine.waves.varying_forcing import rows_withstood, take_loading
+from stickslip.engine.waves.varying_forcing import take_loading, trips_withstood
 
 
 @kernel
@@ -34,7 +34,7 @@ def loading_history(memory: int, task: int, limit: float) -> float:
     if task == Task.TAKE_LOADING:
         take_loading(borrow(memory))
         return 0.0
-    return float(rows_withstood(borrow(memory), limit))
+    return float(trips_withstood(borrow(memory), limit))
 
 
 @kernel
@@ -80,9 +80,9 @@ def lend_part(memory: Integers, part: Part | None = None) -> None:
     setattr(run, part.name.lower(), part_at(PARTS[part]))
 
 
-def lend_parts_of_batch(memory: Integers, par: Params, counts: Counts) -> None:
+def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
     """Write the addresses of those parts that members with such numbers may ever need; batches have no loading histories."""
-    if counts.has_inertia == 1:
+    if counts.has_inertia == 1 or counts.has_state == 1:
         lend_part(memory, Part.IMPLICIT_STEPS)
-    if par.reflection == -1.0 and counts.is_block == 0:
+    if params.reflection == -1.0 and counts.is_block == 0:
         lend_part(memory, Part.ECHO_QUEUE)

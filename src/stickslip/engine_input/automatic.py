@@ -26,17 +26,17 @@ def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None
     count.lump_above = MOST_PIECES if shortest is None and lumps_by_itself(problem) else at.NEVER
 
 
-def set_length(par: Params, shortest: float | None) -> None:
-    """Set the length of the pieces that are lumped, in `Setup.par` or in one with a column for each member."""
-    par.shortest = AUTOMATIC_SHARE * par.row_time if shortest is None else shortest
+def set_length(params: Params, shortest: float | None) -> None:
+    """Set the length of the pieces that are lumped, in `Setup.params` or in one with a column for each member."""
+    params.shortest = AUTOMATIC_SHARE * params.round_trip_time if shortest is None else shortest
 
 
-def lumping_note(count: Counts, par: Params, shortest: float | None) -> str:
+def lumping_note(count: Counts, params: Params, shortest: float | None) -> str:
     """Return one line on automatic lumping in a run; empty if it did not begin."""
     if shortest is not None or count.lumps == 0:
         return ""
-    since = count.lumped_since * par.row_time
+    since = count.lumped_since * params.round_trip_time
     return (
-        f"events shorter than {par.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
+        f"events shorter than {params.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
         f" {MOST_PIECES} pieces: what follows is right only on average (shortest_event = 0 resolves every event)"
     )

@@ -99,13 +99,13 @@ def has_levels_to_set(problem: Problem) -> bool:
     return COMPILED_RULES.get(problem.rule) == Rule.MAXWELL
 
 
-def renewed(problem: Problem, setup: Setup, par: Params, state: State, count: Counts) -> Setup:
-    """Return the setup with the branches at the present law slip, and update `par`, `state` and `count` to match.
+def renewed(problem: Problem, setup: Setup, params: Params, state: State, count: Counts) -> Setup:
+    """Return the setup with the branches at the present law slip, and update `params`, `state` and `count` to match.
 
     Under Maxwell's rule the levels still have to be set (`RuleFollower.set_levels`).
     """
     case = replace(problem, selection="perfect-delay") if has_levels_to_set(problem) else problem
-    table, par.stick_to = table_of_branches(case, float(state.law_slip))
+    table, params.stick_to = table_of_branches(case, float(state.law_slip))
     count.branch = branch_of(Branch.of(table), abs(float(state.rate_now)))
     state.table_slip = state.law_slip
     return setup._replace(branches=table)
@@ -117,26 +117,26 @@ class Step:
 
     problem: Problem
     store: Store
-    row: int
+    piece: int
 
     @property
     def direction(self) -> int:
         """+1 for forward slip, -1 for backward slip, 0 at rest."""
-        return int(self.store.mode[self.row])
+        return int(self.store.mode[self.piece])
 
     def law_slip(self, xi: float) -> float:
         """Return the law slip (m), minus the initial one."""
-        rate, powers = self.store.rate[self.row], xi ** np.arange(1, at.TERMS + 1)
-        straight = self.store.speed[self.row] * (RECIPROCAL[1 : at.TERMS + 1] * rate * powers).sum()
-        bent = 2.0 * self.store.bend[self.row] * xi * (RECIPROCAL[2 : at.TERMS + 2] * rate * powers).sum()
+        rate, powers = self.store.rate[self.piece], xi ** np.arange(1, at.TERMS + 1)
+        straight = self.store.speed[self.piece] * (RECIPROCAL[1 : at.TERMS + 1] * rate * powers).sum()
+        bent = 2.0 * self.store.bend[self.piece] * xi * (RECIPROCAL[2 : at.TERMS + 2] * rate * powers).sum()
         grown = float(straight + bent)
-        return float(self.store.law_slip[self.row]) + (grown if self.problem.friction.counts == "net" else self.direction * grown)
+        return float(self.store.law_slip[self.piece]) + (grown if self.problem.friction.counts == "net" else self.direction * grown)
 
     def room(self, xi: float) -> float:
         """Return how far (Pa) the load is inside the interval in which the rule keeps the branch; negative outside."""
         branches = Branch.of(table_of_branches(self.problem, self.law_slip(xi))[0])
         powers = xi ** np.arange(at.TERMS)
-        rate, load = abs(float(self.store.rate[self.row] @ powers)), float(self.store.load[self.row] @ powers)
+        rate, load = abs(float(self.store.rate[self.piece] @ powers)), float(self.store.load[self.piece] @ powers)
         seen = load if self.direction > 0 else -load - 2.0 * self.problem.strength
         branch = branch_of(branches, rate)
         return min(seen - float(branches.keep_from[branch]), float(branches.keep_to[branch]) - seen)
@@ -182,7 +182,7 @@ class RuleFollower:
     """
 
     problem: Problem
-    row_time: float
+    round_trip_time: float
     state: State
     count: Counts
     times: deque[float] = field(default_factory=lambda: deque(maxlen=STORM_OF))
@@ -214,7 +214,7 @@ class RuleFollower:
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Return the place at which a slip step that has just been made crosses a level of the rule, or None."""
-        stepped = self.count.length > length and store.mode[length] != 0 and self.count.leaving == 0
+        stepped = self.count.length > length and store.mode[length] != 0 and self.count.branch_ended == 0
         if not stepped:
             return None
         if self.problem.rule not in COMPILED_RULES:
@@ -229,7 +229,7 @@ class RuleFollower:
 
     def _storms(self) -> bool:
         """Record the time of a crossing, and return True if many have come with hardly any time between them."""
-        whole, theta = float(self.count.row), float(self.state.theta_from)
+        whole, theta = float(self.count.trip), float(self.state.phase_from)
         xi = float(self.state.exit)
-        self.times.append(whole * self.row_time + theta + xi * (self.state.speed + xi * self.state.bend))
-        return len(self.times) == STORM_OF and self.times[-1] - self.times[0] <= STORM_IN * self.row_time
+        self.times.append(whole * self.round_trip_time + theta + xi * (self.state.speed + xi * self.state.bend))
+        return len(self.times) == STORM_OF and self.times[-1] - self.times[0] <= STORM_IN * self.round_trip_time

@@ -30,7 +30,7 @@ class Inflow:
     value: Floats
     slope: Floats
     tone: Tone
-    row_time: float
+    round_trip_time: float
     is_block: bool
     is_rigid: bool
 
@@ -55,13 +55,13 @@ class Inflow:
 
         On a slab it is the sum of F over these rows: their number times the mean of F, with Dirichlet's kernel for the tone.
         """
-        time = row * self.row_time + offset
+        time = row * self.round_trip_time + offset
         if self.is_block:
-            return self.total(time, time + rows * self.row_time)
+            return self.total(time, time + rows * self.round_trip_time)
         if not self.is_rigid:
             return np.zeros(len(rows))
-        n = self.segment((row + 1.0) * self.row_time)
-        middle = time + 0.5 * (rows + 1.0) * self.row_time
+        n = self.segment((row + 1.0) * self.round_trip_time)
+        middle = time + 0.5 * (rows + 1.0) * self.round_trip_time
         straight = rows * (self.value[n] + self.slope[n] * (middle - self.start[n]))
         if self.tone is SILENT:
             return np.asarray(straight)
@@ -69,9 +69,9 @@ class Inflow:
 
     def breaks(self) -> list[tuple[int, float]]:
         """Return the rows and offsets (s) at which segments begin; an edge between rows is offset 0 of the later one."""
-        rows = np.floor(self.start / self.row_time)
-        offsets = self.start - rows * self.row_time
-        late, early = offsets > (1.0 - EDGE) * self.row_time, offsets < EDGE * self.row_time
+        rows = np.floor(self.start / self.round_trip_time)
+        offsets = self.start - rows * self.round_trip_time
+        late, early = offsets > (1.0 - EDGE) * self.round_trip_time, offsets < EDGE * self.round_trip_time
         offsets[late | early] = 0.0
         return list(zip((rows + late).astype(int).tolist(), offsets.tolist(), strict=True))
 
@@ -93,7 +93,7 @@ class Inflow:
 
     def _summed(self, rows: Floats) -> Floats:
         """Return the sum of the tone over the given number of rows, divided by the tone at their mean time."""
-        return np.array([dirichlet(count, self.tone.frequency * self.row_time) for count in rows.tolist()])
+        return np.array([dirichlet(count, self.tone.frequency * self.round_trip_time) for count in rows.tolist()])
 
     def _swing(self, time: Floats) -> Floats:
         return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))

@@ -28,60 +28,60 @@ def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tupl
     Compiles the law's formulas if they are new. The parts that do not depend on the tolerance are cached for the next run.
     """
     setup, state, count = _prepared(problem, rule_of(problem))
-    par = setup.par.copy()
-    set_tolerance(par, rtol, shortest)
+    params = setup.params.copy()
+    set_tolerance(params, rtol, shortest)
     count = count.copy()
     set_lumping(count, problem, shortest)
-    return setup._replace(par=par), state.copy(), count
+    return setup._replace(params=params), state.copy(), count
 
 
-def set_tolerance(par: Params, rtol: Any, shortest: float | None) -> None:
-    """Set the numbers that depend on the tolerance, in `Setup.par` or in one with a column for each member."""
-    set_length(par, shortest)
-    par.tolerance, par.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
+def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
+    """Set the numbers that depend on the tolerance, in `Setup.params` or in one with a column for each member."""
+    set_length(params, shortest)
+    params.tolerance, params.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
 @lru_cache(maxsize=256)
 def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
-    par = parameters_of(problem)
-    branches, par.stick_to = table_of_branches(problem, 0.0)
+    params = parameters_of(problem)
+    branches, params.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
-    setup = Setup(par, *law_tables(problem), branches, first, loading_of(problem))
-    for shared in (par.numbers, *setup[1:]):
+    setup = Setup(params, *law_tables(problem), branches, first, loading_of(problem))
+    for shared in (params.numbers, *setup[1:]):
         shared.flags.writeable = False
     return setup, *start_of(problem)
 
 
 def parameters_of(problem: Problem) -> Params:
-    """Return `Setup.par` without the numbers that depend on the tolerance.
+    """Return `Setup.params` without the numbers that depend on the tolerance.
 
     If any of the problem's numbers is an array, the result has a column for each member of a batch.
     """
     body, law = problem.body, problem.friction
-    par = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
-    par.row_time = problem.round_trip_time
-    par.normal = problem.normal
-    par.reference = problem.strength
-    par.counts_net = 1.0 if law.counts == "net" else 0.0
-    par.static_excess = law.static_excess
-    par.state_scale = law.state.scale if law.state else 0.0
-    par.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
-    par.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
+    params = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
+    params.round_trip_time = problem.round_trip_time
+    params.normal = problem.normal
+    params.reference = problem.strength
+    params.counts_net = 1.0 if law.counts == "net" else 0.0
+    params.static_excess = law.static_excess
+    params.state_scale = law.state.scale if law.state else 0.0
+    params.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
+    params.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     lowest, _ = law.range()
-    par.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    par.impedance, par.inertia, par.reflection = body.damping, body.inertia, body.reflection
+    params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
+    params.impedance, params.inertia, params.reflection = body.damping, body.inertia, body.reflection
     if body.has_waves:
-        par.smallest_jump = 1e-14 * problem.normal / body.impedance
+        params.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:
-        par.stiffness = body.stiffness
+        params.stiffness = body.stiffness
     if problem.varies:
-        par.tone, par.tone_frequency, par.tone_phase = inflow_of(problem).tone
+        params.tone, params.tone_frequency, params.tone_phase = inflow_of(problem).tone
     elif not body.has_waves:
-        par.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
+        params.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
-        par.inflow, par.inflow_rate = steady_inflow(problem)
-        par.ramp = par.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
-    return Params(together([getattr(par, name) for name in Params.places]))
+        params.inflow, params.inflow_rate = steady_inflow(problem)
+        params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
+    return Params(together([getattr(params, name) for name in Params.places]))
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:
@@ -134,7 +134,7 @@ def first_load_varying(problem: Problem) -> at.Floats:
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     """Return the same load in shorter pieces, in which the phase of a tone changes by at most LARGEST_TURN."""
     known, tone = FirstLoad.of(pieces), inflow_of(problem).tone
-    theta = known.theta
+    theta = known.phase
     if tone.amplitude == 0.0:
         return pieces
     counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
@@ -163,7 +163,7 @@ def loading_of(problem: Problem) -> at.Floats:
     inflow = inflow_of(problem)
     table = LoadingSegment.table(len(inflow.start))
     segments = LoadingSegment.of(table)
-    segments.row, segments.offset = zip(*inflow.breaks(), strict=True)
+    segments.trip, segments.offset = zip(*inflow.breaks(), strict=True)
     segments.value, segments.slope = inflow.value, inflow.slope
     ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)
     segments.jump[1:] = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))

@@ -45,7 +45,7 @@ KINDS = {
 DRAWN_POINTS = 2000
 """Number of evenly spaced times of the stored curves, to which breaking points are added: enough for a figure."""
 
-AXES = (("numbers",), ("counts",), ("rows", "terms"), ("levels", "branches"), ("one",), ("times",))
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",), ("times",))
 """Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
 
 LONG_NAMES = {
@@ -108,13 +108,13 @@ def to_dataset(run: Readings, t: ArrayLike, x: ArrayLike | None = None) -> xr.Da
     The curves are slip, slip rate, traction, load and, if the law has one, the state. With x (m from the contact) the dataset also
     holds the field inside the slab.
 
-    In a window t is local time, s since the start of the event. The event begins `epoch_row` whole rows of `row_time` seconds and
-    `epoch_offset` seconds after the start of the run: these three are attributes.
+    In a window t is local time, s since the start of the event. The event begins `epoch_trip` whole round trips, of
+    `round_trip_time` seconds each, and `epoch_offset` seconds after the start of the run: these three are attributes.
     """
     dataset = _readings(run, t, x)
     if isinstance(run, Window):
         dataset.time.attrs["long_name"] = "time since the start of the event"
-        about = {"epoch_row": run.epoch.row, "epoch_offset": run.epoch.offset, "row_time": run.history.row_time}
+        about = {"epoch_trip": run.epoch.trip, "epoch_offset": run.epoch.offset, "round_trip_time": run.history.round_trip_time}
         return dataset.assign_attrs(provenance(run.solution) | about)
     assert isinstance(run, Solution)
     return dataset.assign_attrs(provenance(run))
@@ -192,7 +192,7 @@ def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None
 
 HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name, place in HistoryPiece.places.items()}
 """Dimensions of the variable of each field of the history's pieces."""
-HISTORY_UNITS = dict.fromkeys(("theta_from", "theta_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
+HISTORY_UNITS = dict.fromkeys(("phase_from", "phase_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
 """Units of these variables, unless they are pure numbers or loads."""
 
 
@@ -219,7 +219,7 @@ def _history(solution: Solution) -> xr.Dataset:
         variables[f"history_{name}"] = (axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
     variables |= {
         "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
-        "row_time": ((), history.row_time, {"units": "s", "long_name": "length of a row of the history"}),
+        "round_trip_time": ((), history.round_trip_time, {"units": "s", "long_name": "length of a row of the history"}),
         "ramp": ((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
     }
     if len(history.creep):
@@ -329,8 +329,8 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
     store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
-    row_time, ramp, reached = (float(dataset[name].item()) for name in ("row_time", "ramp", "reached"))
-    history = History(store, scenario.problem, row_time, ramp, reached, creep=creep)
+    round_trip_time, ramp, reached = (float(dataset[name].item()) for name in ("round_trip_time", "ramp", "reached"))
+    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep)
     status = Status(str(attributes["status"]), str(attributes["status_message"]), bool(attributes["status_ok"]))
     checkpoint = None
     if "engine" in attributes:

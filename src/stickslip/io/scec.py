@@ -111,7 +111,7 @@ def _about(run: Readings, series: Series, problem: str, station: str, meanings: 
     yield f"rtol={solution.rtol:g}"  # type: ignore[attr-defined]
     if isinstance(run, Window):
         row, offset = run.epoch
-        late = f"{row} rows of {run.history.row_time!r} s (round trips; block: periods) and {offset!r} s after t = 0"
+        late = f"{row} rows of {run.history.round_trip_time!r} s (round trips; block: periods) and {offset!r} s after t = 0"
         yield f"origin=start of the slip event {late}"
     yield "element_size=0 (no grid: exact waves)"
     yield f"time_step={1.0 / series.rate:.13E} s"

@@ -29,15 +29,26 @@ ROUNDING = 1e-9
 """Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
-FINITE = ("theta_from", "theta_to", "speed", "bend", "slip", "law_slip", "load", "rate")
+FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
 SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone, so that those in a file must be the same."""
-FLAGS = ("moved", "jump", "stiff", "leaving", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+FLAGS = ("moved", "jump", "stiff", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
 """Counts that are 0 or 1."""
-SIGNS = ("mode", "edge")
+SIGNS = ("mode", "leaving_rest")
 """Counts that are a direction: -1, 0 or 1."""
-NOT_NEGATIVE = ("row", "source", "steps", "slip_row", "tiny", "pause_at", "pause_for", "stalled", "lumped_since", "rough")
+NOT_NEGATIVE = (
+    "trip",
+    "source",
+    "steps",
+    "slip_trip",
+    "unresolved_slips",
+    "pause_at",
+    "pause_for",
+    "stalled",
+    "lumped_since",
+    "rough",
+)
 """Counts of rows or steps, from 0 to NEVER."""
 FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
 """Numbers of the state that may be infinite or NaN."""
@@ -89,14 +100,14 @@ def check_history(history: History, path: Path) -> None:
 def history_table(columns: dict[str, NDArray[Any]], path: Path) -> NDArray[np.int64]:
     """Return the table of a history from the fields of its pieces. Raises InputError if one of them has another shape or type."""
     _refuse(_shapes_of_columns(columns), path)
-    table = HistoryPiece.table(len(columns["row"]))
+    table = HistoryPiece.table(len(columns["trip"]))
     for name, place in HistoryPiece.places.items():
         table[:, place.first : place.first + place.size] = columns[name].reshape(len(table), -1).view(np.int64)
     return table
 
 
 def _shapes_of_columns(columns: dict[str, NDArray[Any]]) -> Iterator[Fault]:
-    pieces = columns["row"].size
+    pieces = columns["trip"].size
     for name, place in HistoryPiece.places.items():
         shape = (pieces, place.size) if place.inside else (pieces,)
         yield f"shape or type of history_{name}", not _is(columns[name], shape, "i" if place.kind is int else "f")
@@ -116,15 +127,15 @@ def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:
 
 def _faults_of_history(history: History) -> Iterator[Fault]:
     store, pieces, row = history.store, len(history), history.problem.round_trip_time
-    yield "row_time", not math.isclose(history.row_time, row, rel_tol=1e-9)
+    yield "round_trip_time", not math.isclose(history.round_trip_time, row, rel_tol=1e-9)
     yield "ramp or reached", not (math.isfinite(history.ramp) and math.isfinite(history.duration) and history.duration >= 0.0)
-    yield "row of a piece", (store.row < 0).any() or (np.diff(store.row) < 0).any() or store.row[-1] >= at.NEVER
+    yield "row of a piece", (store.trip < 0).any() or (np.diff(store.trip) < 0).any() or store.trip[-1] >= at.NEVER
     yield "mode of a piece", _outside(store.mode, -1, 1)
     yield "law piece of a piece", _outside(store.law_piece, 0, len(history.problem.friction.pieces) - 1)
     yield "jump of a piece", _outside(store.jump, 0, 1)
     yield "cause of a piece", _outside(store.cause, 0, LAST_CAUSE)
     yield "echo of a piece", (store.echo_of < -1).any() or (store.echo_of >= np.arange(pieces)).any()
-    yield "times of a piece", _no_interval(store.theta_from, store.theta_to, math.inf)  # a leap over creep may span many rows
+    yield "times of a piece", _no_interval(store.phase_from, store.phase_to, math.inf)  # a leap over creep may span many rows
     numbers = (*(getattr(store, name) for name in FINITE), store.state, history.creep)
     yield "numbers of a piece, which are not finite,", not all(np.isfinite(table).all() for table in numbers)
 
@@ -173,19 +184,19 @@ def _places(record: Record, *names: str) -> Any:
 def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
     """Yield a check of each number that the engine uses as an index."""
     length = int(count.length)
-    begins = count.row == 0 and (count.source == 0 or count.ready != Incoming.NONE)
+    begins = count.trip == 0 and (count.source == 0 or count.ready != Incoming.NONE)
     yield "number of pieces", not 0 <= length <= pieces or (length == 0 and not begins)
     if count.sparse == 0:  # otherwise they are not used, and a catalogue that discards history makes them negative
-        for name in ("row_from", "previous_from", "previous_to"):
+        for name in ("trip_from", "previous_from", "previous_to"):
             yield f"engine_count {name}", not 0 <= getattr(count, name) <= length
         yield "engine_count previous_from", count.previous_from > count.previous_to
     else:
         yield "engine_count new_from", not 1 <= count.new_from <= length
-        echoes = setup.par.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
+        echoes = setup.params.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)
-    yield "engine_count segment", not 0 <= count.row_segment <= count.segment < len(setup.loading)
+    yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)
     yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
     yield "engine_count degree", not 0 <= count.degree < at.TERMS
 
@@ -196,7 +207,7 @@ def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
     yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
     yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
     yield "engine_count: a number of rows or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)
-    yield "engine_count stuck_rows", not -1 <= count.stuck_rows <= at.NEVER
+    yield "engine_count trips_at_rest", not -1 <= count.trips_at_rest <= at.NEVER
     yield "engine_count creep_in or LUMP_ABOVE", _outside(_places(count, "creep_in", "lump_above"), -at.NEVER, at.NEVER)
     yield "engine_count: a cause", _outside(_places(count, "cause", "arriving"), 0, LAST_CAUSE)
     yield "engine_count ready", not 0 <= count.ready <= Incoming.BROUGHT
@@ -206,14 +217,14 @@ def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:
-    state, row = State(checkpoint.state), history.row_time
+    state, row = State(checkpoint.state), history.round_trip_time
     finite = _places(state, *(name for name in State.places if name not in FREE))
     yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
     yield "engine_state xi", not -ROUNDING <= state.xi <= 1.0 + ROUNDING
-    yield "engine_state: times", _no_interval(state.theta_from, state.theta_to, row)
+    yield "engine_state: times", _no_interval(state.phase_from, state.phase_to, row)
     yield "engine_state last_step", not state.last_step > 0.0
-    rows = history.store.row[: checkpoint.length]
-    yield "engine_count row, before the end of the history,", bool((rows[-1:] > Counts(checkpoint.count).row).any())
+    rows = history.store.trip[: checkpoint.length]
+    yield "engine_count trip, before the end of the history,", bool((rows[-1:] > Counts(checkpoint.count).trip).any())
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
@@ -222,7 +233,7 @@ def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) 
     yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < len(branch)
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
     if not folds_move(problem):
-        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branches) or stick_to != setup.par.stick_to
+        yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branches) or stick_to != setup.params.stick_to
         return
     known, level = table_of_branches(problem, float(State(checkpoint.state).table_slip))
     compared = list(Branch.places)

@@ -39,13 +39,13 @@ class WaveInterval:
         middle = 0.5 * (breaks + np.append(breaks[1:], self.high))
         at = self.history.find(middle, "right")
         another = np.append(True, (np.diff(at.piece) != 0) | (np.diff(at.leaped) != 0.0))
-        if any(self.history.is_averaged(row) for row in np.unique(self.history.store.row[at.piece])):
+        if any(self.history.is_averaged(row) for row in np.unique(self.history.store.trip[at.piece])):
             raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
         self.start: Floats = breaks[another]
         """Times (s) from which on another piece of the history holds, or the same one a number of whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]
         store = self.history.store
-        self._origin = self.history.seconds(store.row[self._piece] + leaped, store.theta_from[self._piece])
+        self._origin = self.history.seconds(store.trip[self._piece] + leaped, store.phase_from[self._piece])
         count = len(POINTS)
         places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
         self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
@@ -55,9 +55,9 @@ class WaveInterval:
         """Return the times inside at which another piece may begin to hold: phases of all pieces so far, in every round trip."""
         history, store = self.history, self.history.store
         known = max(int(np.searchsorted(history.start, high, side="right")), 1)
-        phases = np.unique(np.concatenate([[0.0], store.theta_from[:known], store.theta_to[:known]]))
+        phases = np.unique(np.concatenate([[0.0], store.phase_from[:known], store.phase_to[:known]]))
         epoch = history.epoch
-        first, last = (epoch.row + int((time + epoch.offset) // history.row_time) for time in (low, high))
+        first, last = (epoch.trip + int((time + epoch.offset) // history.round_trip_time) for time in (low, high))
         times = np.concatenate([history.seconds(np.full(len(phases), row), phases) for row in range(first, last + 1)])
         return np.unique(times[(times > low) & (times < high)])
 
@@ -83,7 +83,7 @@ class WaveInterval:
 
         Times within rounding of a break lie on it, and `side` picks the part.
         """
-        slack = rounding(time, self.history.row_time)
+        slack = rounding(time, self.history.round_trip_time)
         if side == "right":
             return np.searchsorted(self.start, time + slack, side="right") - 1
         return np.searchsorted(self.start, time - slack, side="left") - 1
@@ -119,6 +119,6 @@ def _series(coefficients: Floats, part: NDArray[np.intp], xi: Floats) -> Floats:
     return np.asarray(chebyshev.chebval(2.0 * xi - 1.0, coefficients[:, part], tensor=False))
 
 
-def rounding(time: Floats, row_time: float) -> Floats:
+def rounding(time: Floats, round_trip_time: float) -> Floats:
     """Return the possible error (s) of a time that was computed from times and travel times."""
-    return np.asarray(4.0 * np.spacing(np.maximum(np.abs(time), row_time)))
+    return np.asarray(4.0 * np.spacing(np.maximum(np.abs(time), round_trip_time)))

@@ -55,7 +55,7 @@ class Waves:
 
     def begun(self, now: Epoch) -> float:
         """Return the time since the start of the run, s; use it only where its rounding does not matter."""
-        return now.row * self.round + now.offset
+        return now.trip * self.round + now.offset
 
     # ---- energies -----------------------------------------------------------------------------------------------------------
 
@@ -101,23 +101,23 @@ class Waves:
 
     def work(self, now: Epoch) -> float:
         """Return the work of the driver since the start of the run."""
-        end = Epoch(now.row, now.offset - self.half) if now.offset >= self.half else Epoch(now.row - 1, now.offset + self.half)
-        if end.row < 0:
+        end = Epoch(now.trip, now.offset - self.half) if now.offset >= self.half else Epoch(now.trip - 1, now.offset + self.half)
+        if end.trip < 0:
             return self._before(-self.half, end.offset - self.round, self.power)
         total = self._before(-self.half, 0.0, self.power)
         if self.history.problem.varies:
-            return total + self._row_by_row(end.row) + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
-        total += float(self._passed[int(np.searchsorted(self.history.store.row, end.row, side="right"))])
-        piece, low, high = self.standing(end.row)
-        total += float(self._work_of(piece, low, high, end.row - self.history.store.row[piece]).sum())
-        return total + self._in_row(end.row, 0.0, end.offset, self._of(self.power))
+            return total + self._row_by_row(end.trip) + self._in_row(end.trip, 0.0, end.offset, self._of(self.power))
+        total += float(self._passed[int(np.searchsorted(self.history.store.trip, end.trip, side="right"))])
+        piece, low, high = self.standing(end.trip)
+        total += float(self._work_of(piece, low, high, end.trip - self.history.store.trip[piece]).sum())
+        return total + self._in_row(end.trip, 0.0, end.offset, self._of(self.power))
 
     def _row_by_row(self, past: int) -> float:
         """Return the work of all waves that left the contact before a row, for a loading that varies.
 
         The echoes of rows at rest then differ by more than a ramp, and the sum in closed form over them does not hold.
         """
-        rows = np.unique(self.history.store.row)
+        rows = np.unique(self.history.store.trip)
         rows, of_rows = rows[rows < past], self._of_rows
         last = int(rows[-1]) if len(rows) else -1
         return float(of_rows[len(rows)]) + self._at_rest(last + 1, past)
@@ -125,7 +125,7 @@ class Waves:
     @cached_property
     def _of_rows(self) -> Floats:
         """The work of all waves that left before the end of each stored row, after a 0 for the start."""
-        rows = np.unique(self.history.store.row)
+        rows = np.unique(self.history.store.trip)
         own = [self._in_row(int(row), 0.0, self.round, self._of(self.power)) for row in rows]
         rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
         return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
@@ -145,7 +145,7 @@ class Waves:
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
-        lasting = (last.row - first.row) * self.round + (last.offset - first.offset)
+        lasting = (last.trip - first.trip) * self.round + (last.offset - first.offset)
         begun = self.begun(last)
         return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
 
@@ -154,14 +154,14 @@ class Waves:
         """The cumulative work, over the pieces in order of time, of all waves that left before their echo was recorded."""
         store = self.history.store
         echo = np.flatnonzero(store.echo_of >= 0)
-        source, work = store.echo_of[echo], np.zeros(len(store.row))
-        work[echo] = self._work_of(source, store.theta_from[echo], store.theta_to[echo], store.row[echo] - store.row[source])
+        source, work = store.echo_of[echo], np.zeros(len(store.trip))
+        work[echo] = self._work_of(source, store.phase_from[echo], store.phase_to[echo], store.trip[echo] - store.trip[source])
         for row, trips in self.history.creep[:, :2]:  # averages have the same work as the round trips that they replace
-            way, landing = (np.searchsorted(store.row, when) for when in (row, row + trips))
+            way, landing = (np.searchsorted(store.trip, when) for when in (row, row + trips))
             own = np.arange(way, landing)
-            work[landing] = self._work_of(own, store.theta_from[own], store.theta_to[own], np.ones(len(own), np.int64)).sum()
+            work[landing] = self._work_of(own, store.phase_from[own], store.phase_to[own], np.ones(len(own), np.int64)).sum()
             before = self.history.standing(int(row) - 1)
-            work[way] = self._work_of(*before, row - store.row[before[0]]).sum()
+            work[way] = self._work_of(*before, row - store.trip[before[0]]).sum()
         return np.append(0.0, np.cumsum(work))
 
     def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, rows: NDArray[np.int64]) -> Floats:
@@ -174,14 +174,14 @@ class Waves:
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
         """Return the places (xi) in pieces of two offsets (s)."""
-        history, start, end = self.history, self.history.store.theta_from[piece], self.history.store.theta_to[piece]
+        history, start, end = self.history, self.history.store.phase_from[piece], self.history.store.phase_to[piece]
         first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
         return first, np.where(high >= end, 1.0, last)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Return `History.standing`. Raises InputError for a row in a leap over creep, which holds averages."""
-        last = int(np.searchsorted(self.history.store.row, row, side="right")) - 1
-        if self.history.is_averaged(int(self.history.store.row[last])):
+        last = int(np.searchsorted(self.history.store.trip, row, side="right")) - 1
+        if self.history.is_averaged(int(self.history.store.trip[last])):
             raise InputError(f"the waves of round trip {row} are not known: they left the contact in a leap over creep")
         return self.history.standing(row)
 
@@ -209,8 +209,8 @@ class Waves:
 
         def integrand(at: Positions) -> Floats:
             store = self.history.store
-            theta = store.theta_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
-            time = (store.row[at.piece] + at.leaped - since.row) * self.round + (theta - since.offset)
+            theta = store.phase_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
+            time = (store.trip[at.piece] + at.leaped - since.trip) * self.round + (theta - since.offset)
             return density(self.leaving(at), time)
 
         return integrand
@@ -232,9 +232,9 @@ class Waves:
         begun = self.begun(now)
         total = self._before(begun + low, min(begun + high, 0.0), density, begun)
         low = max(low, -begun)
-        first_row, last_row = (now.row + int((now.offset + time) // self.round) for time in (low, high))
-        for row in range(max(first_row, 0), last_row + 1):
-            start = (row - now.row) * self.round - now.offset
+        first_row, last_trip = (now.trip + int((now.offset + time) // self.round) for time in (low, high))
+        for row in range(max(first_row, 0), last_trip + 1):
+            start = (row - now.trip) * self.round - now.offset
             begin, end = max(low - start, 0.0), min(high - start, self.round)
             if end <= begin:
                 continue
@@ -248,7 +248,7 @@ class Waves:
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
         if self.history.problem.varies:
             piece, begin, end = self._cut(piece, begin, end, row)
-        leaped = (row - self.history.store.row[piece]).astype(float)
+        leaped = (row - self.history.store.trip[piece]).astype(float)
         return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped=leaped).sum())
 
     def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:

@@ -45,32 +45,32 @@ class CoulombBlock:
 
     @property
     def frequency(self) -> float:
-        """Return the angular frequency sqrt(K / m) (rad/s)."""
+        """The angular frequency sqrt(K / m) (rad/s)."""
         return math.sqrt(self.body.stiffness / self.body.mass)
 
     @property
     def swing(self) -> float:
-        """Return (static - dynamic) S / sqrt(K m) (m/s), the peak slip rate for pull_rate 0."""
+        """(static - dynamic) S / sqrt(K m) (m/s), the peak slip rate for pull_rate 0."""
         return (self.static - self.dynamic) * self.body.normal_force / math.sqrt(self.body.stiffness * self.body.mass)
 
     @property
     def duration(self) -> float:
-        """Return the time from onset to arrest (s); it is pi sqrt(m / K) for pull_rate 0."""
+        """The time from onset to arrest (s); it is pi sqrt(m / K) for pull_rate 0."""
         return 2.0 * self.peak_time
 
     @property
     def peak_time(self) -> float:
-        """Return the time from onset to the largest slip rate (s)."""
+        """The time from onset to the largest slip rate (s)."""
         return (math.pi - math.atan2(self.swing, self.pull_rate)) / self.frequency
 
     @property
     def peak_rate(self) -> float:
-        """Return the largest slip rate (m/s)."""
+        """The largest slip rate (m/s)."""
         return self.pull_rate + math.hypot(self.swing, self.pull_rate)
 
     @property
     def total_slip(self) -> float:
-        """Return the slip of the event (m); it is 2 (static - dynamic) S / K for pull_rate 0."""
+        """The slip of the event (m); it is 2 (static - dynamic) S / K for pull_rate 0."""
         return float(self.slip(self.duration))
 
     def slip(self, t: ArrayLike) -> Floats:
@@ -123,22 +123,22 @@ class LinearBlock:
 
     @property
     def weakening(self) -> float:
-        """Return the weakening rate S (muS - muD) / Dc (N/m)."""
+        """The weakening rate S (muS - muD) / Dc (N/m)."""
         return self.body.normal_force * (self.static - self.dynamic) / self.distance
 
     @property
     def growth(self) -> float:
-        """Return the rate of the exponential growth (1/s)."""
+        """The rate of the exponential growth (1/s)."""
         return math.sqrt((self.weakening - self.body.stiffness) / self.body.mass)
 
     @property
     def frequency(self) -> float:
-        """Return the angular frequency sqrt(K / m) (rad/s)."""
+        """The angular frequency sqrt(K / m) (rad/s)."""
         return math.sqrt(self.body.stiffness / self.body.mass)
 
     @cached_property
     def knot_time(self) -> float:
-        """Return the time from onset at which the slip reaches the weakening distance (s)."""
+        """The time from onset at which the slip reaches the weakening distance (s)."""
         late = 1.0 / self.growth
         while self._growing(late)[0] < self.distance:
             late *= 2.0
@@ -147,7 +147,7 @@ class LinearBlock:
 
     @cached_property
     def duration(self) -> float:
-        """Return the time from onset to arrest (s); inf if the block never stops."""
+        """The time from onset to arrest (s); inf if the block never stops."""
         # v = V + R sin(phase) is positive at the knot, and negative at the bottom of the sine unless V >= R
         _, sine, cosine = self._swing
         bottom = (1.5 * math.pi - math.atan2(cosine, sine)) % (2.0 * math.pi) / self.frequency
@@ -159,7 +159,7 @@ class LinearBlock:
 
     @property
     def total_slip(self) -> float:
-        """Return the slip of the event (m)."""
+        """The slip of the event (m)."""
         return float(self.slip(self.duration))
 
     def slip(self, t: ArrayLike) -> Floats:
@@ -184,7 +184,7 @@ class LinearBlock:
 
     @cached_property
     def _swing(self) -> tuple[float, float, float]:
-        """Return the slip (m) about which the block oscillates after the knot, and the sine and cosine part of its rate (m/s)."""
+        """The slip (m) about which the block oscillates after the knot, and the sine and cosine part of its rate (m/s)."""
         slip, rate = self._growing(self.knot_time)
         steady = (self.excess + self.weakening * self.distance) / self.body.stiffness + self.pull_rate * self.knot_time
         return steady, (steady - float(slip)) * self.frequency, float(rate) - self.pull_rate

@@ -45,7 +45,7 @@ class SteadySliding:
 
     @property
     def time(self) -> float:
-        """Return the time T = Dc / V in which the state follows the slip rate (s)."""
+        """The time T = Dc / V in which the state follows the slip rate (s)."""
         return self.distance / self.rate
 
     def critical_stiffness(self, mass: float = 0.0, damping: float = 0.0) -> float:

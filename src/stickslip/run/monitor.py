@@ -138,4 +138,4 @@ class Monitor:
 def stream_of(run: Session, event_rate: float | None = None, energies: bool = False) -> EventStream:
     """Return a stream of all events of a run, from its start."""
     rate = default_event_rate(run.problem) if event_rate is None else event_rate
-    return EventStream(run.problem, rate, float(run.setup.par.ramp), energies=energies)
+    return EventStream(run.problem, rate, float(run.setup.params.ramp), energies=energies)

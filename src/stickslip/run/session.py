@@ -55,7 +55,7 @@ class Session:
     """Number of pieces of history that have been discarded."""
 
     def __post_init__(self) -> None:
-        self.par, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
+        self.params, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
         self._lend()
 
@@ -63,7 +63,7 @@ class Session:
     def begin(cls, problem: Problem, options: RunOptions) -> Self:
         """Return a run at t = 0."""
         setup, state, count = prepare(problem, options.rtol, options.shortest_event)
-        memory = memory_of(setup.par, state, count)
+        memory = memory_of(setup.params, state, count)
         state, count = state_in(memory), counts_in(memory)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
         follower = RuleFollower(problem, problem.round_trip_time, state, count)
@@ -96,12 +96,12 @@ class Session:
     def time(self) -> float:
         """The simulated time, s."""
         xi, speed, bend = self.state.xi, self.state.speed, self.state.bend
-        return float(self.count.row * self.problem.round_trip_time + self.state.theta_from + xi * (speed + xi * bend))
+        return float(self.count.trip * self.problem.round_trip_time + self.state.phase_from + xi * (speed + xi * bend))
 
     @property
     def lumping_note(self) -> str:
         """One line on automatic lumping, or an empty string if it has not begun."""
-        return lumping_note(self.count, self.par, self.options.shortest_event)
+        return lumping_note(self.count, self.params, self.options.shortest_event)
 
     @property
     def rounding_note(self) -> str:
@@ -117,14 +117,14 @@ class Session:
         """Return the solution computed so far, with the status that belongs to this code."""
         kept, row, options = at.trimmed(self.store, self.length), self.problem.round_trip_time, self.options
         whole = code in (Stop.FINISHED, Stop.LOCKED)
-        reached = options.duration if whole else float(kept.row[-1] * row + kept.theta_to[-1])
-        history = History(kept, self.problem, row, float(self.setup.par.ramp), reached, creep=self.creep)
+        reached = options.duration if whole else float(kept.trip[-1] * row + kept.phase_to[-1])
+        history = History(kept, self.problem, row, float(self.setup.params.ramp), reached, creep=self.creep)
         found = Solution(self.problem, options.duration, options.rtol, STATUSES[code], history, self.checkpoint())
         given = {name: getattr(options, name) for name in ("max_events", "creep_rtol", "shortest_event")}
         return replace(found, lumping_note=self.lumping_note, rounding_note=self.rounding_note, **given)
 
     def advance(self, last: tuple[int, float], budget: int) -> int:
-        """Call the engine once or, if it has paused for that, look for creep and leap over it. Returns the code of `loop.advance`.
+        """Call the engine once or, if it has paused for that, leap over creep. Returns the code of `loop.run_until`.
 
         The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as Stop.NONE.
         """
@@ -142,7 +142,7 @@ class Session:
             return Stop.NONE
         if code != Stop.NEED_BRANCHES:
             return code
-        self.setup = renewed(self.problem, self.setup, self.par, self.state, self.count)
+        self.setup = renewed(self.problem, self.setup, self.params, self.state, self.count)
         self._lend()
         self.follower.set_levels(self.memory)
         return Stop.NONE
@@ -174,7 +174,7 @@ class Session:
         dropped = self.length - len(kept)
         place = at.keep_only(self.store, self.length, kept)
         self.count.echo_of = place[self.count.echo_of]
-        for name in ("length", "row_from", "previous_from", "previous_to", "new_from"):
+        for name in ("length", "trip_from", "previous_from", "previous_to", "new_from"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
         self._rebuild_queue()
         self.forgotten += dropped
@@ -197,7 +197,7 @@ class Session:
 
     def snapshot(self) -> Checkpoint:
         """Return a checkpoint of the present state."""
-        stick_to, crossings = np.array([self.par.stick_to]), np.array(self.follower.times, float)
+        stick_to, crossings = np.array([self.params.stick_to]), np.array(self.follower.times, float)
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
         return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, crossings, engine())
 
@@ -210,7 +210,7 @@ class Session:
         self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
         self.scratch[:] = checkpoint.scratch
         self.setup = self.setup._replace(branches=checkpoint.branch.copy())
-        self.par.stick_to = checkpoint.stick_to[0]
+        self.params.stick_to = checkpoint.stick_to[0]
         self.follower.times.clear()
         self.follower.times.extend(checkpoint.crossings.tolist())
         if self.count.to_the_end == 0:

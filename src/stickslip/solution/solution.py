@@ -248,7 +248,7 @@ class Solution(Exports):
 
     @cached_property
     def rule_influence(self) -> RuleInfluence:
-        """Return which shocks the selection rule decided, and when it first had a choice."""
+        """The shocks that the selection rule decided, and the time from which it had a choice."""
         from stickslip.observables.rule_influence import rule_influence
 
         return rule_influence(self.history, lambda: self.curve("load"))

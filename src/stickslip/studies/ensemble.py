@@ -90,7 +90,7 @@ class Ensemble(RunsCompared):
 
     @cached_property
     def _shared(self) -> tuple[pd.DataFrame, NDArray[np.bool_]]:
-        return shared_events(self.catalogues[0], self._all_events[1:], self.reference.history.row_time, self.until)
+        return shared_events(self.catalogues[0], self._all_events[1:], self.reference.history.round_trip_time, self.until)
 
     @property
     def table(self) -> pd.DataFrame:

@@ -54,7 +54,7 @@ class Separation(NamedTuple):
 
 def separation(reference: Solution, runs: Sequence[Solution], until: float) -> Separation:
     """Return the separation of the loads of runs from that of the reference, from t = 0 to `until` (s)."""
-    count = int(np.clip(until / reference.history.row_time, 1, WINDOWS))
+    count = int(np.clip(until / reference.history.round_trip_time, 1, WINDOWS))
     share = (np.arange(SAMPLES) + 0.5) / SAMPLES
     times = (np.arange(count)[:, None] + share) * (until / count)
     undisturbed = _load(reference, times)
@@ -79,7 +79,7 @@ def slope(time: Floats, growth: Floats) -> float:
 
 
 def shared_events(
-    reference: pd.DataFrame, members: Sequence[pd.DataFrame], row_time: float, until: float
+    reference: pd.DataFrame, members: Sequence[pd.DataFrame], round_trip_time: float, until: float
 ) -> tuple[pd.DataFrame, NDArray[np.bool_]]:
     """Return the table of shared events (see `Ensemble.table`), and whether each member (row) has each event (column).
 
@@ -87,7 +87,7 @@ def shared_events(
     same time. Events so close to `until` (s) that a member may start them later are left out, unless all members have them.
     """
     allowed = SAME_SHARE * _nearest(reference, until)
-    late = np.array([_later(reference, member, row_time) for member in members])
+    late = np.array([_later(reference, member, round_trip_time) for member in members])
     has = np.logical_and.accumulate(np.abs(late) <= allowed, axis=1)
     known = (reference.start.to_numpy(float) + allowed <= until) | np.all(has, axis=0)
     table = reference[["start", "recurrence", "slip"]].copy()
@@ -107,9 +107,9 @@ def _nearest(table: pd.DataFrame, until: float) -> Floats:
     return np.where(np.isnan(nearest), until, nearest)
 
 
-def _later(reference: pd.DataFrame, member: pd.DataFrame, row_time: float) -> Floats:
+def _later(reference: pd.DataFrame, member: pd.DataFrame, round_trip_time: float) -> Floats:
     """Return how much later (s) each event of a member starts, without the rounding of either time; NaN if there is no event."""
-    return _gaps(reference.start_row, member.start_row) * row_time + _gaps(reference.start_offset, member.start_offset)
+    return _gaps(reference.start_row, member.start_row) * round_trip_time + _gaps(reference.start_offset, member.start_offset)
 
 
 def _gaps(reference: pd.Series, member: pd.Series) -> Floats:

@@ -54,7 +54,7 @@ class EventStream:
 
     def needed(self, store: Store) -> int:
         """Return the first piece of the history that is needed for new events and for the energy of the waves under way."""
-        return int(np.searchsorted(store.row, store.row[self.first] - WAVES_OF))
+        return int(np.searchsorted(store.trip, store.trip[self.first] - WAVES_OF))
 
     def look(self, store: Store, length: int) -> Look:
         """Return the new events in the first `length` pieces of a history."""
@@ -70,7 +70,7 @@ class EventStream:
     def history(self, store: Store, length: int) -> History:
         """Return the history so far."""
         kept, row = at.trimmed(store, length), self.problem.round_trip_time
-        reached = float(kept.row[-1] * row + kept.theta_to[-1]) if len(kept.pieces) else 0.0
+        reached = float(kept.trip[-1] * row + kept.phase_to[-1]) if len(kept.pieces) else 0.0
         return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:

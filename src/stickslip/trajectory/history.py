@@ -43,7 +43,7 @@ def add_up(values: Floats, past: Integers, sums: Floats) -> None:
 class Epoch(NamedTuple):
     """A moment without rounding: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
 
-    row: int
+    trip: int
     offset: float
 
 
@@ -102,7 +102,7 @@ class History:
 
     store: Store
     problem: Problem
-    row_time: float
+    round_trip_time: float
     ramp: float
     duration: float
     epoch: Epoch = START
@@ -117,17 +117,17 @@ class History:
 
     def seconds(self, row: Integers | Floats, offset: Floats) -> Floats:
         """Return the times (s since the epoch) of offsets (s) in whole rows."""
-        return np.asarray((row - self.epoch.row) * self.row_time + (offset - self.epoch.offset))
+        return np.asarray((row - self.epoch.trip) * self.round_trip_time + (offset - self.epoch.offset))
 
     @cached_property
     def start(self) -> Floats:
         """The time at which each piece starts, s."""
-        return self.seconds(self.store.row, self.store.theta_from)
+        return self.seconds(self.store.trip, self.store.phase_from)
 
     @cached_property
     def end(self) -> Floats:
         """The time at which each piece ends, s."""
-        return self.seconds(self.store.row, self.store.theta_to)
+        return self.seconds(self.store.trip, self.store.phase_to)
 
     @property
     def span(self) -> tuple[float, float]:
@@ -169,19 +169,19 @@ class History:
 
     def _find_echoes(self, found: Positions, n: NDArray[np.intp], time: Floats, side: Side) -> None:
         """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`."""
-        row = (self.store.row[found.last[n]] - self.epoch.row).astype(float)
-        rows = row + np.floor((time + self.epoch.offset - row * self.row_time) / self.row_time)
-        phase = time + self.epoch.offset - rows * self.row_time
+        row = (self.store.trip[found.last[n]] - self.epoch.trip).astype(float)
+        rows = row + np.floor((time + self.epoch.offset - row * self.round_trip_time) / self.round_trip_time)
+        phase = time + self.epoch.offset - rows * self.round_trip_time
         if side == "left":
-            rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.row_time, phase)
-        self._set_echoes(found, n, rows + self.epoch.row, phase, side)
+            rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.round_trip_time, phase)
+        self._set_echoes(found, n, rows + self.epoch.trip, phase, side)
 
     def _set_echoes(self, found: Positions, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
         piece = self.phases.latest(phase, found.last[n], side)
         known = piece >= 0
         n, piece, row, phase = n[known], piece[known], row[known], phase[known]
-        found.piece[n], found.leaped[n] = piece, row - self.store.row[piece]
-        found.xi[n] = self.xi(piece, phase - self.store.theta_from[piece])
+        found.piece[n], found.leaped[n] = piece, row - self.store.trip[piece]
+        found.xi[n] = self.xi(piece, phase - self.store.phase_from[piece])
 
     def just_before(self, piece: Integers) -> Positions:
         """Return the positions of the left limits at the starts of pieces."""
@@ -189,25 +189,25 @@ class History:
         found = Positions(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
         n = np.flatnonzero(self.rests[last] & (piece > 0))
         if n.size:
-            row, phase = self.store.row[piece[n]].astype(float), self.store.theta_from[piece[n]]
+            row, phase = self.store.trip[piece[n]].astype(float), self.store.phase_from[piece[n]]
             at_edge = phase == 0.0
-            self._set_echoes(found, n, row - at_edge, np.where(at_edge, self.row_time, phase), "left")
+            self._set_echoes(found, n, row - at_edge, np.where(at_edge, self.round_trip_time, phase), "left")
         return found
 
     @cached_property
     def phases(self) -> Phases:
         """The index of the pieces by phase."""
-        return Phases.of(self.store, self.row_time)
+        return Phases.of(self.store, self.round_trip_time)
 
     def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Return the pieces whose waves are in the body at the end of a row.
 
         The pieces are in order of phase; the other arrays hold the offsets (s) in the row from which and up to which each holds.
         """
-        first, past = (int(np.searchsorted(self.store.row, row, side=side)) for side in ("left", "right"))
+        first, past = (int(np.searchsorted(self.store.trip, row, side=side)) for side in ("left", "right"))
         own = np.arange(first, past)
-        low, high = self.store.theta_from[own], self.store.theta_to[own]
-        if len(own) and low[0] == 0.0 and high[-1] == self.row_time and not self.rests[own[:-1]].any():
+        low, high = self.store.phase_from[own], self.store.phase_to[own]
+        if len(own) and low[0] == 0.0 and high[-1] == self.round_trip_time and not self.rests[own[:-1]].any():
             return own, low, high
         return self.phases.standing(past - 1)
 
@@ -221,11 +221,11 @@ class History:
         for n in np.flatnonzero(self.rests & (self.end < end) & (behind > begin)):
             low, high = max(begin, float(self.end[n])), min(end, float(behind[n]))
             _, phase, _ = self.phases.standing(int(n))
-            trips = (high - low) / self.row_time + 1.0
+            trips = (high - low) / self.round_trip_time + 1.0
             most -= int(min(trips * len(phase), 1e18))
             if most < 0:
                 return np.empty(0)
-            first = np.floor((low + self.epoch.offset) / self.row_time) + self.epoch.row
+            first = np.floor((low + self.epoch.offset) / self.round_trip_time) + self.epoch.trip
             edges = self.seconds(first + np.arange(int(trips) + 1)[:, None], phase).ravel()
             found.append(edges[(edges > low) & (edges < high)])
         return np.concatenate([*found, np.empty(0)])
@@ -233,21 +233,21 @@ class History:
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
         """True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
-        row, start, end = self.store.row, self.store.theta_from, self.store.theta_to
-        follows = np.diff(row) * self.row_time + (start[1:] - end[:-1])
-        last = row[-1:] * self.row_time + end[-1:]
-        return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.row_time), last)
+        row, start, end = self.store.trip, self.store.phase_from, self.store.phase_to
+        follows = np.diff(row) * self.round_trip_time + (start[1:] - end[:-1])
+        last = row[-1:] * self.round_trip_time + end[-1:]
+        return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.round_trip_time), last)
 
     def placed(self, at: Positions) -> tuple[Integers, Floats]:
         """Return the rows and offsets (s) of positions."""
         store, piece, xi = self.store, at.piece, at.xi
-        inside = store.theta_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
-        return store.row[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.theta_to[piece], inside)
+        inside = store.phase_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
+        return store.trip[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.phase_to[piece], inside)
 
     def lasting(self, begin: Positions, end: Positions) -> Floats:
         """Return the time between pairs of positions (s), without the rounding of either."""
         (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
-        return np.asarray((later_row - row) * self.row_time + (later_offset - offset))
+        return np.asarray((later_row - row) * self.round_trip_time + (later_offset - offset))
 
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
         """Return the place xi in [0, 1] of a time `local` s after the start of a piece."""
@@ -270,8 +270,8 @@ class History:
         """Return the growth of the load over the rows at rest since it was recorded."""
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
-        offset = self.store.theta_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
-        return inflow_of(self.problem).gathered(self.store.row[at.piece].astype(float), offset, at.leaped)
+        offset = self.store.phase_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
+        return inflow_of(self.problem).gathered(self.store.trip[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Positions) -> Floats:
         """Return the slip rate, m/s."""

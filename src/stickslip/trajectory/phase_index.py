@@ -58,10 +58,10 @@ def _last(members: Integers, begin: int, end: int, upto: int) -> int:
 
 
 @kernel
-def _latest(begins: Integers, members: Integers, leaves: int, leaf: Integers, upto: Integers, found: Integers) -> None:
-    """Find, for each leaf, the last piece up to upto[q] in any node on the way from the leaf to the root."""
+def _latest(begins: Integers, members: Integers, leaf: Integers, upto: Integers, found: Integers) -> None:
+    """Find, for each leaf (by the number of its node), the last piece up to upto[q] in any node on the way to the root."""
     for q in range(len(leaf)):
-        node, best = leaf[q] + leaves, NOTHING
+        node, best = leaf[q], NOTHING
         while node >= 1:
             place = _last(members, begins[node], begins[node + 1], upto[q])
             if place >= begins[node]:
@@ -89,14 +89,14 @@ class Phases:
     members: Integers
 
     @classmethod
-    def of(cls, store: Store, row_time: float) -> Self:
-        """Index the pieces of a history whose rows last `row_time` (s).
+    def of(cls, store: Store, round_trip_time: float) -> Self:
+        """Index the pieces of a history whose rows last `round_trip_time` (s).
 
         Leaps over creep are longer than a row; they are averages, not waves in the body, and are left out.
         """
-        stands = store.theta_to <= row_time
-        edges = np.unique(np.concatenate([store.theta_from[stands], store.theta_to[stands]]))
-        first, past = (np.where(stands, np.searchsorted(edges, theta), 0) for theta in (store.theta_from, store.theta_to))
+        stands = store.phase_to <= round_trip_time
+        edges = np.unique(np.concatenate([store.phase_from[stands], store.phase_to[stands]]))
+        first, past = (np.where(stands, np.searchsorted(edges, theta), 0) for theta in (store.phase_from, store.phase_to))
         leaves = 1 << max(len(edges) - 2, 0).bit_length()
         counts = np.zeros(2 * leaves, np.int64)
         _collect(first, past, leaves, counts, np.empty(0, np.int64))
@@ -112,7 +112,7 @@ class Phases:
         """
         leaf = np.searchsorted(self.edges, phase, side=side) - 1
         found = np.empty(len(leaf), np.int64)
-        _latest(self.begins, self.members, self.leaves, np.clip(leaf, 0, len(self.edges) - 2), upto, found)
+        _latest(self.begins, self.members, self.leaves + np.clip(leaf, 0, len(self.edges) - 2), upto, found)
         return found
 
     def standing(self, upto: int) -> tuple[NDArray[np.intp], Floats, Floats]:
@@ -129,7 +129,7 @@ class Phases:
         return piece[known], low[known], high[known]
 
 
-def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Floats, Floats]:
+def standing_behind(store: Store, round_trip_time: float) -> tuple[NDArray[np.intp], Floats, Floats]:
     """Return the pieces whose waves are in the body after the whole history, as `Phases.standing` does.
 
     The search goes back only until every phase is known.
@@ -138,7 +138,7 @@ def standing_behind(store: Store, row_time: float) -> tuple[NDArray[np.intp], Fl
     while True:
         first = max(len(store.pieces) - looked, 0)
         recent = trimmed(store, len(store.pieces), first)
-        piece, low, high = Phases.of(recent, row_time).standing(len(recent.pieces) - 1)
-        if first == 0 or (low[0] == 0.0 and high[-1] == row_time and np.array_equal(low[1:], high[:-1])):
+        piece, low, high = Phases.of(recent, round_trip_time).standing(len(recent.pieces) - 1)
+        if first == 0 or (low[0] == 0.0 and high[-1] == round_trip_time and np.array_equal(low[1:], high[:-1])):
             return first + piece, low, high
         looked *= 4

@@ -81,7 +81,7 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
     lasts, slip = history.lasting(begin, end), np.abs(history.slipped_within(begin, end))
     before, after = friction_before(history, begin), friction_after(history, events)
     since = np.full(len(row), np.nan)
-    since[1:] = np.diff(row) * history.row_time + np.diff(offset)
+    since[1:] = np.diff(row) * history.round_trip_time + np.diff(offset)
     columns = {
         "start": history.seconds(row, offset),
         "end": np.where(events.is_over, history.seconds(*history.placed(end)), np.nan),
@@ -96,7 +96,7 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
         "traction_drop": before - after,
         "static_drop": history.problem.body.stiffness * slip,
         "pulses": events.pulses,
-        "phase": offset / history.row_time,
+        "phase": offset / history.round_trip_time,
         "amplification": events.largest(history.store.amplified),
         "start_row": row,
         "start_offset": offset,

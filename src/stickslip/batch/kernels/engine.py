@@ -22,7 +22,7 @@ def engine_address() -> int:
 
 
 @intrinsic
-def run_until_at(typingctx: Any, address: Any, table: Any, last_row: Any, last_theta: Any, budget: Any) -> Any:
+def run_until_at(typingctx: Any, address: Any, table: Any, last_trip: Any, last_phase: Any, budget: Any) -> Any:
     """Call `loop.run_until`, whose machine code is at `address`, and return the code with which it stops."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 from enum import IntEnum
+from typing import Any
 
-from stickslip.engine.codegen.compiler import ahead, call_jet, floats, inlined, kernel
-from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.codegen.simd import WIDTH, lanes_at
+from stickslip.engine.codegen.compiler import ahead, call_jet, inlined, kernel
+from stickslip.engine.codegen.lane_records import all_lanes, floats_of, one_lane
+from stickslip.engine.codegen.records import Record, floats_inside, inside
+from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.keep_step import move
@@ -25,19 +27,33 @@ from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_
 from stickslip.engine.state.layout import TERMS, Floats, Integers, Series
 from stickslip.engine.state.workspace import PLACES, Run, borrow
 
-K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE = (
-    Series.places[name].first for name in ("speed", "bend", "slip", "rate", "free", "force")
-)
-"""Rows of the block that hold the fields of `run.k` (`Series`) that change from step to step."""
-SERIES = Series.total
-"""Number of the first rows of the block, which hold all fields of `run.k`."""
-SEEN, LOCAL, JET, REACH, POWERS, RATE, LOAD = (Series.total + n * TERMS for n in range(7))
-LENGTH, BOUND, GROWN, LAST, GUESS, REACHED, LAST_STEP, TOLERANCE = range(LOAD + TERMS, LOAD + TERMS + 8)
-CONSTANTS = TOLERANCE + 1
-"""First rows of the other contents of the block, which has WIDTH numbers in each row: polynomials of TERMS rows each (load as the
-formula sees it, load, series of the rate, bound of the guards, powers of the length, rate and load over the step), then single
-numbers (length, lower bound of the rate, slip in the step, rate at its end, guess, whether the target is reached, last step,
-tolerance), and last the law's constants."""
+
+class Block(Record):
+    """Hold the numbers of a step in lanes; each place holds one number for every lane."""
+
+    k: Series = inside(Series)  # input of the series
+    load_along_slip: Floats = floats_inside(TERMS)  # as in `engine.state.workspace.Run`
+    local: Floats = floats_inside(TERMS)
+    jet: Floats = floats_inside(TERMS)  # the law's functions write `reach` right after it
+    reach: Floats = floats_inside(TERMS)
+    powers: Floats = floats_inside(TERMS)
+    rate: Floats = floats_inside(TERMS)  # m/s: slip rate over the step, as a polynomial on [0, 1]
+    load: Floats = floats_inside(TERMS)  # Pa or N: load over the step
+    length: float  # length of the step, in guesses
+    bound: float  # m/s: lower bound of the slip rate
+    grown: float  # m: slip in the step
+    last: float  # m/s: slip rate at the end of the step
+    guess: float  # 1: unit of the series, in xi
+    reached: float  # 1 if the step reaches the target of the run, else 0
+    last_step: float  # s: length that the error allowed the step before to have
+    tolerance: float  # 1: local error allowed to the step
+    constants: Floats = floats_inside(0)  # constants of the law, as many as it has
+
+
+block_in_all_lanes: Any = all_lanes(Block)
+"""Function for compiled code that sees the block at an address in all lanes at once."""
+block_in_one_lane: Any = one_lane(Block)
+"""Function for compiled code that sees the block at an address in lane 0."""
 
 
 class Waits(IntEnum):
@@ -76,105 +92,104 @@ def piece_of(table: Integers, lane: int) -> int:
 @kernel
 def step_under(address: int, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
     """Take one step in the lanes under the formula at `address` that have not taken theirs, which a negative `waits` marks."""
-    column, rows, taking = floats(block), lanes_at(block), 0
+    rows, lane_0, taking = block_in_all_lanes(block), block_in_one_lane(block), 0
     for lane in range(WIDTH):
         if waits[lane] < 0 and jets[piece_of(table, lane)] == address:
-            put_in(borrow(ahead(table, lane * PLACES)), ahead(column, lane), -waits[lane] == Waits.FRESH)
+            put_in(borrow(ahead(table, lane * PLACES)), lane_0[lane], -waits[lane] == Waits.FRESH)
             waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
-    call_jet(address, floats(block + 64 * CONSTANTS), column, floats(block + 64 * SEEN), floats(block + 64 * JET))
-    rows[LENGTH] = length_at(ahead(rows, JET), rows[TOLERANCE], 0.5)
+    call_jet(address, floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
+    rows.length = length_at(rows.jet, rows.tolerance, 0.5)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            take_length(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
+            take_length(borrow(ahead(table, lane * PLACES)), lane_0[lane])
     calculate(rows)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            waits[lane] = take_out(borrow(ahead(table, lane * PLACES)), ahead(column, lane))
+            waits[lane] = take_out(borrow(ahead(table, lane * PLACES)), lane_0[lane])
 
 
 @inlined
-def put_in(run: Run, own: Floats, fresh: bool) -> None:
-    """Copy the input of a run's series into its column of the block; if `fresh`, also what is constant on a piece of load."""
+def put_in(run: Run, own: Block, fresh: bool) -> None:
+    """Copy the input of a run's series into its lane of the block; if `fresh`, also what is constant on a piece of load."""
     guess = first_guess(run, run.state.target - run.state.xi)
     prepare_series(run, guess)
-    own[WIDTH * GUESS] = guess
-    for k in (K_SPEED, K_BEND, K_SLIP, K_RATE, K_FREE, K_FORCE):
-        own[WIDTH * k] = numbers_of(run.k)[k]
-    last = run.counts.degree
+    k, last, own.guess = run.k, run.counts.degree, guess
+    own.k.speed, own.k.bend, own.k.slip = k.speed, k.bend, k.slip
+    own.k.rate, own.k.free, own.k.force = k.rate, k.free, k.force
     if fresh:
-        constants, last = constants_of(run, run.counts.piece), TERMS - 1
-        for k in range(SERIES):
-            own[WIDTH * k] = numbers_of(run.k)[k]
-        own[WIDTH * TOLERANCE] = run.par.tolerance
-        for k in range(run.size):
-            own[WIDTH * (CONSTANTS + k)] = constants[k]
-    for k in range(last + 1):
-        own[WIDTH * (SEEN + k)] = run.seen[k]
-        own[WIDTH * (LOCAL + k)] = run.local[k]
+        own.k.impedance, own.k.normal, own.k.chi = k.impedance, k.normal, k.chi
+        own.k.offset, own.k.inertia, own.k.stiffness = k.offset, k.inertia, k.stiffness
+        own.tolerance, last = run.params.tolerance, TERMS - 1
+        constants = constants_of(run, run.counts.piece)
+        for n in range(run.size):
+            own.constants[n] = constants[n]
+    for n in range(last + 1):
+        own.load_along_slip[n] = run.load_along_slip[n]
+        own.local[n] = run.local[n]
 
 
 @inlined
-def take_length(run: Run, own: Floats) -> None:
-    """Choose the length of a run's step, in units of the guess, and store it in the run's column of the block."""
-    usable = own[WIDTH * LENGTH]
-    if not usable >= FAR_FROM_GUESS or own[WIDTH * (JET + TERMS - 1)] == 0.0:  # `length_at` alone does not decide here
+def take_length(run: Run, own: Block) -> None:
+    """Choose the length of a run's step, in units of the guess, and store it in the run's lane of the block."""
+    usable = own.length
+    if not usable >= FAR_FROM_GUESS or own.jet[TERMS - 1] == 0.0:  # `length_at` alone does not decide here
         for k in range(TERMS):
-            run.jet[k] = own[WIDTH * (JET + k)]
-        usable = usable_length(run.jet, run.par.tolerance)
+            run.jet[k] = own.jet[k]
+        usable = usable_length(run.jet, run.params.tolerance)
     if run.law[run.counts.piece].guard_count > 0:
         for k in range(TERMS):
-            run.reach[k] = own[WIDTH * (REACH + k)]
-    own[WIDTH * LAST_STEP] = run.state.last_step
-    length, reached = choose_length(run, run.state.target, own[WIDTH * GUESS], usable)
-    own[WIDTH * LENGTH], own[WIDTH * REACHED] = length, 1.0 if reached else 0.0
+            run.reach[k] = own.reach[k]
+    own.last_step = run.state.last_step
+    length, reached = choose_length(run, run.state.target, own.guess, usable)
+    own.length, own.reached = length, 1.0 if reached else 0.0
 
 
 @inlined
-def calculate(rows: Floats) -> None:
+def calculate(rows: Block) -> None:
     """Calculate in all lanes slip rate and load over the step, slip in it, and the rate's value at the end and lower bound.
 
-    The calculations are those of `taylor_step.stretch` and `taylor_step.keep_step`.
+    The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
     """
-    length, rate, powers = rows[LENGTH], ahead(rows, RATE), ahead(rows, POWERS)
-    powers_of(length, powers)
-    multiply(ahead(rows, JET), powers, rate)
-    multiply(ahead(rows, LOCAL), powers, ahead(rows, LOAD))
-    straight = rows[K_SPEED] * length * moment(rate, 1)
-    rows[GROWN] = straight + rows[K_BEND] * length * length * moment(rate, 2)
-    rows[LAST] = total(rate)
-    rows[BOUND] = bound_below(rate)
+    length, rate = rows.length, rows.rate
+    powers_of(length, rows.powers)
+    multiply(rows.jet, rows.powers, rate)
+    multiply(rows.local, rows.powers, rows.load)
+    straight = rows.k.speed * length * moment(rate, 1)
+    rows.grown = straight + rows.k.bend * length * length * moment(rate, 2)
+    rows.last = total(rate)
+    rows.bound = bound_below(rate)
 
 
 @inlined
-def take_out(run: Run, own: Floats) -> int:
+def take_out(run: Run, own: Block) -> int:
     """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
 
     A step is simple if the rate stays positive, the contact equation is obeyed and no knot is met. Otherwise the step is dropped
     and Waits.ALONE is returned.
     """
-    length, target = own[WIDTH * LENGTH], run.state.target
+    length, target = own.length, run.state.target
     rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
     for k in range(TERMS):
-        rate[k] = own[WIDTH * (RATE + k)]
+        rate[k] = own.rate[k]
     if run.counts.degree == 1:
         fill(load, 0.0)
-        load[0], load[1] = own[WIDTH * LOAD], own[WIDTH * (LOAD + 1)]
+        load[0], load[1] = own.load[0], own.load[1]
     else:
         for k in range(TERMS):
-            load[k] = own[WIDTH * (LOAD + k)]
-    simple = rate[0] > 0.0 and own[WIDTH * BOUND] > 0.0 and math.isfinite(own[WIDTH * LAST])
-    grown, rate_end = own[WIDTH * GROWN], own[WIDTH * LAST]
+            load[k] = own.load[k]
+    simple = rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
+    grown, rate_end = own.grown, own.last
     if simple:
         powers_of(length, run.powers)
         begin_verification(run)
         simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
-        run.state.last_step = own[WIDTH * LAST_STEP]
+        run.state.last_step = own.last_step
         return Waits.ALONE
-    run.jet[0] = own[WIDTH * JET]
+    run.jet[0] = own.jet[0]
     note_shock(run)
-    to = target if own[WIDTH * REACHED] == 1.0 else run.state.xi + length * own[WIDTH * GUESS]
-    move(run, rate, length, grown, rate_end, to)
+    to = target if own.reached == 1.0 else run.state.xi + length * own.guess
+    move(run, length, grown, rate_end, to)
     if run.counts.has_inertia == 1:
         judge_stiffness(run)
     goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0

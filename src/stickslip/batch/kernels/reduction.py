@@ -2,7 +2,7 @@
 
 The kernels of `trajectory.slip_events` find the slip events. The functions here do in compiled code, for one event or run, what
 `trajectory.tables` does for all. Functions on a history take its first piece, and the number of pieces as `length`. A place in it
-is a pair of a piece and xi from 0 to 1; `row_time` is the length of a round trip (of a block: of a period), in s.
+is a pair of a piece and xi from 0 to 1; `round_trip_time` is the length of a round trip (of a block: of a period), in s.
 """
 
 from __future__ import annotations
@@ -60,20 +60,20 @@ OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EV
 def offset_at(history: HistoryPiece, piece: int, xi: float) -> float:
     """Return the offset (s) of a place in its round trip, as in `History.placed`."""
     kept = history[piece]
-    return kept.theta_to if xi == 1.0 else kept.theta_from + xi * (kept.speed + xi * kept.bend)
+    return kept.phase_to if xi == 1.0 else kept.phase_from + xi * (kept.speed + xi * kept.bend)
 
 
 @kernel
-def time_between(history: HistoryPiece, row_time: float, piece: int, xi: float, later: int, later_xi: float) -> float:
-    """Return the time (s) from one place to a later one."""
-    rows = history[later].row - history[piece].row
-    return rows * row_time + (offset_at(history, later, later_xi) - offset_at(history, piece, xi))
+def time_between(history: HistoryPiece, round_trip_time: float, place: tuple[int, float], later: tuple[int, float]) -> float:
+    """Return the time (s) from one place (piece, xi) to a later one."""
+    rows = history[later[0]].trip - history[place[0]].trip
+    return rows * round_trip_time + (offset_at(history, later[0], later[1]) - offset_at(history, place[0], place[1]))
 
 
 @kernel
-def time_at(history: HistoryPiece, row_time: float, piece: int, xi: float) -> float:
+def time_at(history: HistoryPiece, round_trip_time: float, piece: int, xi: float) -> float:
     """Return the time (s) of a place since the start of the run."""
-    return history[piece].row * row_time + offset_at(history, piece, xi)
+    return history[piece].trip * round_trip_time + offset_at(history, piece, xi)
 
 
 @kernel
@@ -93,25 +93,25 @@ def grown(history: HistoryPiece, piece: int, xi: float) -> float:
 
 
 @kernel
-def reached(run_end: float, code: int, row_time: float, history: HistoryPiece, length: int) -> float:
+def reached(run_end: float, code: int, round_trip_time: float, history: HistoryPiece, length: int) -> float:
     """Return the time (s) that a run has reached: `run_end` if it is finished or locked, otherwise the end of its history."""
-    return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(history, row_time, length - 1, 1.0)
+    return run_end if code in (Stop.FINISHED, Stop.LOCKED) else time_at(history, round_trip_time, length - 1, 1.0)
 
 
 @kernel
-def rests_at(history: HistoryPiece, length: int, row_time: float, end: float) -> bool:
+def rests_at(history: HistoryPiece, length: int, round_trip_time: float, end: float) -> bool:
     """Return True if the contact is at rest at the end of the run (s), in the last piece or after it, where nothing is recorded."""
-    recorded = time_at(history, row_time, length - 1, 1.0)
+    recorded = time_at(history, round_trip_time, length - 1, 1.0)
     return history[length - 1].mode == 0 or end - recorded > ROUNDING * recorded
 
 
 @kernel
-def slipped(history: HistoryPiece, length: int, row_time: float, end: float) -> float:
+def slipped(history: HistoryPiece, length: int, round_trip_time: float, end: float) -> float:
     """Return the slip (m) from the start of the run to its end (s)."""
     last = length - 1
-    while last > 0 and time_at(history, row_time, last, 0.0) > end:
+    while last > 0 and time_at(history, round_trip_time, last, 0.0) > end:
         last -= 1
-    return history[last].slip + grown(history, last, place_of(history, last, end - time_at(history, row_time, last, 0.0)))
+    return history[last].slip + grown(history, last, place_of(history, last, end - time_at(history, round_trip_time, last, 0.0)))
 
 
 @kernel
@@ -132,12 +132,12 @@ def friction_in(run: Run, piece: int, xi: float) -> float:
     kept = run.history[piece]
     excess, rate, mode = evaluate(kept.load, xi), evaluate(kept.rate, xi), kept.mode
     if run.counts.has_inertia == 0:
-        return excess - run.par.impedance * rate
+        return excess - run.params.impedance * rate
     if mode == 0:
         return excess
-    walked = grown(run.history, piece, xi) * (1 if run.par.counts_net == 1.0 else mode)
+    walked = grown(run.history, piece, xi) * (1 if run.params.counts_net == 1.0 else mode)
     friction_of(run, kept.law_piece, kept.law_slip + walked, abs(rate))
-    return run.friction.stress if mode > 0 else -run.friction.stress - 2.0 * run.par.reference
+    return run.friction.stress if mode > 0 else -run.friction.stress - 2.0 * run.params.reference
 
 
 @kernel
@@ -149,21 +149,21 @@ def friction_before(run: Run, piece: int, excess: float) -> float:
     """
     if piece == 0:
         return excess
-    history, row_time, last = run.history, run.par.row_time, piece - 1
-    if not time_between(history, row_time, last, 1.0, piece, 0.0) > ROUNDING * row_time:
+    history, round_trip_time, last = run.history, run.params.round_trip_time, piece - 1
+    if not time_between(history, round_trip_time, (last, 1.0), (piece, 0.0)) > ROUNDING * round_trip_time:
         return friction_in(run, last, 1.0)
-    row, phase = history[piece].row, history[piece].theta_from
+    row, phase = history[piece].trip, history[piece].phase_from
     if phase == 0.0:
-        row, phase = row - 1, row_time
-    while last >= 0 and not (history[last].theta_from < phase <= history[last].theta_to):
+        row, phase = row - 1, round_trip_time
+    while last >= 0 and not (history[last].phase_from < phase <= history[last].phase_to):
         last -= 1
     if last < 0:
         return friction_in(run, piece - 1, 1.0)
-    xi, trips = place_of(history, last, phase - history[last].theta_from), row - history[last].row
+    xi, trips = place_of(history, last, phase - history[last].phase_from), row - history[last].trip
     if trips == 0:
         return friction_in(run, last, xi)
-    load = evaluate(history[last].load, xi) + trips * run.par.ramp
-    return load if run.counts.is_block == 1 else load - 2.0 * run.par.impedance * evaluate(history[last].rate, xi)
+    load = evaluate(history[last].load, xi) + trips * run.params.ramp
+    return load if run.counts.is_block == 1 else load - 2.0 * run.params.impedance * evaluate(history[last].rate, xi)
 
 
 @kernel
@@ -195,29 +195,27 @@ def fold_events(run: Run, points: Points, events: int, out: Reduced) -> None:
         numbers_of(out)[column] = math.nan
     if events == 0:
         return
-    history, row_time, fastest = run.history, run.par.row_time, points.top[0]
+    history, round_trip_time, fastest = run.history, run.params.round_trip_time, points.top[0]
     for n in range(events):
         out.pulses += points.pulses[n]
         if points.turns.rate[points.top[n]] > points.turns.rate[fastest]:
             fastest = points.top[n]
     out.peak_rate = points.turns.rate[fastest]
-    out.peak_time = time_at(history, row_time, points.turns.piece[fastest], points.turns.xi[fastest])
+    out.peak_time = time_at(history, round_trip_time, points.turns.piece[fastest], points.turns.xi[fastest])
     if events > 1:
-        fold_recurrence(history, row_time, points, events, out)
+        fold_recurrence(history, round_trip_time, points, events, out)
 
 
 @kernel
-def fold_recurrence(history: HistoryPiece, row_time: float, points: Points, events: int, out: Reduced) -> None:
+def fold_recurrence(history: HistoryPiece, round_trip_time: float, points: Points, events: int, out: Reduced) -> None:
     """Write the mean (s) and the coefficient of variation of the times between starts of events into `out`.
 
     The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
     """
     mean = spread = 0.0
     for n in range(1, events):
-        a, b = points.begin[n - 1], points.begin[n]
-        since = time_between(
-            history, row_time, points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
-        )
+        a, b, turns = points.begin[n - 1], points.begin[n], points.turns
+        since = time_between(history, round_trip_time, (turns.piece[a], turns.xi[a]), (turns.piece[b], turns.xi[b]))
         change = since - mean
         mean += change / n
         spread += change * (since - mean)
@@ -235,34 +233,34 @@ def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
     history = run.history
     a, b = points.begin[0], points.past[0] - 1
     piece, xi, last, last_xi = points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
-    row_time = run.par.row_time
-    out.first_start = time_at(history, row_time, piece, xi)
+    round_trip_time = run.params.round_trip_time
+    out.first_start = time_at(history, round_trip_time, piece, xi)
     if points.turns.kind[b] == -1:
-        out.first_end = time_at(history, row_time, last, last_xi)
-        out.first_duration = time_between(history, row_time, piece, xi, last, last_xi)
+        out.first_end = time_at(history, round_trip_time, last, last_xi)
+        out.first_duration = time_between(history, round_trip_time, (piece, xi), (last, last_xi))
     out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
     before = friction_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
     out.first_traction_drop = before - friction_after(run, last, last_xi)
 
 
 @kernel
-def fold_whole(history: HistoryPiece, length: int, row_time: float, end: float, out: Reduced) -> None:
+def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: float, out: Reduced) -> None:
     """Write the numbers that describe the whole run, which has reached the time `end` (s), into `out`."""
     shocks = 0
     for n in range(length):
         shocks += 1 if history[n].cause > 0 else 0
     out.shocks, out.end_time = shocks, end
-    out.arrested = 1.0 if rests_at(history, length, row_time, end) else 0.0
-    out.slip = slipped(history, length, row_time, end)
+    out.arrested = 1.0 if rests_at(history, length, round_trip_time, end) else 0.0
+    out.slip = slipped(history, length, round_trip_time, end)
 
 
 @kernel
-def fold_end(table: Integers, row_time: float, duration: float, code: int, numbers: Floats) -> None:
+def fold_end(table: Integers, round_trip_time: float, duration: float, code: int, numbers: Floats) -> None:
     """Do what `fold_whole` does for a history of which only the last pieces are known, but keep the number of shocks.
 
     The run was to last `duration` s and ended with the given code.
     """
     out, history = reduced_at(numbers), pieces_in(table)
     shocks = out.shocks
-    fold_whole(history, len(table), row_time, reached(duration, code, row_time, history, len(table)), out)
+    fold_whole(history, len(table), round_trip_time, reached(duration, code, round_trip_time, history, len(table)), out)
     out.shocks = shocks

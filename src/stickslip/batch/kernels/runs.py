@@ -126,9 +126,9 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 
     No caller continues the run after its end, so its end may cut pieces and leaps (`to_the_end`) from the start.
     """
-    par, state, counts = numbers_of(run.par), numbers_of(run.state), whole_numbers_of(run.counts)
-    for k in range(setups.par.shape[1]):
-        par[k] = setups.par[n if len(setups.par) > 1 else 0, k]
+    params, state, counts = numbers_of(run.params), numbers_of(run.state), whole_numbers_of(run.counts)
+    for k in range(setups.params.shape[1]):
+        params[k] = setups.params[n if len(setups.params) > 1 else 0, k]
     for k in range(len(setups.state)):
         state[k] = setups.state[k]
     for k in range(len(setups.counts)):
@@ -140,14 +140,14 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 def advance_member(group: Group, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
-    last_row, last_theta = group.setups.last_row[n], group.setups.last_theta[n]
+    last_trip, last_phase = group.setups.last_trip[n], group.setups.last_phase[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = run_until_at(group.engine, table, last_row, last_theta, 1)
+        code = run_until_at(group.engine, table, last_trip, last_phase, 1)
         counts.waits = 1
     while code == Stop.NONE and group.stop[0] == 0:
-        code = run_until_at(group.engine, table, last_row, last_theta, BUDGET)
+        code = run_until_at(group.engine, table, last_trip, last_phase, BUDGET)
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
@@ -196,6 +196,6 @@ def fold_member(run: Run, group: Group, work: Workspace, lane: int, out: Reduced
         if events > 0:
             fold_first(run, work.points, setups.excess[n], out)
             out.first_static_drop = setups.stiffness[n] * out.first_slip
-    end = reached(setups.duration[n], group.codes[n], run.par.row_time, run.history, length)
-    fold_whole(run.history, length, run.par.row_time, end, out)
+    end = reached(setups.duration[n], group.codes[n], run.params.round_trip_time, run.history, length)
+    fold_whole(run.history, length, run.params.round_trip_time, end, out)
     return True

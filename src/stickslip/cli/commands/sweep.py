@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_design, complete_quantity, complete_scenario, complete_vary
+from stickslip.cli.names import complete_design, complete_quantity, complete_vary
+from stickslip.cli.options import ScenarioName, option
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,37 +21,30 @@ if TYPE_CHECKING:
     from stickslip.sweeps.execution.plan import Plan
     from stickslip.sweeps.sweep import SweepProgress
 
-
-def _option(text: str, *names: str, **more: Any) -> Any:
-    """Declare an option whose default the help does not show."""
-    return typer.Option(*names, help=text, show_default=False, **more)
-
-
-ScenarioName = Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)]
 VARY_HELP = "KEY=LOW..HIGH:POINTS[:log] or KEY=VALUE,VALUE,...; once for each key."
-Vary = Annotated[list[str] | None, _option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]
+Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocompletion=complete_vary)]
 TABLE_HELP = "Members from a table instead (.csv): one column per key, one row per member."
-Table = Annotated[Path | None, _option(TABLE_HELP, "--list")]
+Table = Annotated[Path | None, option(TABLE_HELP, "--list")]
 DesignKind = Annotated[
     str, typer.Option(help="grid, or samples between LOW and HIGH: random, lhs.", autocompletion=complete_design)
 ]
-Members = Annotated[int | None, _option("How many samples.", "--members", "-m")]
+Members = Annotated[int | None, option("How many samples.", "--members", "-m")]
 Seed = Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")]
 QUANTITY_HELP = "Quantity to keep of each run; may be repeated."
-Quantities = Annotated[list[str] | None, _option(QUANTITY_HELP, "--quantity", "-q", autocompletion=complete_quantity)]
-Series = Annotated[str, _option("Curves over time to be kept too: slip,slip_rate,traction,load.")]
+Quantities = Annotated[list[str] | None, option(QUANTITY_HELP, "--quantity", "-q", autocompletion=complete_quantity)]
+Series = Annotated[str, option("Curves over time to be kept too: slip,slip_rate,traction,load.")]
 Samples = Annotated[int, typer.Option(help="Times of such a curve.")]
-Out = Annotated[Path | None, _option("Save the results as they come (a folder, .zarr).", "--out", "-o")]
-Threads = Annotated[int | None, _option("Threads (default: all cores).")]
-Chunk = Annotated[int | None, _option("Members that are run and saved together (default: 1/64 of all).")]
-Workers = Annotated[int | None, _option("Processes of a dask cluster to be started here, instead of threads.")]
-Scheduler = Annotated[str | None, _option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
+Out = Annotated[Path | None, option("Save the results as they come (a folder, .zarr).", "--out", "-o")]
+Threads = Annotated[int | None, option("Threads (default: all cores).")]
+Chunk = Annotated[int | None, option("Members that are run and saved together (default: 1/64 of all).")]
+Workers = Annotated[int | None, option("Processes of a dask cluster to be started here, instead of threads.")]
+Scheduler = Annotated[str | None, option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
 REFINE_HELP = "Refine the map where this quantity changes."
-Refine = Annotated[str | None, _option(REFINE_HELP, autocompletion=complete_quantity, metavar="QUANTITY")]
+Refine = Annotated[str | None, option(REFINE_HELP, autocompletion=complete_quantity, metavar="QUANTITY")]
 Depth = Annotated[int, typer.Option(help="With --refine: how often cells are halved.")]
-Factor = Annotated[float | None, _option("With --refine: look for jumps by more than this factor.")]
+Factor = Annotated[float | None, option("With --refine: look for jumps by more than this factor.")]
 FIGURE_HELP = "Draw the first quantity, or the one that is refined (.png, .pdf or .svg)."
-Figure = Annotated[Path | None, _option(FIGURE_HELP, "--figure", "-f")]
+Figure = Annotated[Path | None, option(FIGURE_HELP, "--figure", "-f")]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk, and stop.")]
 
 
@@ -76,19 +70,19 @@ def sweep(
     figure: Figure = None,
     dry_run: DryRun = False,
 ) -> None:
-    """Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
+    r"""Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
 
     Any number of a scenario can be varied, by its place in the file
     (friction.alpha, body.thickness, friction.slip.mean, run.rtol), with the
     units of scenarios. Runs that fail are counted, with their reasons.
 
     \b
-      stickslip sweep fig6-slab --vary friction.alpha=0.05..2:40 \\
+      stickslip sweep fig6-slab --vary friction.alpha=0.05..2:40 \
         --vary "body.thickness=1km..50km:30:log" --out map.zarr
       stickslip sweep mine.toml -v alpha=0.1,1,10 -q recurrence -q heat
-      stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \\
+      stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \
         --design lhs --members 1000 --out sample.zarr
-      stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \\
+      stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \
         --refine events --depth 5 --figure map.png
 
     After a stop, the same command continues where the store ends.
@@ -144,8 +138,7 @@ def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, f
         raise InputError(f"sweep: needs either --vary or --list, got {'both' if vary else 'neither'}")
     if out is not None:
         check_out(out, "--out")
-    if figure is not None:
-        check_target(figure, "--figure", (".png", ".pdf", ".svg"))
+    check_target(figure, "--figure")
 
 
 def _kept(wanted: list[str] | None, refined: str | None) -> list[str]:

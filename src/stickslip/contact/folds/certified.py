@@ -44,7 +44,7 @@ class Certificate:
 
     @property
     def always_rises(self) -> bool:
-        """Return True if g is proven to rise at all rates above 0: there is then one branch and nothing to search."""
+        """True if g is proven to rise at all rates above 0: there is then one branch and nothing to search."""
         return self.verdict == "proven" and not self.turns and self.rises_at_rest is True
 
 
@@ -75,7 +75,7 @@ class _Signs:
 
     @property
     def turns(self) -> NDArray[np.bool_]:
-        """Return True for each cell that holds exactly one root of g'."""
+        """True for each cell that holds exactly one root of g'."""
         return np.asarray((self.bend != 0) & (self.at_low * self.at_high < 0))
 
 

@@ -53,17 +53,17 @@ class Cells:
 
     @property
     def middle(self) -> Floats:
-        """Return the middle of each cell (m/s)."""
+        """The middle of each cell (m/s)."""
         return self.low + 0.5 * (self.high - self.low)
 
     @property
     def at_rounding(self) -> NDArray[np.bool_]:
-        """Return True for each cell that is only a few floating-point numbers wide."""
+        """True for each cell that is only a few floating-point numbers wide."""
         return self.high - self.low <= 4.0 * np.spacing(self.high)
 
     @property
     def parts(self) -> int:
-        """Return the number of parts into which each cell is cut in a round of subdivision: the more, the fewer cells there are."""
+        """The number of parts into which each cell is cut in a round of subdivision: the more, the fewer cells there are."""
         return int(np.clip(_AT_A_TIME // max(len(self), 1), _FEWEST_PARTS, _MOST_PARTS))
 
     def split(self, parts: int) -> Cells:

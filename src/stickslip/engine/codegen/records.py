@@ -62,18 +62,13 @@ def floats_at() -> Any:
     return _Wanted(FLOATS, 1, False)
 
 
-def integers_at() -> Any:
-    """Declare a field that holds the address of 64-bit integers."""
-    return _Wanted(INTEGERS, 1, False)
-
-
 def floats_inside(size: int) -> Any:
     """Declare a row of `size` floats that lie in the record itself."""
     return _Wanted(FLOATS, size, True)
 
 
 def records_at(record: type[Record]) -> Any:
-    """Declare a field that holds the address of records, one after the other: `run.history[n].theta_from`."""
+    """Declare a field that holds the address of records, one after the other: `run.history[n].phase_from`."""
     return _Wanted(record, 1, False)
 
 

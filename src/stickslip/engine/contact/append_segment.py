@@ -13,15 +13,15 @@ RESOLVED = 1e-12
 
 
 @kernel
-def theta_at(run: Run, xi: float) -> float:
+def phase_at(run: Run, xi: float) -> float:
     """Return the phase theta (s) in the round trip at the place xi of the present piece of load."""
-    return run.state.theta_to if xi >= 1.0 else run.state.theta_from + xi * (run.state.speed + xi * run.state.bend)
+    return run.state.phase_to if xi >= 1.0 else run.state.phase_from + xi * (run.state.speed + xi * run.state.bend)
 
 
 @kernel
 def xi_at(run: Run, theta: float) -> float:
     """Return the place xi in the present piece of load at which the phase is theta (s)."""
-    rest = theta - run.state.theta_from
+    rest = theta - run.state.phase_from
     root = math.sqrt(max(run.state.speed * run.state.speed + 4.0 * run.state.bend * rest, 0.0))
     pace = run.state.speed + root
     return 2.0 * rest / pace if pace > 0.0 else 0.0
@@ -29,13 +29,13 @@ def xi_at(run: Run, theta: float) -> float:
 
 @kernel
 def note_degree(run: Run) -> None:
-    """Note the degree of a new piece of load and clear run.local and run.seen.
+    """Note the degree of a new piece of load and clear run.local and run.load_along_slip.
 
     Beyond that degree the load's series over a step is zero too.
     """
     run.counts.degree = degree(run.load)
     fill(run.local, 0.0)
-    fill(run.seen, 0.0)
+    fill(run.load_along_slip, 0.0)
 
 
 @kernel
@@ -47,19 +47,19 @@ def record(run: Run, xi_to: float) -> None:
     """
     xi = run.state.xi
     width = xi_to - xi
-    theta_from, theta_to = theta_at(run, xi), theta_at(run, xi_to)
-    if theta_to > theta_from:
+    phase_from, phase_to = phase_at(run, xi), phase_at(run, xi_to)
+    if phase_to > phase_from:
         n = run.counts.length
         kept = run.history[n]
-        kept.row, kept.mode, kept.law_piece = run.counts.row, run.counts.mode, run.counts.piece
+        kept.trip, kept.mode, kept.law_piece = run.counts.trip, run.counts.mode, run.counts.piece
         kept.jump, kept.cause, kept.echo_of = run.counts.jump, run.counts.cause, run.counts.echo_of
-        kept.theta_from, kept.theta_to = theta_from, theta_to
+        kept.phase_from, kept.phase_to = phase_from, phase_to
         kept.speed = (run.state.speed + 2.0 * run.state.bend * xi) * width
         kept.bend = run.state.bend * width * width
         kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
         kept.amplified = run.state.amplified
-        kept.gain = abs(run.par.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
-        note_slip(run, n, theta_from)
+        kept.gain = abs(run.params.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
+        note_slip(run, n, phase_from)
         run.counts.length = n + 1
         run.counts.jump = run.counts.cause = run.counts.stalled = 0
     else:
@@ -75,11 +75,11 @@ def note_slip(run: Run, n: int, theta: float) -> None:
     """
     slips, slipped = run.counts.mode != 0, n > 0 and run.history[n - 1].mode != 0
     if slips and not slipped:
-        run.counts.slip_row, run.state.slip_since = run.counts.row, theta
+        run.counts.slip_trip, run.state.slip_since = run.counts.trip, theta
     elif slipped and not slips:
-        lasted = (run.counts.row - run.counts.slip_row) * run.par.row_time + (theta - run.state.slip_since)
-        tiny = lasted < RESOLVED * run.par.row_time
-        run.counts.tiny = run.counts.tiny + 1 if tiny else max(run.counts.tiny - 1, 0)
+        lasted = (run.counts.trip - run.counts.slip_trip) * run.params.round_trip_time + (theta - run.state.slip_since)
+        tiny = lasted < RESOLVED * run.params.round_trip_time
+        run.counts.unresolved_slips = run.counts.unresolved_slips + 1 if tiny else max(run.counts.unresolved_slips - 1, 0)
 
 
 @kernel
@@ -87,6 +87,6 @@ def note_jump(run: Run, rate: float, cause: int) -> None:
     """Mark a shock, with its cause, if the slip rate is about to jump to the given rate (m/s, signed)."""
     before = run.state.rate_now
     size = abs(rate - before)
-    if size > run.par.smallest_jump and size > run.par.relative_jump * max(abs(rate), abs(before)):
+    if size > run.params.smallest_jump and size > run.params.relative_jump * max(abs(rate), abs(before)):
         run.counts.cause = cause
         run.counts.jump = 1

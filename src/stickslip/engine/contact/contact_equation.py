@@ -64,9 +64,9 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
     else:
         call_value(law.value_at, constants_of(run, piece), slip, rate, numbers_of(value))
     friction.coefficient = value.mu + law.offset
-    friction.stress = run.par.normal * friction.coefficient
-    friction.by_rate = value.by_rate * run.par.normal
-    friction.by_slip = value.by_slip * run.par.normal
+    friction.stress = run.params.normal * friction.coefficient
+    friction.by_rate = value.by_rate * run.params.normal
+    friction.by_slip = value.by_slip * run.params.normal
 
 
 @kernel
@@ -77,23 +77,23 @@ def rest_limit(run: Run) -> float:
     """
     friction_at(run, run.state.law_slip, 0.0)
     # The step to static friction is added to the coefficient before any product: where the two cancel, they must cancel exactly.
-    coefficient = run.friction.coefficient + run.par.static_excess
-    return run.par.normal * coefficient + run.par.stick_to
+    coefficient = run.friction.coefficient + run.params.static_excess
+    return run.params.normal * coefficient + run.params.stick_to
 
 
 @kernel
 def towards(run: Run, load: float, direction: int) -> float:
     """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference."""
-    return load if direction > 0 else -load - 2.0 * run.par.reference
+    return load if direction > 0 else -load - 2.0 * run.params.reference
 
 
 @kernel
 def load_ahead(run: Run, guess: float) -> None:
     """Write the series of the load from the present place, in units of `guess` (in xi), into run.local.
 
-    run.seen receives the same series as seen in the direction of slip.
+    run.load_along_slip receives the same series as seen in the direction of slip.
     """
-    load, local, seen, direction, n = run.load, run.local, run.seen, run.counts.mode, run.counts.degree
+    load, local, seen, direction, n = run.load, run.local, run.load_along_slip, run.counts.mode, run.counts.degree
     if n <= 1:
         local[0] = load[0] + run.state.xi * load[1]
         local[1] = guess * load[1]
@@ -115,7 +115,7 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
     for way in (1, -1):
         for k in range(at.TERMS):
             part[k] = strength[k] - way * load[k]
-        part[0] = 0.0 if run.counts.edge == way else strength[0] - towards(run, load[0], way)
+        part[0] = 0.0 if run.counts.leaving_rest == way else strength[0] - towards(run, load[0], way)
         first = first_descent(part, run.spare)
         if first < onset:
             onset, direction = first, way
@@ -131,18 +131,18 @@ def rate_on_branch(run: Run, load: float, guess: float) -> float:
         return low
     if load >= branch.excess_to:
         return high
-    high = min(high, (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12))
+    high = min(high, (load + run.params.largest_drop) / run.params.impedance * (1.0 + 1e-12))
     s = guess if low < guess < high else 0.5 * (low + high)
     for _ in range(200):
         friction_at(run, run.state.law_slip, s)
-        error = run.par.impedance * s + run.friction.stress - load
+        error = run.params.impedance * s + run.friction.stress - load
         if error > 0.0:
             high = s
         elif error < 0.0:
             low = s
         else:
             return s
-        slope = run.par.impedance + run.friction.by_rate
+        slope = run.params.impedance + run.friction.by_rate
         step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
         if not low < step < high:
             step = 0.5 * (low + high)
@@ -162,8 +162,8 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
     least = math.inf
     for _ in range(20):
         friction_at(run, run.state.law_slip, s)
-        error = run.par.impedance * s + run.friction.stress - load
-        slope = run.par.impedance + run.friction.by_rate
+        error = run.params.impedance * s + run.friction.stress - load
+        slope = run.params.impedance + run.friction.by_rate
         if abs(error) >= least:
             return best
         best, least = s, abs(error)
@@ -177,7 +177,7 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
 def needs_branches(run: Run) -> bool:
     """Return True if a choice among branches is due while the table of branches was made for another slip."""
     meets_jump = run.counts.ready == Incoming.BROUGHT and run.counts.arriving != Cause.NO_CAUSE
-    due = run.counts.leaving == 1 or run.counts.mode == 0 or meets_jump
+    due = run.counts.branch_ended == 1 or run.counts.mode == 0 or meets_jump
     return due and run.state.table_slip != run.state.law_slip
 
 
@@ -231,7 +231,7 @@ def branch_exit(run: Run) -> float:
         start = sign * (towards(run, part[0], mode) - bound)
         for k in range(at.TERMS):
             part[k] *= sign * mode
-        part[0] = 0.0 if run.counts.edge != 0 and start < 0.0 else start
+        part[0] = 0.0 if run.counts.leaving_rest != 0 and start < 0.0 else start
         first = min(first, first_descent(part, run.spare))
     return xi + first * (1.0 - xi) if first < 1.0 - TIE else NONE
 
@@ -247,7 +247,7 @@ def end_branch(run: Run) -> None:
     if run.counts.mode == 0:
         note_jump(run, 0.0, Cause.FOLD)
         run.state.rate_now = 0.0
-        if abs(level - rest_limit(run)) <= SAME_LEVEL * run.par.normal:
-            run.counts.edge = direction  # Rest ends where the branch does: the slope of the load decides.
+        if abs(level - rest_limit(run)) <= SAME_LEVEL * run.params.normal:
+            run.counts.leaving_rest = direction  # Rest ends where the branch does: the slope of the load decides.
     else:
-        run.counts.edge = direction
+        run.counts.leaving_rest = direction

@@ -50,7 +50,7 @@ def is_implicit(run: Run) -> bool:
 def settling_rate(run: Run) -> float:
     """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    return (run.par.impedance + run.par.normal * run.value.by_rate) / run.par.inertia
+    return (run.params.impedance + run.params.normal * run.value.by_rate) / run.params.inertia
 
 
 @kernel

@@ -18,28 +18,28 @@ from stickslip.engine.state.workspace import Run
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
     multiply(run.local, run.powers, run.history[run.counts.length].load)
-    move(run, rate, length, growth(run, rate, length, 1.0), total(rate), to)
+    move(run, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
 @kernel
-def move(run: Run, rate: Floats, length: float, grown: float, rate_end: float, to: float) -> None:
+def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> None:
     """Record the step and move the state to its end, at xi = to.
 
     Load and rate (m/s, as a magnitude) are in the next free row of the history. `grown` is the slip (m) in the step and
     `rate_end` the rate at its end (m/s), both unsigned.
     """
     direction = run.counts.mode
-    load = run.history[run.counts.length].load
+    load, rate = run.history[run.counts.length].load, run.history[run.counts.length].rate
     speed, bend = run.k.speed * length, run.k.bend * length * length
     if run.counts.is_block == 1:
-        unload_spring(direction * run.par.stiffness * speed, direction * run.par.stiffness * bend, rate, load)
-        run.load[0] -= run.par.stiffness * direction * grown
+        unload_spring(direction * run.params.stiffness * speed, direction * run.params.stiffness * bend, rate, load)
+        run.load[0] -= run.params.stiffness * direction * grown
     if direction < 0:
         for k in range(at.TERMS):
             rate[k] = -rate[k]
     note_gain(run, rate)
     record(run, to)
-    run.counts.moved, run.counts.edge = 1, 0
+    run.counts.moved, run.counts.leaving_rest = 1, 0
     run.state.slip_now += direction * grown
     run.state.law_slip += run.k.chi * grown
     run.state.rate_now = direction * max(rate_end, 0.0)
@@ -54,7 +54,7 @@ def note_gain(run: Run, rate: Floats) -> None:
     """
     if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
         friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
-        run.state.gain = abs(2.0 * run.par.impedance / (run.par.impedance + run.friction.by_rate) - 1.0)
+        run.state.gain = abs(2.0 * run.params.impedance / (run.params.impedance + run.friction.by_rate) - 1.0)
     else:
         run.state.gain = math.nan
 

@@ -31,8 +31,8 @@ def arrive(run: Run) -> None:
     """Decide how the contact answers a new piece of load: whether it sticks or slips, in which direction, and on which branch."""
     load = run.load[0]
     if run.counts.sticks == 0:
-        if run.counts.has_inertia == 0 and load != -run.par.reference:
-            run.counts.mode = 1 if load > -run.par.reference else -1
+        if run.counts.has_inertia == 0 and load != -run.params.reference:
+            run.counts.mode = 1 if load > -run.params.reference else -1
         return
     limit = rest_limit(run)
     mode = run.counts.mode
@@ -46,7 +46,7 @@ def arrive(run: Run) -> None:
         friction_at(run, run.state.law_slip, 0.0)
         if towards(run, load, mode) < run.friction.stress:
             run.counts.mode = 0
-    if run.counts.mode == 0 and run.counts.edge == 0:
+    if run.counts.mode == 0 and run.counts.leaving_rest == 0:
         for direction in (1, -1):
             if towards(run, load, direction) > limit:
                 run.counts.mode = direction
@@ -72,7 +72,7 @@ def is_arrest(run: Run, lasting: float) -> bool:
     A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
     the order of the tolerance's root. A contact without mass stops because the load falls, and stays at rest.
     """
-    return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.par.tolerance) * run.par.row_time
+    return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.params.tolerance) * run.params.round_trip_time
 
 
 @kernel
@@ -82,21 +82,21 @@ def heal(run: Run, load: float) -> None:
     The contact slips at once if the healed strength cannot hold the load (Pa or N, minus the reference).
     """
     before = rest_limit(run)
-    run.state.law_slip, run.counts.piece = 0.0, int(run.par.healed_piece)
+    run.state.law_slip, run.counts.piece = 0.0, int(run.params.healed_piece)
     limit = rest_limit(run)
     if limit == before:
         return
-    run.counts.edge = 0
+    run.counts.leaving_rest = 0
     if run.counts.folds_move == 1:
         return  # The branches at the healed slip must be found first.
     for direction in (1, -1):
         beyond = towards(run, load, direction) - limit
-        if abs(beyond) <= SAME_LEVEL * run.par.normal:
-            run.counts.edge = direction  # Decide by the slope of the load, not by its rounding.
+        if abs(beyond) <= SAME_LEVEL * run.params.normal:
+            run.counts.leaving_rest = direction  # Decide by the slope of the load, not by its rounding.
         elif beyond > 0.0:
             run.counts.mode = direction
             if run.counts.has_inertia == 0:
-                note_jump(run, direction * beyond / run.par.impedance, Cause.HEALING)
+                note_jump(run, direction * beyond / run.params.impedance, Cause.HEALING)
 
 
 @kernel
@@ -108,7 +108,7 @@ def stick(run: Run, xi_to: float) -> None:
     width, load = xi_to - run.state.xi, run.history[run.counts.length].load
     restrict(run.load, run.state.xi, width, load)
     onset, direction = end_of_rest(run, load)
-    if run.par.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
+    if run.params.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
         heal(run, load[0])
         stale = run.counts.folds_move == 1 and run.state.table_slip != run.state.law_slip
         if run.counts.mode != 0 or stale:
@@ -121,9 +121,9 @@ def stick(run: Run, xi_to: float) -> None:
     if run.counts.has_state == 1:
         fill(ahead(run.history_state, at.TERMS * run.counts.length), 0.0)
     record(run, run.state.xi + onset * width if slips else xi_to)
-    run.counts.edge = 0
+    run.counts.leaving_rest = 0
     if slips:
-        run.counts.mode, run.counts.edge = direction, direction
+        run.counts.mode, run.counts.leaving_rest = direction, direction
         run.counts.stiff = run.counts.steps = 0
         choose_branch(run, rest_limit(run))
 
@@ -141,7 +141,7 @@ def come_to_rest(run: Run) -> None:
         return
     run.counts.mode = 0
     if run.counts.has_inertia == 0:
-        run.counts.edge = before if run.par.static_excess == 0.0 else 0
+        run.counts.leaving_rest = before if run.params.static_excess == 0.0 else 0
         return
     load = evaluate(run.load, run.state.xi)
     limit = rest_limit(run)

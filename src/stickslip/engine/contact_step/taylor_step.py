@@ -52,25 +52,25 @@ def first_guess(run: Run, left: float) -> float:
 
 @kernel
 def prepare_series(run: Run, guess: float) -> None:
-    """Prepare what the series is made of: the load ahead (run.seen), in units of `guess` (in xi), and the numbers in run.k."""
-    direction, par, k = run.counts.mode, run.par, run.k
+    """Prepare what the series is made of: run.load_along_slip, in units of `guess` (in xi), and the numbers in run.k."""
+    direction, params, k = run.counts.mode, run.params, run.k
     load_ahead(run, guess)
     k.rate = abs(run.state.rate_now)
     if run.counts.is_algebraic == 1:
         if run.counts.folds_move == 0 or run.state.table_slip == run.state.law_slip:
-            k.rate = rate_on_branch(run, run.seen[0], k.rate)
+            k.rate = rate_on_branch(run, run.load_along_slip[0], k.rate)
         else:
-            k.rate = rate_from_here(run, run.seen[0], k.rate)
+            k.rate = rate_from_here(run, run.load_along_slip[0], k.rate)
     if run.counts.knots_in_rate == 1:
         settle_piece(run, k.rate)
     piece = run.counts.piece
-    edge = run.counts.edge != 0
-    k.chi = direction if par.counts_net == 1.0 else 1.0
+    edge = run.counts.leaving_rest != 0
+    k.chi = direction if params.counts_net == 1.0 else 1.0
     k.speed = (run.state.speed + 2.0 * run.state.bend * run.state.xi) * guess
     k.bend = 2.0 * run.state.bend * guess * guess
     k.slip, k.offset = run.state.law_slip + run.law[piece].slip_shift, run.law[piece].offset
     k.free = 0.0 if edge else 1.0
-    k.force = par.normal * par.static_excess if edge else 0.0
+    k.force = params.normal * params.static_excess if edge else 0.0
 
 
 @kernel
@@ -111,7 +111,7 @@ def calculate_series(run: Run, guess: float) -> None:
     """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `guess` (in xi)."""
     prepare_series(run, guess)
     piece = run.counts.piece
-    call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.seen, run.jet)
+    call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.load_along_slip, run.jet)
 
 
 @kernel
@@ -119,7 +119,7 @@ def note_shock(run: Run) -> None:
     """Note a jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
     if run.state.xi == 0.0 and run.counts.arriving != Cause.NO_CAUSE:
         note_jump(run, run.counts.mode * run.jet[0], run.counts.arriving)
-    elif run.counts.edge != 0 and run.counts.has_inertia == 0:
+    elif run.counts.leaving_rest != 0 and run.counts.has_inertia == 0:
         note_jump(run, run.counts.mode * run.jet[0], Cause.FOLD)
 
 
@@ -129,7 +129,7 @@ def take_step(run: Run, plan: StepPlan, guess: float) -> None:
 
     `guess` (in xi) is the unit of the series.
     """
-    length, reached = choose_length(run, plan.target, guess, usable_length(run.jet, run.par.tolerance))
+    length, reached = choose_length(run, plan.target, guess, usable_length(run.jet, run.params.tolerance))
     kept = run.history[run.counts.length]
     begin_verification(run)
     stretch(run, length, kept.rate)
@@ -152,7 +152,7 @@ def take_step(run: Run, plan: StepPlan, guess: float) -> None:
         note_rough_step(run, kept.rate, rate_end)
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * guess
-    move(run, kept.rate, cut.end * length, grown, rate_end, to)
+    move(run, cut.end * length, grown, rate_end, to)
     resolve(run, cut)
     if cut.event == StepEvent.NONE and plan.ends_branch and (reached or plan.target - run.state.xi < TIE):
         reach_end(run)

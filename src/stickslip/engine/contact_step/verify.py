@@ -95,10 +95,10 @@ def load_at_end(run: Run) -> float:
     run.powers must hold the powers of the step's length.
     """
     if run.counts.degree <= 1:
-        return run.seen[0] + run.powers[1] * run.seen[1]
-    load = run.seen[0]
+        return run.load_along_slip[0] + run.powers[1] * run.load_along_slip[1]
+    load = run.load_along_slip[0]
     for k in range(1, run.counts.degree + 1):
-        load += run.powers[k] * run.seen[k]
+        load += run.powers[k] * run.load_along_slip[k]
     return load
 
 
@@ -111,14 +111,14 @@ def obeys_contact(run: Run, rate: Floats, length: float, grown: float, rate_end:
     moves = run.counts.has_inertia == 1
     missing, rounding = defect(run, length, grown, rate_end, slope_at_end(rate) if moves else 0.0)
     allowed = ALLOWED_SLOPE if moves else ALLOWED
-    return missing <= allowed * run.par.tolerance * largest_rate(rate, rate_end) + rounding + run.state.rounded
+    return missing <= allowed * run.params.tolerance * largest_rate(rate, rate_end) + rounding + run.state.rounded
 
 
 @inlined
 def is_negative(run: Run) -> bool:
     """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
     friction = run.value.mu + run.law[run.counts.piece].offset
-    return run.par.reference + run.par.normal * friction < -NEGLIGIBLE * run.par.normal
+    return run.params.reference + run.params.normal * friction < -NEGLIGIBLE * run.params.normal
 
 
 @inlined
@@ -129,18 +129,18 @@ def defect(run: Run, lasting: float, grown: float, rate: float, slope: float) ->
     length of the step up to the place, in guesses; `slope` is the slope of the slip rate there, per that length. A step that
     leaves rest begins by definition without a net force: what the equation lacks at its start it lacks at every place.
     """
-    par, value, piece = run.par, run.value, run.counts.piece
+    params, value, piece = run.params, run.value, run.counts.piece
     dx, load = run.k.slip + run.k.chi * grown, load_at_end(run)
     call_value(run.law[piece].value_at, constants_of(run, piece), dx, rate, numbers_of(value))
-    friction, impedance, normal = value.mu + run.law[piece].offset, par.impedance, par.normal
+    friction, impedance, normal = value.mu + run.law[piece].offset, params.impedance, params.normal
     missing = load - impedance * rate - normal * friction - run.state.unbalanced
     # Slip rate and slip are rounded too, and the law turns that into an error of friction.
-    terms = par.reference + abs(load) + normal * (abs(friction) + abs(value.by_rate * rate) + abs(value.by_slip * dx))
+    terms = params.reference + abs(load) + normal * (abs(friction) + abs(value.by_rate * rate) + abs(value.by_slip * dx))
     if run.counts.has_inertia == 0:
         resistance = impedance + normal * max(value.by_rate, 0.0)
         return abs(missing) / resistance, ROUNDING * terms / resistance
-    missing -= par.stiffness * grown
-    pace = (run.k.speed + run.k.bend * lasting) * lasting / par.inertia
+    missing -= params.stiffness * grown
+    pace = (run.k.speed + run.k.bend * lasting) * lasting / params.inertia
     return abs(missing * pace - slope), ROUNDING * terms * pace
 
 
@@ -165,7 +165,7 @@ def note_rounding(run: Run, length: float) -> None:
 def note_rough_step(run: Run, rate: Floats, rate_end: float) -> None:
     """Count the step if rounding in the law has made it miss the contact equation by more than the tolerance allows."""
     share = run.state.rounded / largest_rate(rate, rate_end)
-    if share > (ALLOWED_SLOPE if run.counts.has_inertia == 1 else ALLOWED) * run.par.tolerance:
+    if share > (ALLOWED_SLOPE if run.counts.has_inertia == 1 else ALLOWED) * run.params.tolerance:
         run.counts.rough += 1
         run.state.roughest = max(run.state.roughest, share)
 
@@ -183,7 +183,7 @@ def note_unbalanced(run: Run) -> None:
     """Note the force (Pa or N) that a step ignores at its start, because it leaves rest without a net force by definition."""
     piece = run.counts.piece
     call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip, 0.0, numbers_of(run.value))
-    balance = run.seen[0] - run.par.normal * (run.value.mu + run.law[piece].offset)
+    balance = run.load_along_slip[0] - run.params.normal * (run.value.mu + run.law[piece].offset)
     run.state.unbalanced = balance - run.k.force
-    if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.par.tolerance) * run.par.normal:
+    if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.params.tolerance) * run.params.normal:
         run.counts.breach = Stop.OFF_THE_LAW  # A massless contact must balance: no solution begins here.

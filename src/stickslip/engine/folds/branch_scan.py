@@ -68,22 +68,22 @@ def friction_there(contact: Contact, rate: float) -> None:
 def level_at(contact: Contact, rate: float) -> float:
     """Return g (Pa, minus the reference strength) at a slip rate >= 0, where 0 means 0+, and leave g' in run.friction.by_rate."""
     friction_there(contact, rate)
-    contact.run.friction.by_rate += contact.run.par.impedance
-    return contact.run.par.impedance * rate + contact.run.friction.stress
+    contact.run.friction.by_rate += contact.run.params.impedance
+    return contact.run.params.impedance * rate + contact.run.friction.stress
 
 
 @kernel
 def strength_at(contact: Contact) -> float:
     """Return the static strength (Pa), minus the reference strength."""
     friction_there(contact, 0.0)
-    return contact.run.par.normal * (contact.run.friction.coefficient + contact.run.par.static_excess)
+    return contact.run.params.normal * (contact.run.friction.coefficient + contact.run.params.static_excess)
 
 
 @kernel
 def steepness(contact: Contact, rate: float) -> float:
     """Return g' (Pa s/m) at a slip rate, minus the slope that counts as flat: positive on a branch."""
     level_at(contact, rate)
-    return contact.run.friction.by_rate - FLAT * contact.run.par.impedance
+    return contact.run.friction.by_rate - FLAT * contact.run.params.impedance
 
 
 @kernel
@@ -150,7 +150,7 @@ def find_branches(contact: Contact, top: float) -> int:
     while length < len(contact.scan) and (length < 2 or contact.scan[length - 1] <= top):
         slope[length] = steepness(contact, contact.scan[length])
         length += 1
-    starts_flat = slope[0] >= -2.0 * FLAT * contact.run.par.impedance and slope[1] > 0.0
+    starts_flat = slope[0] >= -2.0 * FLAT * contact.run.params.impedance and slope[1] > 0.0
     count = note_fold(contact, 0.0, 0) if slope[0] > 0.0 or starts_flat else 0
     refined = 0  # index of the scan up to which g' has been evaluated between rates, too
     for k in range(1, length):

@@ -6,7 +6,7 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact.append_segment import note_degree, theta_at
+from stickslip.engine.contact.append_segment import note_degree, phase_at
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
@@ -71,9 +71,9 @@ def square_variable(c: Floats, out: Floats) -> None:
 @kernel
 def set_aside(run: Run, width: float) -> None:
     """Keep the present piece of load and the state, to be taken up again at a place that is `width` (in xi) further on."""
-    copy(run.load, run.kept_load, at.TERMS)
-    copy(numbers_of(run.state), numbers_of(run.kept), at.KEPT)
-    run.kept.xi = run.state.xi + width
+    copy(run.load, run.saved_load, at.TERMS)
+    copy(numbers_of(run.state), numbers_of(run.saved), at.SAVED)
+    run.saved.xi = run.state.xi + width
     if run.state.xi > 0.0:
         run.counts.arriving = Cause.NO_CAUSE
 
@@ -91,11 +91,11 @@ def approach_fold(run: Run, width: float) -> float:
     if share < 1.0:
         return (1.0 - share) * width
     set_aside(run, width)
-    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
+    phase_from, phase_to = phase_at(run, run.state.xi), phase_at(run, run.state.xi + width)
     square_variable(backwards, squared)
     restrict(squared, 1.0, -1.0, run.load)
-    run.state.theta_from, run.state.theta_to = theta_from, theta_to
-    run.state.speed, run.state.bend, run.state.xi = 2.0 * (theta_to - theta_from), theta_from - theta_to, 0.0
+    run.state.phase_from, run.state.phase_to = phase_from, phase_to
+    run.state.speed, run.state.bend, run.state.xi = 2.0 * (phase_to - phase_from), phase_from - phase_to, 0.0
     run.state.exit = math.nan
     note_degree(run)
     run.counts.at_fold = NearFold.APPROACHING
@@ -107,10 +107,10 @@ def starts_at_fold(run: Run) -> bool:
     """Return True if slip has just begun on a branch exactly at its fold, as it does by the maximal rule under a smooth load."""
     branch = run.counts.branch
     fold = run.branch_table[branch].rate_from
-    if run.counts.edge == 0 or run.counts.at_fold != NearFold.NONE or fold == 0.0 or is_knot(run, fold):
+    if run.counts.leaving_rest == 0 or run.counts.at_fold != NearFold.NONE or fold == 0.0 or is_knot(run, fold):
         return False
     level = towards(run, evaluate(run.load, run.state.xi), run.counts.mode)
-    return level - run.branch_table[branch].excess_from <= AT_THE_FOLD * run.par.reference
+    return level - run.branch_table[branch].excess_from <= AT_THE_FOLD * run.params.reference
 
 
 @kernel
@@ -119,7 +119,7 @@ def load_outruns_fold(run: Run) -> bool:
     fold, xi, direction = run.branch_table[run.counts.branch].rate_from, run.state.xi, run.counts.mode
     friction_at(run, run.state.law_slip, fold)
     restrict(run.load, xi, 1.0, run.part)
-    sense = direction if run.par.counts_net == 1.0 else 1
+    sense = direction if run.params.counts_net == 1.0 else 1
     return direction * run.part[1] > run.friction.by_slip * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
 
 
@@ -138,9 +138,9 @@ def depart_from_fold(run: Run, left: float) -> None:
         restrict(run.load, run.state.xi, width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
-    theta_from, theta_to = theta_at(run, run.state.xi), theta_at(run, run.state.xi + width)
-    run.state.theta_from, run.state.theta_to = theta_from, theta_to
-    run.state.speed, run.state.bend, run.state.xi = 0.0, theta_to - theta_from, 0.0
+    phase_from, phase_to = phase_at(run, run.state.xi), phase_at(run, run.state.xi + width)
+    run.state.phase_from, run.state.phase_to = phase_from, phase_to
+    run.state.speed, run.state.bend, run.state.xi = 0.0, phase_to - phase_from, 0.0
     note_degree(run)
     run.counts.at_fold = NearFold.DEPARTING
 
@@ -153,7 +153,7 @@ def last_to_fold(run: Run) -> float:
     """
     if run.counts.folds_move == 0:
         return LAST_TO_FOLD
-    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.par.tolerance))
+    return max(LAST_TO_FOLD, 10.0 * math.sqrt(run.params.tolerance))
 
 
 @kernel
@@ -188,14 +188,14 @@ def straight_from_fold(run: Run) -> None:
 def leave_fold_piece(run: Run) -> None:
     """Take up the piece of load again after the side piece next to a fold, and end the branch if the fold is reached."""
     state = run.state
-    way = theta_at(run, 1.0) - theta_at(run, 0.0)
+    way = phase_at(run, 1.0) - phase_at(run, 0.0)
     if run.counts.at_fold == NearFold.DEPARTING and way > 0.0:  # The next series converges about as far as the fold is away.
         state.last_step = way
     rate, slipped, law_slip = state.rate_now, state.slip_now, state.law_slip
-    last = state.last_step if state.last_step > 0.0 else run.kept.last_step  # The side piece was too short to take time.
-    copy(numbers_of(run.kept), numbers_of(run.state), at.KEPT)
+    last = state.last_step if state.last_step > 0.0 else run.saved.last_step  # The side piece was too short to take time.
+    copy(numbers_of(run.saved), numbers_of(run.state), at.SAVED)
     state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
-    copy(run.kept_load, run.load, at.TERMS)
+    copy(run.saved_load, run.load, at.TERMS)
     note_degree(run)
     reached = run.counts.at_fold == NearFold.APPROACHING
     run.counts.at_fold = NearFold.NONE
@@ -207,7 +207,7 @@ def leave_fold_piece(run: Run) -> None:
 def reach_end(run: Run) -> None:
     """End the branch: go to another one at once, or, if folds move, when the branches at this slip are known."""
     if run.counts.folds_move == 1:
-        run.counts.leaving = 1
+        run.counts.branch_ended = 1
     else:
         run.counts.stalled += 1  # Counting ends a run that alternates between branches without taking time.
         end_branch(run)
@@ -219,7 +219,7 @@ def leave_moving_branch(run: Run) -> None:
 
     The rest of a side piece that was made for a fold is walked like any other piece.
     """
-    run.counts.leaving = 0
+    run.counts.branch_ended = 0
     run.counts.stalled += 1
     end_branch(run)
     if run.counts.at_fold != NearFold.NONE:

@@ -43,7 +43,7 @@ class View(NamedTuple):
 @kernel
 def fastest(run: Run, load: float) -> float:
     """Return a slip rate (m/s) that no solution of the contact equation at this load exceeds."""
-    return (load + run.par.largest_drop) / run.par.impedance * (1.0 + 1e-12)
+    return (load + run.params.largest_drop) / run.params.impedance * (1.0 + 1e-12)
 
 
 @kernel
@@ -81,7 +81,7 @@ def law_slip_in(run: Run, n: int, xi: float) -> float:
     """Return the law slip (m), minus its initial value, at the place `xi` in piece n of the history."""
     piece = run.history[n]
     grown = piece.speed * integral(piece.rate, xi, 1) + 2.0 * piece.bend * integral(piece.rate, xi, 2)
-    return piece.law_slip + (grown if run.par.counts_net == 1.0 else piece.mode * grown)
+    return piece.law_slip + (grown if run.params.counts_net == 1.0 else piece.mode * grown)
 
 
 @kernel
@@ -115,7 +115,7 @@ def place_of_crossing(view: View, low: float, high: float) -> float:
     The method is false position with the Illinois modification, which keeps an end from standing still.
     Source: Dowell & Jarratt 1971, BIT 11, 168.
     """
-    slack = EXACT * view.run.par.reference
+    slack = EXACT * view.run.params.reference
     above, below = max(room_in(view, low), slack), room_in(view, high)
     side, x = 0, high
     for _ in range(100):
@@ -141,7 +141,7 @@ def crossing_in(places: Integers, step: int, rule: int, scan: Scan) -> float:
     NONE means that it stays inside. `places` comes from `workspace.lend`, `step` is a piece of the history.
     """
     view = View(borrow(places), step, rule, scan)
-    before, slack = 0.0, ROUNDING * view.run.par.reference
+    before, slack = 0.0, ROUNDING * view.run.params.reference
     for place in (FIRST_PLACE, LAST_PLACE):
         if room_in(view, place) < -slack:
             if room_in(view, before) <= slack and room_in(view, before + NEXT * (place - before)) <= 0.0:
@@ -174,7 +174,7 @@ def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float)
         step = load - value / slope
         if not low < step < high:
             step = 0.5 * (low + high)
-        if abs(step - load) <= EXACT * contact.run.par.normal or step in (low, high):
+        if abs(step - load) <= EXACT * contact.run.params.normal or step in (low, high):
             load = step
             break
         load = step
@@ -227,4 +227,4 @@ def set_maxwell_levels(places: Integers, scan: Scan) -> None:
     for k in range(run.branches):
         if run.branch_table[k].keep_from >= run.branch_table[k].keep_to:
             run.branch_table[k].keep_from, run.branch_table[k].keep_to = math.inf, -math.inf
-    run.par.stick_to = stick_to - strength
+    run.params.stick_to = stick_to - strength

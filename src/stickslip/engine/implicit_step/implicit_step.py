@@ -59,7 +59,7 @@ def note_negative_friction(run: Run) -> None:
     if not math.isfinite(rate):
         rate, state = run.stage_rate[0], run.stage_state[0]
     contact_at(run, run.state.law_slip, abs(rate), state)
-    if run.par.reference + run.par.normal * run.value.mu < -NEGLIGIBLE * run.par.normal:
+    if run.params.reference + run.params.normal * run.value.mu < -NEGLIGIBLE * run.params.normal:
         run.counts.breach = Stop.NEGATIVE_FRICTION
 
 
@@ -85,6 +85,6 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     keep_state(run, end)
     record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
     note_negative_friction(run)
-    run.counts.edge, run.counts.moved = 0, 1
+    run.counts.leaving_rest, run.counts.moved = 0, 1
     if onset < NONE:
-        run.counts.mode, run.counts.edge = direction, direction
+        run.counts.mode, run.counts.leaving_rest = direction, direction

@@ -54,8 +54,8 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
 
     Friction of such a law does not fall with the rate, so the solution is unique.
     """
-    impedance, normal = run.par.impedance, run.par.normal
-    low, high = 0.0, (load + run.par.reference) / impedance
+    impedance, normal = run.params.impedance, run.params.normal
+    low, high = 0.0, (load + run.params.reference) / impedance
     if high <= 0.0:
         return 0.0
     s = guess if low < guess < high else 0.5 * high
@@ -81,9 +81,9 @@ def assemble(run: Run, h: float, force: float) -> None:
 
     `force` (Pa or N) is the part of the load that the step ignores.
     """
-    par, v, w, m = run.par, run.stage_rate, run.stage_state, run.matrix
+    params, v, w, m = run.params, run.stage_rate, run.stage_state, run.matrix
     moving, remembers = run.counts.mode != 0, run.counts.has_state == 1
-    mass, chi = par.inertia / h, run.k.chi * h
+    mass, chi = params.inertia / h, run.k.chi * h
     size = 2 * STAGES if remembers else STAGES
     for i in range(1, POINTS):
         row, other = ahead(m, TERMS * (i - 1)), ahead(m, TERMS * (STAGES + i - 1))
@@ -94,18 +94,18 @@ def assemble(run: Run, h: float, force: float) -> None:
             evolved += DERIVATIVE[i, j] * w[j]
         contact_at(run, run.state.law_slip + chi * walked, v[i], w[i])
         value = run.value
-        resisted = par.impedance * v[i] + par.normal * value.mu + par.stiffness * h * walked
-        by_walk = par.stiffness * h + par.normal * value.by_slip * chi
+        resisted = params.impedance * v[i] + params.normal * value.mu + params.stiffness * h * walked
+        by_walk = params.stiffness * h + params.normal * value.by_slip * chi
         for j in range(1, POINTS):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
-        row[i - 1] += par.impedance + par.normal * value.by_rate if moving else 1.0
-        row[size] = evaluate(run.seen, POINT[i]) - force - resisted - mass * change if moving else 0.0
+        row[i - 1] += params.impedance + params.normal * value.by_rate if moving else 1.0
+        row[size] = evaluate(run.load_along_slip, POINT[i]) - force - resisted - mass * change if moving else 0.0
         if remembers:
             for j in range(1, POINTS):
                 row[STAGES + j - 1] = 0.0
                 other[j - 1] = -h * value.change_by_slip * chi * INTEGRAL[i, j] if moving else 0.0
                 other[STAGES + j - 1] = DERIVATIVE[i, j]
-            row[STAGES + i - 1] = par.normal * value.by_state if moving else 0.0
+            row[STAGES + i - 1] = params.normal * value.by_state if moving else 0.0
             other[i - 1] -= h * value.change_by_rate
             other[STAGES + i - 1] -= h * value.change_by_state
             other[size] = h * value.change - evolved
@@ -146,7 +146,7 @@ def eliminate(m: Floats, size: int) -> bool:
 @kernel
 def size_of_load(run: Run) -> float:
     """Return the size (Pa or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
-    size = run.par.reference
+    size = run.params.reference
     for k in range(TERMS):
         size += abs(run.load[k])
     return size
@@ -159,7 +159,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
     `rounding` is that of the load (Pa or N); a change of the slip rate that it can explain counts as none.
     """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
-    fastest, farthest, moved, evolved = 1e-300, run.par.state_scale + 1e-300, 0.0, 0.0
+    fastest, farthest, moved, evolved = 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0
     for i in range(1, POINTS):
         step = m[TERMS * (i - 1) + size]
         v[i] += step
@@ -172,7 +172,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
             return math.inf
     if rounding > 0.0:
         # run.value is still that of the last stage.
-        moved = max(moved - rounding / abs(run.par.impedance + run.par.normal * run.value.by_rate), 0.0)
+        moved = max(moved - rounding / abs(run.params.impedance + run.params.normal * run.value.by_rate), 0.0)
     return max(moved / fastest, evolved / farthest)
 
 
@@ -197,7 +197,7 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
             return False
         change = correct(run, size, rounding)
         # Newton's method squares its error: the next change would be lost in the tolerance, or only rounding is left.
-        if change <= 1e-2 * math.sqrt(run.par.tolerance) or 0.1 * before < change < 1e-9:
+        if change <= 1e-2 * math.sqrt(run.params.tolerance) or 0.1 * before < change < 1e-9:
             look_between(run)
             return True
         if math.isinf(change):
@@ -244,7 +244,7 @@ def yielding(run: Run, h: float) -> tuple[float, float]:
 
     What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
-    resistance = abs(run.par.impedance + run.par.normal * run.value.by_rate) + STAGES * run.par.inertia / h
+    resistance = abs(run.params.impedance + run.params.normal * run.value.by_rate) + STAGES * run.params.inertia / h
     return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value.change_by_state))
 
 
@@ -254,14 +254,14 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
 
     The first number is in units of slip rate, the second in units of the state.
     """
-    par, value = run.par, run.value
+    params, value = run.params, run.value
     missed, missed_state = 0.0, 0.0
     for i in range(STAGES):
         middle = between(run, i)
         contact_between(run, i, h, 0.0)
         by_load, by_change = yielding(run, h)
-        resisted = par.impedance * middle.rate + par.normal * value.mu + par.stiffness * h * middle.walked
-        missing = evaluate(run.seen, MIDDLE[i]) - force - resisted - par.inertia / h * middle.acceleration
+        resisted = params.impedance * middle.rate + params.normal * value.mu + params.stiffness * h * middle.walked
+        missing = evaluate(run.load_along_slip, MIDDLE[i]) - force - resisted - params.inertia / h * middle.acceleration
         missed = larger(missed, abs(missing) * by_load)
         missed_state = larger(missed_state, abs(value.change - middle.evolved / h) * by_change)
     return missed, missed_state if run.counts.has_state == 1 else 0.0
@@ -347,7 +347,7 @@ def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
         by_load, by_change = yielding(run, h)
         for nudge in (-NUDGE, NUDGE):
             contact_between(run, i, h, nudge)
-            lost = max(lost, abs(run.value.mu - friction) * run.par.normal * by_load)
+            lost = max(lost, abs(run.value.mu - friction) * run.params.normal * by_load)
             lost_state = max(lost_state, abs(run.value.change - change) * by_change)
     return lost, lost_state
 

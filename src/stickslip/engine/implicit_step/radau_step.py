@@ -53,14 +53,14 @@ def growth_rate(run: Run) -> float:
     An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. The effect of slip is
     left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with the disturbance.
     """
-    par, value = run.par, run.value
+    params, value = run.params, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
-    resistance = par.impedance + par.normal * value.by_rate
+    resistance = params.impedance + params.normal * value.by_rate
     if run.counts.has_inertia == 0:
-        return max(value.change_by_state - value.change_by_rate * par.normal * value.by_state / resistance, 0.0)
-    mass = par.inertia
+        return max(value.change_by_state - value.change_by_rate * params.normal * value.by_state / resistance, 0.0)
+    mass = params.inertia
     trace = value.change_by_state - resistance / mass
-    product = (par.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
+    product = (params.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
@@ -79,13 +79,13 @@ def start_of_step(run: Run) -> float:
     run.stage_rate[0] = abs(state.rate_now)
     if run.counts.mode == 0:
         run.stage_rate[0] = 0.0
-    elif run.counts.edge != 0:
+    elif run.counts.leaving_rest != 0:
         contact_at(run, state.law_slip, 0.0, state.state_now)
-        force = run.seen[0] - run.par.normal * run.value.mu
+        force = run.load_along_slip[0] - run.params.normal * run.value.mu
         if run.counts.has_inertia == 0:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
-        run.stage_rate[0] = rate_at_load(run, run.seen[0], abs(state.rate_now))
+        run.stage_rate[0] = rate_at_load(run, run.load_along_slip[0], abs(state.rate_now))
     return force
 
 
@@ -95,18 +95,18 @@ def strength_ahead(run: Run) -> float:
 
     Returns by how much it misses the law between the points, or its last terms if they are larger, in units of the tolerance.
     """
-    par = run.par
-    largest, missed = ROUNDING / par.tolerance * par.reference + abs(run.seen[0]), 0.0
+    params = run.params
+    largest, missed = ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
     for i in range(POINTS):
         contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
-        run.stage_rate[i] = par.normal * run.value.mu
+        run.stage_rate[i] = params.normal * run.value.mu
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
         contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
-        missed = larger(missed, abs(par.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
+        missed = larger(missed, abs(params.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
-    return max(missed, last_terms(run.jet)) / (par.tolerance * largest)
+    return max(missed, last_terms(run.jet)) / (params.tolerance * largest)
 
 
 @kernel
@@ -117,21 +117,21 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     between the points, where a feature of the law may lie that none of the points sees. `force` (Pa or N) is the force that the
     step ignores; `lost` (m/s) and `lost_state` (in units of the state) are known to be lost by rounding in the law itself.
     """
-    par, value, h = run.par, run.value, run.k.speed
-    fastest, farthest = par.rate_floor, par.state_scale + 1e-300
+    params, value, h = run.params, run.value, run.k.speed
+    fastest, farthest = params.rate_floor, params.state_scale + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
-    resistance = par.impedance + par.normal * value.by_rate + par.inertia / h
+    resistance = params.impedance + params.normal * value.by_rate + params.inertia / h
     noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value.change_by_rate / value.change_by_state) if value.change_by_state != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
-    error = max(last_terms(run.jet), missed) / (par.tolerance * fastest + noise + lost)
+    error = max(last_terms(run.jet), missed) / (params.tolerance * fastest + noise + lost)
     if run.counts.has_state == 1:
         missed_state = ALLOWED * max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
         state_noise += lost_state
-        error = max(error, max(last_terms(run.state_jet), missed_state) / (par.tolerance * farthest + state_noise))
+        error = max(error, max(last_terms(run.state_jet), missed_state) / (params.tolerance * farthest + state_noise))
     if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
     return error
@@ -168,7 +168,7 @@ def turn_with_load(run: Run, left: float) -> float:
     """
     part, direction, rounding = run.part, 1, LOAD_ROUNDING * size_of_load(run)
     restrict(run.load, run.state.xi, left, part)
-    part[0] += run.par.reference
+    part[0] += run.params.reference
     if part[0] < 0.0:
         turn_over(part)
         direction = -1
@@ -180,7 +180,7 @@ def turn_with_load(run: Run, left: float) -> float:
         if first <= TIE:
             turn_over(part)
             first, direction = first_descent(part, run.spare), -direction
-    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.par.reference:
+    if part[0] == 0.0 and math.isinf(first) and rounding == LOAD_ROUNDING * run.params.reference:
         return left  # The load is zero throughout.
     run.counts.mode = direction
     return min(first, 1.0) * left if run.counts.has_inertia == 0 and first > TIE else left
@@ -246,7 +246,7 @@ def collocate(run: Run, left: float) -> float:
             if error <= 1.0 or in_vain >= PATIENCE:
                 if error > 1.0:
                     run.counts.rough += 1
-                    run.state.roughest = max(run.state.roughest, error * run.par.tolerance)
+                    run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
                 # Where this step had to shrink, the next one probably has to shrink as well.
                 change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0
                 run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
@@ -265,8 +265,8 @@ def collocate(run: Run, left: float) -> float:
 def begin_step(run: Run, guess: float) -> float:
     """Prepare the load and the start of an implicit step of length `guess` (in xi); return the force (Pa or N) that it ignores."""
     load_ahead(run, guess)
-    if run.counts.sticks == 0 and abs(run.seen[0] + run.par.reference) <= LOAD_ROUNDING * size_of_load(run):
-        run.seen[0] = -run.par.reference  # The load passes through zero here: slip begins at rate zero.
+    if run.counts.sticks == 0 and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
+        run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
-    run.k.chi = run.counts.mode if run.par.counts_net == 1.0 else 1.0
+    run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0
     return start_of_step(run)

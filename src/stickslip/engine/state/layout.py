@@ -1,7 +1,7 @@
 """The records and tables that the compiled engine reads and writes: named places in plain arrays.
 
 Loads are differences from the reference strength (the static strength at the start), in Pa for a slab and N for a block. Slips
-are differences from the initial slip, in m. A time is a round trip (`row`) and a phase theta (s) in it. A block has rows too:
+are differences from the initial slip, in m. A time is a round trip (`trip`) and a phase (s) in it. A block has round trips too:
 one period of free oscillation, or longer where it never sticks. The comment beside a field is its definition; a unit of 1 means
 a pure number.
 """
@@ -27,7 +27,9 @@ TERMS = ORDER + 1
 class Params(Record):
     """Hold the numbers of a problem, in SI. They are constant during a run, except `stick_to` under a law of slip and slip rate."""
 
-    row_time: float  # s: two-way travel time of a slab; length of a row of a block (a period, or longer where it never sticks)
+    round_trip_time: (
+        float  # s: two-way travel time of a slab; length of a round trip of a block (a period, or longer where it never sticks)
+    )
     impedance: float  # Pa s/m: wave impedance Z of a slab; N s/m: damping of a block
     normal: float  # Pa: normal stress on a slab; N: normal force on a block
     inertia: float  # kg/m^2: mass of a slab's contact, 0 if it has none; kg: mass of a block
@@ -40,7 +42,7 @@ class Params(Record):
     counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
     static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
     stick_to: float  # Pa or N: load at which rest ends, minus the static strength at the present slip; never above 0
-    ramp: float  # Pa or N: growth of the load at rest in one row; 0 for a loading that varies
+    ramp: float  # Pa or N: growth of the load at rest in one round trip; 0 for a loading that varies
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
     smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
     relative_jump: float  # 1: nor are changes up to this share of the slip rate
@@ -62,10 +64,10 @@ class State(Record):
     rate_now: float  # m/s: slip rate, with its sign
     load_now: float  # N: load of a block at the end of the period before, minus the reference strength
     last_step: float  # s: length that the error allowed the last step to have
-    theta_from: float  # s: phase at which the piece of load begins; theta = theta_from + speed xi + bend xi^2
-    theta_to: float  # s: phase at which the piece of load ends
-    speed: float  # s: dtheta/dxi at xi = 0
-    bend: float  # s: coefficient of xi^2 in theta, 0 except next to folds
+    phase_from: float  # s: phase at which the piece of load begins; phase = phase_from + speed xi + bend xi^2
+    phase_to: float  # s: phase at which the piece of load ends
+    speed: float  # s: dphase/dxi at xi = 0
+    bend: float  # s: coefficient of xi^2 in the phase, 0 except next to folds
     table_slip: float  # m: law slip (minus its initial value) at which the table of branches holds
     fold_rate: float  # m/s: magnitude of the slip rate at the moving fold that the contact approaches
     state_now: float  # unit of the law's state: state variable of the law, as its formulas see it
@@ -73,9 +75,9 @@ class State(Record):
     taken_to: float  # s: phase up to which the echoes of earlier round trips have been taken out of the tree that is ahead
     amplified: float  # 1: size in the present piece of load of an error of 1 in the load at the start; NaN if not known
     gain: float  # 1: factor abs(2 Z / g' - 1) by which the last step of slip multiplies an error of the load; NaN if not known
-    slip_since: float  # s: phase at which slip began, in round trip `Counts.slip_row`
+    slip_since: float  # s: phase at which slip began, in round trip `Counts.slip_trip`
     taken: float  # 1: xi of the source of load up to which a loading that varies has delivered it; 0 if a new source is next
-    taken_to_theta: float  # s: phase that belongs to `taken`
+    taken_to_phase: float  # s: phase that belongs to `taken`
     target: float  # 1: xi up to which a run that waits for others may slip in the step that it takes beside them
     unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest (`contact_step.verify`)
     rounded: float  # m/s: allowance for rounding in the law where the step at hand seemed to miss the contact equation; else 0
@@ -83,21 +85,21 @@ class State(Record):
     exit: float  # 1: xi at which an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
 
 
-KEPT = State.places["taken"].first
+SAVED = State.places["taken"].first
 """Number of leading fields of `State` that are set aside with the piece of load while a side piece next to a fold replaces it."""
 
 
 class Counts(Record):
     """Hold the part of the state that is whole numbers: places in the history, flags, codes."""
 
-    row: int  # present round trip of a slab or row of a block, from 0
+    trip: int  # present round trip, from 0
     source: int  # index of the next piece of load: of the first load (round trip 0, block), else counted from `previous_from`
     mode: int  # 0 at rest, +1 in forward slip, -1 in backward slip
     piece: int  # piece of the law that holds
     branch: int  # branch on which an algebraic contact slips, as an index of the table of branches
-    edge: int  # +1 or -1: the load is exactly where slip in this direction begins, or a branch was just left; else 0
+    leaving_rest: int  # +1 or -1: the load is exactly where slip in this direction begins, or a branch was just left; else 0
     length: int  # number of pieces in the history
-    row_from: int  # first piece of the history in this round trip
+    trip_from: int  # first piece of the history in this round trip
     previous_from: int  # first piece of the history in the last round trip that was recorded before this one
     previous_to: int  # first piece after that round trip
     moved: int  # 1 if there was slip in this round trip
@@ -105,7 +107,7 @@ class Counts(Record):
     jump: int  # 1 if load or slip rate jumps where the next piece of the history begins
     cause: int  # cause of the shock there, as a code of `Cause`; 0 if the slip rate does not jump
     echo_of: int  # piece of the history whose echo the present piece of load is; -1 if it is none
-    stuck_rows: int  # number of round trips at rest that were closed since the last slip; -1 after a break of the loading
+    trips_at_rest: int  # number of round trips at rest that were closed since the last slip; -1 after a break of the loading
     stalled: int  # number of steps in a row that took no time, with changes of branch
     at_fold: int  # kind of side piece next to a fold, as a code of `NearFold`
     is_block: int  # 1 for a block, 0 for a slab
@@ -118,7 +120,7 @@ class Counts(Record):
     steps: int  # number of explicit steps of a contact with mass since slip last began from rest
     folds_move: int  # 1 if the branches change with slip
     knots_in_rate: int  # 1 if the knots of the law are slip rates, 0 if they are slips
-    leaving: int  # 1 if a moving branch has ended and the next one has not been chosen yet
+    branch_ended: int  # 1 if a moving branch has ended and the next one has not been chosen yet
     is_locked: int  # 1 if no load to come can move the contact
     to_the_end: int  # 1 if the end of the run may cut a piece or a leap, as it would not do in a longer run
     sparse: int  # 1 if only echoes under which the contact may slip are met (`waves.echo_queue`)
@@ -126,16 +128,16 @@ class Counts(Record):
     ahead: int  # root of the tree of echoes that it has yet to meet, or -1
     new_from: int  # first piece of the history that is in no tree yet
     lumped: int  # 1 if the present piece of load was replaced by its mean
-    slip_row: int  # round trip in which slip last began
-    tiny: int  # number of slips too short to be resolved, less the number of other slips, never below 0
-    pause_at: int  # round trip before which `advance` returns
+    slip_trip: int  # round trip in which slip last began
+    unresolved_slips: int  # number of slips too short to be resolved, less the number of other slips, never below 0
+    pause_at: int  # round trip before which `run_until` returns
     pause_for: int  # number of round trips that the next pause waits, set by the caller
     creep_leaps: int  # number of leaps over creep so far
     varies: int  # 1 if the loading varies in time other than as a ramp
     segment: int  # segment of the loading that holds at present
-    row_segment: int  # segment of the loading at the end of the row before
+    trip_segment: int  # segment of the loading at the end of the round trip before
     waits: int  # 1 if explicit steps of slip are left to the caller
-    creep_in: int  # number of round trips with slip before `advance` pauses for a look at leaps over creep; none if not above 0
+    creep_in: int  # number of round trips with slip before `run_until` pauses for a look at leaps over creep; none if not above 0
     lumps: int  # 1 if short pieces of load are lumped
     lump_above: int  # number of pieces in a round trip above which lumping begins
     lumped_since: int  # round trip from which on short pieces are lumped
@@ -242,8 +244,8 @@ class Task(IntEnum):
     """Take a step at rest in which the state of the law evolves."""
     TAKE_LOADING = 2
     """Cut the piece of load where the loading breaks, and add the loading to it."""
-    COUNT_ROWS_AT_REST = 3
-    """Find for how many rows a contact at rest withstands the loading."""
+    COUNT_TRIPS_AT_REST = 3
+    """Find for how many round trips a contact at rest withstands the loading."""
     NEXT_ECHO = 4
     """Find the next echo that must be met."""
     END_TRIP = 5
@@ -315,9 +317,9 @@ class Branch(Record):
 
 
 class FirstLoad(Record):
-    """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `theta`."""
+    """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `phase`."""
 
-    theta: float  # s: phase at which the piece begins
+    phase: float  # s: phase at which the piece begins
     load: float  # Pa or N, minus the reference strength
     slope: float  # Pa/s or N/s
     jump: float  # 1 if the load jumps there, else 0
@@ -326,7 +328,7 @@ class FirstLoad(Record):
 class LoadingSegment(Record):
     """Hold one straight segment of a loading that varies: the inflow of a slab (Pa), the growth of a block's load (N/s)."""
 
-    row: float  # round trip in which the segment arrives at the contact
+    trip: float  # round trip in which the segment arrives at the contact
     offset: float  # s: phase at which it arrives
     value: float  # inflow there
     slope: float  # its growth per second
@@ -336,14 +338,14 @@ class LoadingSegment(Record):
 class HistoryPiece(Record):
     """Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1]."""
 
-    row: int  # whole round trips before the piece
+    trip: int  # whole round trips before the piece
     mode: int  # 0 at rest, +1 in forward slip, -1 in backward slip
     law_piece: int  # piece of the law that holds
     jump: int  # 1 if load or slip rate jumps where the piece begins
     cause: int  # cause of the shock there, as a code of `Cause`; 0 if there is none
     echo_of: int  # piece whose echo is the load; -1 in the first round trip and on a block
-    theta_from: float  # s: phase at which it begins; theta = theta_from + speed xi + bend xi^2
-    theta_to: float  # s: phase at which it ends
+    phase_from: float  # s: phase at which it begins; phase = phase_from + speed xi + bend xi^2
+    phase_to: float  # s: phase at which it ends
     speed: float  # s
     bend: float  # s: zero except next to folds
     slip: float  # m: slip where it begins, minus the initial slip
@@ -409,7 +411,7 @@ class Between(Record):
 class Setup(NamedTuple):
     """Hold a problem as the engine sees it. It is constant during a run, except the branches of a law of slip and slip rate."""
 
-    par: Params
+    params: Params
     law: Integers  # table of LawPiece
     constants: Floats  # (pieces of the law, size): constants that the formula's `prepare` has filled in
     branches: Floats  # table of Branch

@@ -60,21 +60,23 @@ class Run(Record):
     moving_folds: int
     missing: int  # the part for which the engine has asked, as a code of `Part`
 
-    par: Params = inside(Params)
+    params: Params = inside(Params)
     state: State = inside(State)
     counts: Counts = inside(Counts)
 
     load: Floats = floats_inside(TERMS)  # Pa or N: the present piece of load, as a polynomial in xi
     local: Floats = floats_inside(TERMS)  # Pa or N: load from the present place on, in units of the guess; zero beyond the degree
-    seen: Floats = floats_inside(TERMS)  # Pa or N: the same as seen in the direction of slip, minus the reference strength
+    load_along_slip: Floats = floats_inside(
+        TERMS
+    )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the guess
     reach: Floats = floats_inside(TERMS)  # bound that guards write right after the series: the step ends where its sum is 1
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in guesses
     k: Series = inside(Series, TERMS)  # input of the series
     value: LawValue = inside(LawValue, TERMS)  # what the law's formula returned last
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
-    kept_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
-    kept: State = inside(State, TERMS)  # the first KEPT fields of the state that belong to it
+    saved_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
+    saved: State = inside(State, TERMS)  # the first SAVED fields of the state that belong to it
     part: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
     state_jet: Floats = floats_inside(TERMS)  # polynomial of the law's state over an implicit step
@@ -100,17 +102,17 @@ pieces_in: Any = record_at(HistoryPiece)
 """Function for compiled code that returns the first piece of a history's table."""
 
 
-def memory_of(par: Params, state: State, counts: Counts) -> Integers:
+def memory_of(params: Params, state: State, counts: Counts) -> Integers:
     """Return the memory of a run with these numbers, state and counts; its tables must still be lent."""
     memory = np.zeros(PLACES, np.int64)
-    params_in(memory).numbers[:], state_in(memory).numbers[:] = par.numbers, state.numbers
+    params_in(memory).numbers[:], state_in(memory).numbers[:] = params.numbers, state.numbers
     counts_in(memory).numbers[:] = counts.numbers
     return memory
 
 
 def params_in(memory: Integers) -> Params:
     """Return the problem's numbers in the memory of a run; the record shares that memory."""
-    place = Run.places["par"]
+    place = Run.places["params"]
     return Params(memory[..., place.first : place.first + place.size].view(np.float64))
 
 

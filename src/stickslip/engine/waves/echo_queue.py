@@ -122,14 +122,14 @@ def room(run: Run, n: int, way: int, limit: float) -> float:
 
     `way` is 1 for slip forwards, -1 for slip backwards; `limit` (Pa) is measured from the reference strength.
     """
-    top = run.echoes[n].high if way > 0 else run.echoes[n].low - 2.0 * run.par.reference
-    return limit - NEARLY * abs(run.par.reference) - top
+    top = run.echoes[n].high if way > 0 else run.echoes[n].low - 2.0 * run.params.reference
+    return limit - NEARLY * abs(run.params.reference) - top
 
 
 @kernel
 def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
     """Return True if the contact may slip in a direction under the echo of piece n in round trip `trip`."""
-    return way * run.par.ramp * (trip - run.echoes[n].trip) > room(run, n, way, limit)
+    return way * run.params.ramp * (trip - run.echoes[n].trip) > room(run, n, way, limit)
 
 
 @kernel
@@ -157,11 +157,11 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
     """Return the next round trip in which the contact may slip under any piece of tree n, or FOREVER."""
-    coming = run.counts.row + 1
+    coming = run.counts.trip + 1
     if any_breaks(run, n, limit, coming):
         return coming
-    way = 1 if run.par.ramp > 0.0 else -1
-    growth, first = abs(run.par.ramp), run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
+    way = 1 if run.params.ramp > 0.0 else -1
+    growth, first = abs(run.params.ramp), run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
         return FOREVER
@@ -180,8 +180,8 @@ def leave_out_ends(run: Run, piece: HistoryPiece) -> None:
 
     Slip near an end alone would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
     """
-    width = piece.theta_to - piece.theta_from
-    share = run.par.shortest / width if run.counts.lumps == 1 else 0.0
+    width = piece.phase_to - piece.phase_from
+    share = run.params.shortest / width if run.counts.lumps == 1 else 0.0
     if share >= 0.5:
         mean = mean_of(run.part, piece.speed, piece.bend, width)
         fill(run.part, 0.0)
@@ -197,14 +197,14 @@ def add(run: Run, n: int) -> None:
     node, piece = run.echoes[n], run.history[n]
     load, rate = piece.load, piece.rate
     for k in range(TERMS):
-        run.part[k] = load[k] - 2.0 * run.par.impedance * rate[k]
+        run.part[k] = load[k] - 2.0 * run.params.impedance * rate[k]
     leave_out_ends(run, piece)
-    node.phase, node.high, node.low = piece.theta_from, maximum(run.part), maximum(run.part, -1.0)
+    node.phase, node.high, node.low = piece.phase_from, maximum(run.part), maximum(run.part, -1.0)
     node.left = node.right = NOTHING
     node.first_up = node.first_down = n
-    node.trip = piece.row
+    node.trip = piece.trip
     node.rank = rank(node.phase, node.trip)
-    run.counts.behind = join(run.echoes, run.par.ramp, run.counts.behind, n)
+    run.counts.behind = join(run.echoes, run.params.ramp, run.counts.behind, n)
 
 
 @kernel
@@ -219,12 +219,12 @@ def add_new(run: Run) -> None:
 def pass_to(run: Run, n: int) -> None:
     """Move the pieces before piece n to the tree of those that have been passed, and take piece n out of the tree ahead."""
     phase = run.echoes[n].phase
-    before, rest = part(run.echoes, run.par.ramp, run.counts.ahead, phase)
-    run.counts.behind = join(run.echoes, run.par.ramp, run.counts.behind, before)
-    run.counts.ahead = without_first(run.echoes, run.par.ramp, rest)
+    before, rest = part(run.echoes, run.params.ramp, run.counts.ahead, phase)
+    run.counts.behind = join(run.echoes, run.params.ramp, run.counts.behind, before)
+    run.counts.ahead = without_first(run.echoes, run.params.ramp, rest)
     if run.counts.new_from == run.counts.length:
         run.state.new_since = phase
-    run.state.taken_to = run.history[n].theta_to
+    run.state.taken_to = run.history[n].phase_to
 
 
 @kernel
@@ -240,7 +240,7 @@ def next_echo(run: Run) -> int:
         source = first_of(run, run.counts.ahead)
     else:
         add_new(run)
-        source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.row)
+        source = first_to_break(run, run.counts.ahead, rest_limit(run), run.counts.trip)
     if source != NOTHING:
         pass_to(run, source)
     return source
@@ -250,11 +250,11 @@ def next_echo(run: Run) -> int:
 def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one in which the contact may slip; set `is_locked` if there is none."""
     add_new(run)
-    whole = join(run.echoes, run.par.ramp, run.counts.behind, run.counts.ahead)
-    trip = run.counts.row + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
-    settled = run.par.ramp == 0.0 and run.counts.moved == 0
+    whole = join(run.echoes, run.params.ramp, run.counts.behind, run.counts.ahead)
+    trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
+    settled = run.params.ramp == 0.0 and run.counts.moved == 0
     run.counts.is_locked = 1 if trip == FOREVER or settled else 0
-    run.counts.row = trip
+    run.counts.trip = trip
     run.counts.ahead, run.counts.behind = whole, NOTHING
     run.state.new_since = run.state.taken_to = 0.0
     run.counts.moved = 0
@@ -267,12 +267,12 @@ def worth_building(run: Run) -> bool:
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
     loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
     """
-    if run.par.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
+    if run.params.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
         return False
     if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != at.NEVER:
         return False
-    slipping, pieces = 0, run.counts.length - run.counts.row_from
-    for n in range(run.counts.row_from, run.counts.length):
+    slipping, pieces = 0, run.counts.length - run.counts.trip_from
+    for n in range(run.counts.trip_from, run.counts.length):
         slipping += 1 if run.history[n].mode != 0 else 0
     return slipping == 0 or (pieces >= MANY and slipping <= pieces // (MANY // 4))
 
@@ -280,7 +280,7 @@ def worth_building(run: Run) -> bool:
 @kernel
 def build_queue(run: Run) -> None:
     """Meet only echoes that break from here on, and build the tree from the pieces of the round trip just past."""
-    run.counts.sparse, run.counts.new_from = 1, run.counts.row_from
+    run.counts.sparse, run.counts.new_from = 1, run.counts.trip_from
     run.counts.behind = run.counts.ahead = NOTHING
     end_trip(run)
 

@@ -13,9 +13,9 @@ from stickslip.engine.waves.echo_queue import NOTHING
 
 
 @kernel
-def rows_leaped(run: Run, n: int) -> int:
+def trips_leaped(run: Run, n: int) -> int:
     """Return the number of round trips that were leaped over between that of piece n of the history and the present one."""
-    return run.counts.row - run.history[n].row - 1
+    return run.counts.trip - run.history[n].trip - 1
 
 
 @kernel
@@ -25,22 +25,26 @@ def first_piece(run: Run) -> bool:
     if source >= run.loads - 1:
         return False
     first = run.first_load[source]
-    run.state.theta_from, run.state.theta_to = first.theta, run.first_load[source + 1].theta
-    run.state.speed, run.state.bend = run.state.theta_to - run.state.theta_from, 0.0
+    run.state.phase_from, run.state.phase_to = first.phase, run.first_load[source + 1].phase
+    run.state.speed, run.state.bend = run.state.phase_to - run.state.phase_from, 0.0
     fill(run.load, 0.0)
     run.load[0] = first.load
     run.load[1] = first.slope * run.state.speed
-    if run.counts.is_block == 1 and run.counts.row > 0:
-        run.load[0] = run.state.load_now + rows_leaped(run, run.counts.length - 1) * run.par.ramp
+    if run.counts.is_block == 1 and run.counts.trip > 0:
+        run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
     run.counts.echo_of = -1
     # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
     run.state.amplified = (
-        math.nan if run.counts.is_block == 1 else 1.0 if run.state.theta_from < 0.5 * run.par.row_time else abs(run.par.reflection)
+        math.nan
+        if run.counts.is_block == 1
+        else 1.0
+        if run.state.phase_from < 0.5 * run.params.round_trip_time
+        else abs(run.params.reflection)
     )
     run.counts.arriving = Cause.NO_CAUSE
-    if run.counts.row == 0 and source == 0:
+    if run.counts.trip == 0 and source == 0:
         run.counts.arriving = Cause.START
-    elif run.counts.row == 0 and first.jump == 1.0:
+    elif run.counts.trip == 0 and first.jump == 1.0:
         run.counts.arriving = Cause.LOADING
     return True
 
@@ -57,36 +61,36 @@ def echo_piece(run: Run) -> bool:
         if source >= run.counts.previous_to:
             return False
     run.counts.echo_of = source
-    par, left = run.par, run.history[source]
+    params, left = run.params, run.history[source]
     rate, load = left.rate, left.load
-    run.state.theta_from, run.state.theta_to = left.theta_from, left.theta_to
+    run.state.phase_from, run.state.phase_to = left.phase_from, left.phase_to
     run.state.speed, run.state.bend = left.speed, left.bend
     run.state.amplified = left.amplified * left.gain
     for k in range(TERMS):
-        run.load[k] = par.reflection * (2.0 * par.impedance * rate[k] - load[k])
-    time = run.counts.row * par.row_time + run.state.theta_from
-    run.load[0] += par.inflow + par.inflow_rate * time - par.reflection * rows_leaped(run, source) * par.ramp
-    run.load[1] += par.inflow_rate * run.state.speed
-    run.load[2] += par.inflow_rate * run.state.bend
+        run.load[k] = params.reflection * (2.0 * params.impedance * rate[k] - load[k])
+    time = run.counts.trip * params.round_trip_time + run.state.phase_from
+    run.load[0] += params.inflow + params.inflow_rate * time - params.reflection * trips_leaped(run, source) * params.ramp
+    run.load[1] += params.inflow_rate * run.state.speed
+    run.load[2] += params.inflow_rate * run.state.bend
     # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
     jumps = left.jump == 1 or run.counts.lumped == 1
-    run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < par.shortest else 0
+    run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < params.shortest else 0
     if run.counts.lumped == 1:
         lump(run)
-    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and par.reflection != 0.0 else Cause.NO_CAUSE
+    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and params.reflection != 0.0 else Cause.NO_CAUSE
     return True
 
 
 @kernel
 def width_of(run: Run) -> float:
     """Return the length (s) of the piece of load that has just been brought."""
-    return run.state.theta_to - run.state.theta_from
+    return run.state.phase_to - run.state.phase_from
 
 
 @kernel
 def lump(run: Run) -> None:
     """Replace the load of a piece that is too short to be resolved by its mean in time: it then slips as a whole or not at all."""
-    mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.theta_to - run.state.theta_from)
+    mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.phase_to - run.state.phase_from)
     fill(run.load, 0.0)
     run.load[0] = mean
 
@@ -94,7 +98,7 @@ def lump(run: Run) -> None:
 @kernel
 def next_piece(run: Run) -> bool:
     """Bring the next piece of load and set `ready` to BROUGHT; return False at the end of the round trip."""
-    first = run.counts.is_block == 1 or run.counts.row == 0
+    first = run.counts.is_block == 1 or run.counts.trip == 0
     if not (first_piece(run) if first else echo_piece(run)):
         return False
     if run.counts.varies == 1:

@@ -14,25 +14,25 @@ from stickslip.engine.waves.varying_forcing import has_faded
 
 
 @kernel
-def rows_at_rest(run: Run, limit: float) -> int:
+def trips_certain_at_rest(run: Run, limit: float) -> int:
     """Return the number of whole round trips for which a contact at rest is certain to stay there, judged from the one just past.
 
     `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it never ends.
     """
-    par = run.par
-    ramp = par.ramp
+    params = run.params
+    ramp = params.ramp
     if run.counts.varies == 1:
-        return int(call_part(run.loading_history, run, Task.COUNT_ROWS_AT_REST, limit))
+        return int(call_part(run.loading_history, run, Task.COUNT_TRIPS_AT_REST, limit))
     if not is_ramp(run):
         return 0
     top, bottom = -math.inf, -math.inf
-    for n in range(run.counts.row_from, run.counts.length):
+    for n in range(run.counts.trip_from, run.counts.length):
         load = run.history[n].load
         top = max(top, maximum(load))
         bottom = max(bottom, maximum(load, -1.0))
     if ramp == 0.0:
         return FOREVER
-    room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * par.reference)
+    room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * params.reference)
     rows = math.floor(room / abs(ramp)) - 1.0
     return min(max(int(rows), 0), FOREVER) if rows < 9e18 else FOREVER
 
@@ -42,7 +42,7 @@ def is_ramp(run: Run) -> bool:
     """Return True if each of the next round trips at rest has the load of the one before it plus the ramp."""
     if run.counts.is_block == 1:
         return True
-    if run.par.reflection == -1.0:
+    if run.params.reflection == -1.0:
         return True
     return has_faded(run)
 
@@ -50,21 +50,21 @@ def is_ramp(run: Run) -> bool:
 @kernel
 def swings_for_ever(run: Run) -> bool:
     """Return True if a contact at rest has seen every load to come: under a dead load every second round trip is the same."""
-    return run.counts.varies == 0 and run.par.reflection == 1.0 and run.par.ramp == 0.0 and run.counts.stuck_rows >= 2
+    return run.counts.varies == 0 and run.params.reflection == 1.0 and run.params.ramp == 0.0 and run.counts.trips_at_rest >= 2
 
 
 @kernel
-def close_round_trip(run: Run, last_row: int) -> int:
+def close_round_trip(run: Run, last_trip: int) -> int:
     """Close a round trip, and leap over the following ones in which nothing can happen.
 
-    `last_row` is the round trip in which the run ends. Return Stop.NONE, or the code of what the caller must do first: the round
+    `last_trip` is the round trip in which the run ends. Return Stop.NONE, or the code of what the caller must do first: the round
     trip is still open then. It is END_AHEAD if the end of the run would cut the leap and `to_the_end` is not set.
     """
     if run.counts.sparse == 1:
         call_part(run.echo_queue, run, Task.END_TRIP, 0.0)
         return Stop.NONE
-    if run.counts.lumps == 0 and run.counts.length - run.counts.row_from > run.counts.lump_above:
-        run.counts.lumps, run.counts.lumped_since = 1, run.counts.row + 1
+    if run.counts.lumps == 0 and run.counts.length - run.counts.trip_from > run.counts.lump_above:
+        run.counts.lumps, run.counts.lumped_since = 1, run.counts.trip + 1
     if worth_building(run):
         if run.echo_queue == 0:
             run.missing = Part.ECHO_QUEUE
@@ -73,26 +73,26 @@ def close_round_trip(run: Run, last_row: int) -> int:
         return Stop.NONE
     leap, locked = 0, False
     if run.counts.moved == 0:
-        run.counts.stuck_rows += 1
-        leap = rows_at_rest(run, rest_limit(run))
+        run.counts.trips_at_rest += 1
+        leap = trips_certain_at_rest(run, rest_limit(run))
         locked = leap >= FOREVER or swings_for_ever(run)
-        room = last_row - run.counts.row - 1
+        room = last_trip - run.counts.trip - 1
         if leap > room and run.counts.to_the_end == 0:
-            run.counts.stuck_rows -= 1
+            run.counts.trips_at_rest -= 1
             return Stop.END_AHEAD
         leap = max(min(leap, room), 0)
     else:
-        run.counts.stuck_rows = 0
+        run.counts.trips_at_rest = 0
     run.counts.is_locked = 1 if locked else 0
     if run.counts.is_block == 1:
         run.state.load_now = total(run.history[run.counts.length - 1].load)
-    run.counts.row += 1 + leap
+    run.counts.trip += 1 + leap
     if run.counts.moved == 1:
         run.counts.creep_in -= 1
         if run.counts.creep_in == 0:
-            run.counts.pause_at = run.counts.row
-    run.counts.previous_from, run.counts.previous_to = run.counts.row_from, run.counts.length
-    run.counts.row_from = run.counts.length
+            run.counts.pause_at = run.counts.trip
+    run.counts.previous_from, run.counts.previous_to = run.counts.trip_from, run.counts.length
+    run.counts.trip_from = run.counts.length
     run.counts.source = run.counts.moved = 0
-    run.counts.row_segment = run.counts.segment
+    run.counts.trip_segment = run.counts.segment
     return Stop.NONE

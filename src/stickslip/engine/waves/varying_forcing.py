@@ -27,27 +27,27 @@ def take_loading(run: Run) -> None:
     begin = run.state.taken
     if begin > 0.0:
         run.counts.arriving = Cause.NO_CAUSE
-    theta = run.state.taken_to_theta if begin > 0.0 else run.state.theta_from
+    theta = run.state.taken_to_phase if begin > 0.0 else run.state.phase_from
     if enter_segment(run, theta):
         run.counts.arriving = Cause.LOADING
-    end, theta_to = 1.0, run.state.theta_to
+    end, phase_to = 1.0, run.state.phase_to
     change = next_change(run)
-    if change < theta_to - TIE * run.par.row_time:
-        end, theta_to = min(xi_at(run, change), 1.0), change
+    if change < phase_to - TIE * run.params.round_trip_time:
+        end, phase_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
-        cut(run, begin, end, theta, theta_to)
+        cut(run, begin, end, theta, phase_to)
     add_loading(run)
-    run.state.taken, run.state.taken_to_theta = (end, theta_to) if end < 1.0 else (0.0, 0.0)
+    run.state.taken, run.state.taken_to_phase = (end, phase_to) if end < 1.0 else (0.0, 0.0)
     run.counts.source += 1 if end == 1.0 else 0
 
 
 @kernel
 def enter_segment(run: Run, theta: float) -> bool:
     """Enter the segment of the loading that has arrived at a phase (s) of the present row; return True if the loading jumps."""
-    jumps, tie = False, TIE * run.par.row_time
+    jumps, tie = False, TIE * run.params.round_trip_time
     while next_change(run) <= theta + tie:
         run.counts.segment += 1
-        run.counts.stuck_rows = -1  # the last round trip at rest does not predict the next one
+        run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
     return jumps
 
@@ -56,48 +56,50 @@ def enter_segment(run: Run, theta: float) -> bool:
 def next_change(run: Run) -> float:
     """Return the phase (s) in the present row at which the next segment arrives; inf for a later row, -inf for an earlier one."""
     following = run.counts.segment + 1
-    if following >= run.segments or run.loading[following].row > run.counts.row:
+    if following >= run.segments or run.loading[following].trip > run.counts.trip:
         return math.inf
-    return run.loading[following].offset if run.loading[following].row == run.counts.row else -math.inf
+    return run.loading[following].offset if run.loading[following].trip == run.counts.trip else -math.inf
 
 
 @kernel
-def cut(run: Run, begin: float, end: float, theta: float, theta_to: float) -> None:
-    """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `theta` and `theta_to`."""
+def cut(run: Run, begin: float, end: float, theta: float, phase_to: float) -> None:
+    """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `theta` and `phase_to`."""
     width = end - begin
     restrict(run.load, begin, width, run.spare)
     copy(run.spare, run.load, TERMS)
     run.state.speed = (run.state.speed + 2.0 * run.state.bend * begin) * width
     run.state.bend *= width * width
-    run.state.theta_from, run.state.theta_to = theta, theta_to
+    run.state.phase_from, run.state.phase_to = theta, phase_to
 
 
 @kernel
 def add_loading(run: Run) -> None:
     """Add to the piece of load what the driver has sent since the load that it comes from was recorded."""
-    row = float(run.counts.row)
+    row = float(run.counts.trip)
     if run.counts.is_block == 1:
         pull_block(run)
-    elif row > 0.0 or run.state.theta_from >= 0.5 * run.par.row_time:
+    elif row > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
         leaped = 0.0
-        if row > 0.0 and run.par.reflection == -1.0:
-            leaped = row - 1.0 - run.history[run.counts.echo_of].row
+        if row > 0.0 and run.params.reflection == -1.0:
+            leaped = row - 1.0 - run.history[run.counts.echo_of].trip
         if leaped > 0.0:
-            add_inflow(run, leaped, row - 0.5 * (leaped + 1.0), run.counts.row_segment)
+            add_inflow(run, leaped, row - 0.5 * (leaped + 1.0), run.counts.trip_segment)
         add_inflow(run, 1.0, row, run.counts.segment)
 
 
 @kernel
 def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
     """Add to a slab's load the inflow of `rows` round trips, with the mean index `mean_row`, at the phases of the piece of load."""
-    since = (mean_row - run.loading[segment].row) * run.par.row_time + (run.state.theta_from - run.loading[segment].offset)
+    since = (mean_row - run.loading[segment].trip) * run.params.round_trip_time + (
+        run.state.phase_from - run.loading[segment].offset
+    )
     slope = rows * run.loading[segment].slope
     run.load[0] += rows * run.loading[segment].value + slope * since
     run.load[1] += slope * run.state.speed
     run.load[2] += slope * run.state.bend
-    if run.par.tone != 0.0:
-        weight = dirichlet(rows, run.par.tone_frequency * run.par.row_time)
-        tone_series(run, weight * run.par.tone, mean_row * run.par.row_time + run.state.theta_from)
+    if run.params.tone != 0.0:
+        weight = dirichlet(rows, run.params.tone_frequency * run.params.round_trip_time)
+        tone_series(run, weight * run.params.tone, mean_row * run.params.round_trip_time + run.state.phase_from)
         for k in range(TERMS):
             run.load[k] += run.spare[k]
 
@@ -117,9 +119,9 @@ def tone_series(run: Run, amplitude: float, time: float) -> None:
 
     They follow from s' = frequency theta' c and c' = -frequency theta' s for the sine s and the cosine c.
     """
-    frequency = run.par.tone_frequency
+    frequency = run.params.tone_frequency
     turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
-    angle = frequency * time + run.par.tone_phase
+    angle = frequency * time + run.params.tone_phase
     sine, cosine = run.spare, run.part
     sine[0], cosine[0] = amplitude * math.sin(angle), amplitude * math.cos(angle)
     for k in range(TERMS - 1):
@@ -135,17 +137,17 @@ def pull_block(run: Run) -> None:
     n = run.counts.length - 1
     if n >= 0:
         run.load[0] = total(run.history[n].load)
-        rows = float(run.counts.row - run.history[n].row - 1)
+        rows = float(run.counts.trip - run.history[n].trip - 1)
         if rows > 0.0:
             run.load[0] += pulled_in_rows(run, rows)
     segment, pace = run.counts.segment, run.state.speed
-    since = (run.counts.row - run.loading[segment].row) * run.par.row_time
-    since += run.state.theta_from - run.loading[segment].offset
+    since = (run.counts.trip - run.loading[segment].trip) * run.params.round_trip_time
+    since += run.state.phase_from - run.loading[segment].offset
     slope = run.loading[segment].slope
     run.load[1] += pace * (run.loading[segment].value + slope * since)
     run.load[2] += 0.5 * pace * pace * slope
-    if run.par.tone != 0.0:
-        tone_series(run, run.par.tone, run.counts.row * run.par.row_time + run.state.theta_from)
+    if run.params.tone != 0.0:
+        tone_series(run, run.params.tone, run.counts.trip * run.params.round_trip_time + run.state.phase_from)
         for k in range(1, TERMS):
             run.load[k] += pace * RECIPROCAL[k] * run.spare[k - 1]
 
@@ -153,14 +155,14 @@ def pull_block(run: Run) -> None:
 @kernel
 def pulled_in_rows(run: Run, rows: float) -> float:
     """Return the force (N) that the pull adds to a block's spring in the given number of rows at rest before the present one."""
-    segment, lasting = run.counts.row_segment, rows * run.par.row_time
-    middle = (run.counts.row - 0.5 * rows) * run.par.row_time
-    since = (run.counts.row - 0.5 * rows - run.loading[segment].row) * run.par.row_time - run.loading[segment].offset
+    segment, lasting = run.counts.trip_segment, rows * run.params.round_trip_time
+    middle = (run.counts.trip - 0.5 * rows) * run.params.round_trip_time
+    since = (run.counts.trip - 0.5 * rows - run.loading[segment].trip) * run.params.round_trip_time - run.loading[segment].offset
     gained = lasting * (run.loading[segment].value + run.loading[segment].slope * since)
-    if run.par.tone != 0.0:
-        frequency = run.par.tone_frequency
-        swing = math.sin(frequency * middle + run.par.tone_phase)
-        gained += run.par.tone * 2.0 / frequency * math.sin(0.5 * frequency * lasting) * swing
+    if run.params.tone != 0.0:
+        frequency = run.params.tone_frequency
+        swing = math.sin(frequency * middle + run.params.tone_phase)
+        gained += run.params.tone * 2.0 / frequency * math.sin(0.5 * frequency * lasting) * swing
     return gained
 
 
@@ -168,7 +170,7 @@ def pulled_in_rows(run: Run, rows: float) -> float:
 
 
 @kernel
-def rows_withstood(run: Run, limit: float) -> int:
+def trips_withstood(run: Run, limit: float) -> int:
     """Return the number of whole rows, up to the next break of the loading, for which a contact at rest is certain to stay so.
 
     `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it
@@ -176,13 +178,13 @@ def rows_withstood(run: Run, limit: float) -> int:
     """
     segment = run.counts.segment
     following = segment + 1
-    room = run.loading[following].row - run.counts.row - 1.0 if following < run.segments else float(at.NEVER)
-    is_dead = run.loading[segment].slope == 0.0 and run.par.tone == 0.0
-    if run.counts.is_block == 0 and run.par.reflection != -1.0:
+    room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(at.NEVER)
+    is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
+    if run.counts.is_block == 0 and run.params.reflection != -1.0:
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
-    top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.par.reference - tops(run, -1.0)
+    top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.params.reference - tops(run, -1.0)
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)
@@ -202,14 +204,14 @@ FORGOTTEN = 1e-17
 @kernel
 def has_faded(run: Run) -> bool:
     """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
-    return run.counts.stuck_rows > 0 and abs(run.par.reflection) ** (run.counts.stuck_rows - 1) < FORGOTTEN
+    return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FORGOTTEN
 
 
 @kernel
 def tops(run: Run, sign: float) -> float:
     """Return the largest value of sign * load (Pa or N, minus the reference strength) in the row just past."""
     top = -math.inf
-    for n in range(run.counts.row_from, run.counts.length):
+    for n in range(run.counts.trip_from, run.counts.length):
         top = max(top, maximum(run.history[n].load, sign))
     return top
 
@@ -223,17 +225,17 @@ def withstands(run: Run, rows: float, top: float, bottom: float) -> bool:
 @kernel
 def growth_bound(run: Run, rows: float, sign: float) -> float:
     """Return a bound (Pa or N) on the growth of sign * load at rest over the next rows, up to the given number of them."""
-    segment, period, frequency = run.counts.segment, run.par.row_time, run.par.tone_frequency
-    begin = run.counts.row * period
+    segment, period, frequency = run.counts.segment, run.params.round_trip_time, run.params.tone_frequency
+    begin = run.counts.trip * period
     end = begin + (rows + 2.0) * period
-    since = (run.counts.row - run.loading[segment].row) * period - run.loading[segment].offset
+    since = (run.counts.trip - run.loading[segment].trip) * period - run.loading[segment].offset
     value, slope = sign * run.loading[segment].value, sign * run.loading[segment].slope
     largest = max(value + slope * since, value + slope * (since + (rows + 2.0) * period), 0.0)
     is_block = run.counts.is_block == 1
     lasting = rows * period if is_block else rows
     bound = lasting * largest
-    if run.par.tone != 0.0:
-        amplitude, phase = sign * run.par.tone, run.par.tone_phase
+    if run.params.tone != 0.0:
+        amplitude, phase = sign * run.params.tone, run.params.tone_phase
         steepest = largest_sine(frequency * begin + phase, frequency * end + phase, amplitude)
         half = abs(math.sin(0.5 * frequency * period))
         swing = 2.0 / frequency if is_block else 1.0 / half if half > 0.0 else math.inf

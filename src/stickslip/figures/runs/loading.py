@@ -24,7 +24,7 @@ def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size
     fields = {name: getattr(readings.problem, name) for name in MAY_VARY}
     name, history = next((name, field) for name, field in fields.items() if isinstance(field, LoadingHistory))
     row, offset = readings.history.epoch
-    begun = row * readings.history.row_time + offset
+    begun = row * readings.history.round_trip_time + offset
     tone, swing = history.tone, abs(history.tone.amplitude)
     turns = (end - start) * tone.frequency / (2.0 * np.pi) if swing > 0.0 else 0.0
     is_band = turns > PERIODS

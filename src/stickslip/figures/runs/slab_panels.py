@@ -43,7 +43,7 @@ def choose_interval(readings: Readings, start: float | None, end: float | None) 
     slab; periods of a block) the last event whose slip is at least 99 % of the largest, in local time. Raises InputError if the
     interval is empty.
     """
-    round_trip = readings.history.row_time
+    round_trip = readings.history.round_trip_time
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):

@@ -39,7 +39,7 @@ class Scaled:
 
     @property
     def edges(self) -> Floats:
-        """Return the edges of areas around ascending values: halfway between them, on a logarithmic axis in the logarithm."""
+        """The edges of areas around ascending values: halfway between them, on a logarithmic axis in the logarithm."""
         place = np.log(self.values) if self.log else self.values
         if len(place) == 1:
             return np.asarray(self.values[0] + np.array([-0.5, 0.5]))
@@ -112,17 +112,17 @@ class Shown:
 
     @property
     def known(self) -> Floats:
-        """Return the finite numbers, in one dimension."""
+        """The finite numbers, in one dimension."""
         return np.asarray(self.values.values[np.isfinite(self.values.values)], float)
 
     @property
     def is_whole(self) -> bool:
-        """Return True if all numbers are whole, as counts are."""
+        """True if all numbers are whole, as counts are."""
         return bool((self.known == np.rint(self.known)).all())
 
     @property
     def is_wide(self) -> bool:
-        """Return True if the numbers are to be drawn on a logarithmic scale."""
+        """True if the numbers are to be drawn on a logarithmic scale."""
         known = self.known
         return known.size > 0 and known.min() > 0.0 and known.max() > WIDE * known.min()
 

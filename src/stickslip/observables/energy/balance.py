@@ -180,7 +180,7 @@ def _pulling(history: History) -> Integrand:
 
     def power(at: Positions) -> Floats:
         row, offset = history.placed(at)
-        rate = problem.pull_rate_at(row * history.row_time + offset)
+        rate = problem.pull_rate_at(row * history.round_trip_time + offset)
         return np.asarray(rate * (problem.strength + history.excess(at)))
 
     return power
@@ -188,7 +188,7 @@ def _pulling(history: History) -> Integrand:
 
 def _at_rest(history: History, at: Positions) -> Floats:
     """Return the work of the block's driver up to each position in rests that were not recorded, J: the spring has stored it."""
-    row = history.store.row
+    row = history.store.trip
     before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
     force, left = (history.excess(Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
     whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))

@@ -33,14 +33,14 @@ class _Both:
     def __init__(self, waves: Waves, now: Epoch) -> None:
         self.waves, self.begun = waves, waves.begun(now)
         low = max(-waves.round, -self.begun)
-        rows = range(max(now.row + int((now.offset + low) // waves.round), 0), now.row + 1)
+        rows = range(max(now.trip + int((now.offset + low) // waves.round), 0), now.trip + 1)
         standing = [waves.standing(row) for row in rows]
         piece, begin, end = (np.concatenate(parts) for parts in zip(*standing, strict=True))
         row = np.repeat(rows, [len(pieces) for pieces, _, _ in standing])
-        start, store = (row - now.row) * waves.round - now.offset, waves.history.store
+        start, store = (row - now.trip) * waves.round - now.offset, waves.history.store
         inside = (start + end > low) & (start + begin < 0.0)
         self.piece, self.start = piece[inside], (start + begin)[inside]
-        self.origin, self.leaped = (start + store.theta_from[piece])[inside], (row - store.row[piece]).astype(float)[inside]
+        self.origin, self.leaped = (start + store.phase_from[piece])[inside], (row - store.trip[piece]).astype(float)[inside]
 
     def kinetic(self) -> float:
         """Return the kinetic energy, J/m^2."""

@@ -38,17 +38,17 @@ class CoulombSlab:
 
     @property
     def duration(self) -> float:
-        """Return the time from onset to arrest (s), which is the two-way travel time R = 2 h / c."""
+        """The time from onset to arrest (s), which is the two-way travel time R = 2 h / c."""
         return self.body.two_way_time
 
     @property
     def drop(self) -> float:
-        """Return the static minus the dynamic strength (Pa)."""
+        """The static minus the dynamic strength (Pa)."""
         return (self.static - self.dynamic) * self.body.normal_stress
 
     @property
     def loading_rate(self) -> float:
-        """Return the loading rate G V / h (Pa/s)."""
+        """The loading rate G V / h (Pa/s)."""
         return self.body.stiffness * self.pull_rate
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
@@ -64,10 +64,10 @@ class CoulombSlab:
 
     @property
     def total_slip(self) -> float:
-        """Return the slip of the event (m); it is 2 (static - dynamic) S h / G for pull_rate 0."""
+        """The slip of the event (m); it is 2 (static - dynamic) S h / G for pull_rate 0."""
         return float(self.slip(self.duration))
 
     @property
     def end_load(self) -> float:
-        """Return the load right after arrest (Pa), S (2 dynamic - static) + 2 Z V."""
+        """The load right after arrest (Pa), S (2 dynamic - static) + 2 Z V."""
         return (2.0 * self.dynamic - self.static) * self.body.normal_stress + 2.0 * self.body.impedance * self.pull_rate

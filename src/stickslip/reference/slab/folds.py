@@ -55,42 +55,42 @@ class HyperbolicFolds:
 
     @property
     def drop(self) -> float:
-        """Return the strength drop S (muS - muD) (Pa)."""
+        """The strength drop S (muS - muD) (Pa)."""
         return self.normal_stress * (self.static - self.dynamic)
 
     @property
     def critical_value(self) -> float:
-        """Return the critical value alpha_c = Z / (S (muS - muD)) (s/m)."""
+        """The critical value alpha_c = Z / (S (muS - muD)) (s/m)."""
         return self.impedance / self.drop
 
     @property
     def q(self) -> float:
-        """Return the pure number sqrt(alpha / alpha_c)."""
+        """The pure number sqrt(alpha / alpha_c)."""
         return math.sqrt(self.alpha / self.critical_value)
 
     @property
     def fold_rate(self) -> float:
-        """Return the slip rate v1 of the fold (m/s), the lower end of the fast branch."""
+        """The slip rate v1 of the fold (m/s), the lower end of the fast branch."""
         return (self.q - 1.0) / self.alpha
 
     @property
     def fold_load(self) -> float:
-        """Return g(v1), called S mu1 in the paper, S muD + (Z / alpha) (2 q - 1) (Pa): perfect delay jumps down there."""
+        """G(v1), called S mu1 in the paper, S muD + (Z / alpha) (2 q - 1) (Pa): perfect delay jumps down there."""
         return self.normal_stress * self.dynamic + self.impedance / self.alpha * (2.0 * self.q - 1.0)
 
     @property
     def jump_rate(self) -> float:
-        """Return the slip rate v_B right after the jump at the static strength (m/s)."""
+        """The slip rate v_B right after the jump at the static strength (m/s)."""
         return (self.q**2 - 1.0) / self.alpha
 
     @property
     def maxwell_rate(self) -> float:
-        """Return the slip rate v_M of equal areas (m/s): x = alpha v_M solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
+        """The slip rate v_M of equal areas (m/s): x = alpha v_M solves x^2 / (2 q^2) + x / (1 + x) = ln(1 + x)."""
         return float(brentq(lambda x: _imbalance(x, self.q), 0.0, 4.0 * self.q**2, xtol=1e-300)) / self.alpha
 
     @property
     def maxwell_load(self) -> float:
-        """Return the load beta_M at which Maxwell's rule jumps, both up and down (Pa)."""
+        """The load beta_M at which Maxwell's rule jumps, both up and down (Pa)."""
         rate = self.maxwell_rate
         return self.normal_stress * self.dynamic + self.impedance * rate + self.drop / (1.0 + self.alpha * rate)
 

@@ -56,12 +56,12 @@ class PulseTrain:
 
     @property
     def surplus(self) -> float:
-        """Return the mean driving stress beta - mu0 S (Pa)."""
+        """The mean driving stress beta - mu0 S (Pa)."""
         return self.load - self.mean * self.normal_stress
 
     @property
     def wave(self) -> float:
-        """Return the amplitude a S of the strength (Pa)."""
+        """The amplitude a S of the strength (Pa)."""
         return self.amplitude * self.normal_stress
 
     @property
@@ -70,17 +70,17 @@ class PulseTrain:
 
     @property
     def period(self) -> float:
-        """Return the time between pulses (s), 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2))."""
+        """The time between pulses (s), 2 pi Z / (omega sqrt((beta - mu0 S)^2 - (a S)^2))."""
         return 2.0 * math.pi * self.impedance / (self.wavenumber * self._root)
 
     @property
     def peak_rate(self) -> float:
-        """Return the largest slip rate (m/s)."""
+        """The largest slip rate (m/s)."""
         return (self.surplus + self.wave) / self.impedance
 
     @property
     def least_rate(self) -> float:
-        """Return the smallest slip rate (m/s)."""
+        """The smallest slip rate (m/s)."""
         return (self.surplus - self.wave) / self.impedance
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:

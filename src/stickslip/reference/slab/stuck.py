@@ -43,7 +43,7 @@ class StuckSlab:
 
     @property
     def loading_rate(self) -> float:
-        """Return the loading rate G V / h (Pa/s)."""
+        """The loading rate G V / h (Pa/s)."""
         return self.body.stiffness * self.pull_rate
 
     def load(self, t: ArrayLike) -> NDArray[np.float64]:
@@ -62,7 +62,7 @@ class StuckSlab:
 
     @property
     def _passed(self) -> float:
-        """Return the share 2 Z / (Z + Zd) of a stress beyond the driver that reaches the contact as load."""
+        """The share 2 Z / (Z + Zd) of a stress beyond the driver that reaches the contact as load."""
         return 2.0 * self.body.impedance / (self.body.impedance + self.body.driver_impedance)
 
     @property
