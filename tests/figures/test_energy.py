@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 
 import stickslip as ss
 from stickslip.figures.runs import energy
@@ -22,12 +25,18 @@ DRAWN = {
 }
 
 
+@cache
+def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
+    """Return a run and the numbers that its figure shows."""
+    problem, duration, _ = DRAWN[name]
+    run = ss.simulate(problem, duration, rtol=1e-12)
+    return run, energy.data(run)
+
+
 @pytest.mark.parametrize("name", DRAWN)
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""
-    problem, duration, parts = DRAWN[name]
-    run = ss.simulate(problem, duration, rtol=1e-12)
-    dataset = energy.data(run)
+    (run, dataset), parts = drawn(name), DRAWN[name][2]
     axes = energy.draw(dataset).axes[0]
     (line,) = axes.lines
     time, total = (np.asarray(values, float) for values in (line.get_xdata(), line.get_ydata()))
@@ -44,7 +53,7 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
 
 
 def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
-    dataset = energy.data(ss.simulate(*RUNS["slab, lossy"]))
+    _, dataset = drawn("slab, lossy")
     without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
     assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
 
