@@ -45,7 +45,7 @@ def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
     netcdf_file.seal(path)
 
 
-def test_no_single_bit_flip_passes(run: ss.Solution, tmp_path: Path) -> None:
+def test_no_damaged_file_is_read(run: ss.Solution, tmp_path: Path) -> None:
     path = run.to_netcdf(tmp_path / "run.nc")
     whole, rng = path.read_bytes(), np.random.default_rng(1)
     for place in [0, len(whole) - 1, len(whole) - 70, *rng.integers(0, len(whole), 60).tolist()]:
@@ -124,7 +124,7 @@ def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path
 
 
 @pytest.mark.parametrize("name", ["history_rate", "engine_count", "round_trip_time"])
-def test_a_table_that_is_missing_is_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
+def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
     path = run.to_netcdf(tmp_path / "run.nc")
     resealed(path, lambda file: file.__delitem__(name))
     refused(lambda: ss.open_solution(path), "run.nc: ")
@@ -147,7 +147,7 @@ except ss.InputError as error:
 
 @POSIX
 @pytest.mark.parametrize("room", [0, 3000, 30_000])
-def test_a_full_disk_is_one_line_and_the_file_before_stays(tmp_path: Path, room: int) -> None:
+def test_a_full_disk_gives_one_line_and_keeps_the_file_before(tmp_path: Path, room: int) -> None:
     """HDF5 crashes where a write fails, so it must not see that."""
     done = subprocess.run([sys.executable, "-c", FULL, str(room)], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
@@ -186,7 +186,7 @@ def test_drafts_of_killed_writers_are_removed_and_no_others(tmp_path: Path) -> N
 
 
 @POSIX
-def test_a_name_is_held_once_and_left_free(tmp_path: Path) -> None:
+def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     with held(path, "taken"):
         refused(lambda: held(path, "taken").__enter__(), "taken")

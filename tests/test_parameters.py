@@ -33,7 +33,7 @@ def test_every_number_of_every_law_can_be_put_back_and_changed(kind: str) -> Non
             }
 
 
-def test_names_units_and_values() -> None:
+def test_parameters_are_found_with_name_unit_and_value() -> None:
     law = ss.friction.SlipTimesRate(ss.friction.LinearSlipWeakening(0.7, 0.5, 0.4), ss.friction.HyperbolicRate(1.0, 0.5, 1.5))
     for name, full, value, unit in (
         ("alpha", "friction.rate.alpha", 1.5, "s/m"),
@@ -60,7 +60,7 @@ def test_names_units_and_values() -> None:
         ("", "parameter '' is unknown; allowed: body.contact_mass, body.density"),
     ],
 )
-def test_names_that_fit_none_or_several(name: str, message: str) -> None:
+def test_names_that_fit_none_or_several_are_refused(name: str, message: str) -> None:
     law = ss.friction.SlipTimesRate(ss.friction.LinearSlipWeakening(0.7, 0.5, 0.4), ss.friction.HyperbolicRate(1.0, 0.5, 1.5))
     with pytest.raises(ss.InputError) as error:
         parameter(problem(law), name)

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
-from tests.engine.test_verified_numbers import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
+from tests.problems import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
 
 RUNS = {
     "slab, rate law, leap": (rate_law_slab(), 480 * ss.YEAR),
@@ -43,7 +43,7 @@ def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
 
 
-def test_file_speaks_for_itself(tmp_path: Path) -> None:
+def test_file_holds_scenario_and_provenance(tmp_path: Path) -> None:
     path = ss.simulate(rate_law_slab(), 12.0).to_netcdf(tmp_path / "run.nc")
     with xr.open_dataset(path, engine="h5netcdf") as file:
         assert file.attrs["source"] == f"stickslip {ss.__version__}"
@@ -68,14 +68,14 @@ def test_run_without_events_is_saved_too(tmp_path: Path) -> None:
     assert len(ss.open_solution(run.to_netcdf(tmp_path / "still.nc")).events) == 0
 
 
-def test_folder_that_is_not_there(tmp_path: Path) -> None:
+def test_writing_into_a_missing_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match="cannot be written"):
         ss.simulate(rate_law_slab(), 1.0).to_netcdf(tmp_path / "missing" / "run.nc")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("content", [b"", b"not a netCDF file"])
-def test_files_that_are_not_solutions(tmp_path: Path, content: bytes) -> None:
+def test_files_that_are_not_solutions_are_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "wrong.nc"
     path.write_bytes(content)
     with pytest.raises(ss.InputError, match=r"wrong\.nc: not a netCDF file"):

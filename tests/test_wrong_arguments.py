@@ -49,7 +49,7 @@ TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
 
 @pytest.mark.parametrize("name", TAKE_A_PROBLEM)
 @pytest.mark.parametrize(("given", "shown"), NO_PROBLEM, ids=lambda one: getattr(one, "__name__", None))
-def test_what_is_no_problem_is_refused(name: str, given: Any, shown: str) -> None:
+def test_other_types_than_problems_are_refused(name: str, given: Any, shown: str) -> None:
     refused(lambda: TAKE_A_PROBLEM[name](given), f"{name}: problem must be a Problem, {shown}")
 
 

@@ -36,7 +36,7 @@ def bump_case(body: Any, amplitude: float, width: float, excess: float, duration
     return Case("bump", problem, recipe.value, recipe, duration, slip=1.0, rate=1.0)
 
 
-def test_exponential_tail_met_while_a_mass_on_a_belt_slows_down() -> None:
+def test_steps_meet_an_exponential_tail_while_a_mass_on_a_belt_slows_down() -> None:
     """The first event ends at 0.33240 s (the first engine: 0.33378 s)."""
     recipe = Recipe(0.3, (Feature("tail", "v", 0.5, 0.0, 0.01),))
     problem = ss.Problem(ss.SpringBlock(1.0, 100.0, 10.0), STRIBECK, pull_rate=0.01, initial_excess=0.0)
@@ -47,7 +47,7 @@ def test_exponential_tail_met_while_a_mass_on_a_belt_slows_down() -> None:
     assert found.largest < CLAIM
 
 
-def test_exponential_tail_met_while_a_slab_is_unloaded() -> None:
+def test_steps_meet_an_exponential_tail_while_a_slab_is_unloaded() -> None:
     """Traction on the law to 1e-9 S (the first engine: 1.7e-4 S)."""
     problem = ss.Problem(SLAB, STRIBECK, pull_rate=-20.0, initial_excess=2e7)
     run = ss.simulate(problem, 0.99 * SLAB.two_way_time)
@@ -59,7 +59,7 @@ def test_exponential_tail_met_while_a_slab_is_unloaded() -> None:
     assert share < 1e-9
 
 
-def test_bump_in_the_way_of_a_slab() -> None:
+def test_steps_meet_a_bump_in_the_way_of_a_slab() -> None:
     """Traction on the law (the first engine: 5 % of S off), slip as in truth."""
     case = bump_case(SLAB, 0.05, 0.1, 1e7, 4.0)
     run = ss.simulate(case.problem, 4.0)
@@ -69,7 +69,7 @@ def test_bump_in_the_way_of_a_slab() -> None:
     assert found.largest < CLAIM
 
 
-def test_bump_in_the_way_of_a_block() -> None:
+def test_steps_meet_a_bump_in_the_way_of_a_block() -> None:
     """Slip of 1.54913 m (the first engine: 1.70768 m)."""
     case = bump_case(BLOCK, 0.3, 0.1, 3e13, 2.5)
     truth = truth_of(case)
@@ -78,7 +78,7 @@ def test_bump_in_the_way_of_a_block() -> None:
     assert found.largest < CLAIM
 
 
-def test_narrow_bump_in_the_way_of_a_contact_with_mass() -> None:
+def test_steps_meet_a_narrow_bump_in_the_way_of_a_contact_with_mass() -> None:
     """Slip of 4.0672 m at 4 s (the first engine: 4.0815 m)."""
     case = bump_case(replace(SLAB, contact_mass=1e3), 0.05, 0.01, 1e7, 4.0)
     truth = truth_of(case)

@@ -20,7 +20,7 @@ def test_block_under_lagged_strengthening_friction_comes_to_rest(excess: float) 
     assert float(run.slip_rate(24.0)) == 0.0
 
 
-def test_events_of_slip_rates_that_decay_to_nothing_are_told() -> None:
+def test_catalogue_lists_events_whose_slip_rate_decays_to_nothing() -> None:
     """A block decays to 1e-320 m/s, where no bisection of a polynomial ever finds its end: the events must still be told."""
     body = ss.SpringBlock(2275678257.084148, 64.51469373151718, 248686543.23331934, damping=38316.404553044464)
     law = F.RateAndState(
@@ -37,7 +37,7 @@ def test_events_of_slip_rates_that_decay_to_nothing_are_told() -> None:
     assert run.events.peak_rate[0] == pytest.approx(float(abs(run.slip_rate(run.events.peak_time[0]))))
 
 
-def test_load_that_passes_through_zero_early_in_a_long_stretch_turns_the_contact() -> None:
+def test_load_that_passes_through_zero_early_in_a_long_interval_turns_the_slip() -> None:
     """The load is known to 1e-14 of all that it becomes in the stretch: a load below that is zero for the slip rate, too."""
     body = ss.ElasticSlab(4267.6862547198725, 22337.107295672147, 236.83197284906433, 75430256.50642161)
     law = F.RateAndState(
@@ -188,7 +188,7 @@ def test_slip_rate_that_decays_into_the_rounding_of_the_load_ends_no_run(direct:
     assert abs(slab.impedance * run.slip_rate(times) + run.traction(times) - run.load(times)).max() < 1e-12 * run.load(0.0)
 
 
-def test_state_of_a_contact_at_extreme_friction_is_followed() -> None:
+def test_run_under_extreme_friction_finishes_in_slip() -> None:
     """e^(reference / a) is 1e168 here, whose square is no number: the slope of the arcsinh was zero then."""
     law = F.RateAndState(reference=88.66, a=0.2289, b=1.7e-5, distance=0.418, evolution="prz")
     slab = ss.ElasticSlab(4094.2, 3396.9, 568495.0, 6450.26)

@@ -23,7 +23,7 @@ WHOLE = ("events", "pulses", "shocks", "arrested", "irregular", "branches", "end
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_members_are_those_of_simulate(name: str) -> None:
+def test_members_equal_the_runs_of_simulate(name: str) -> None:
     case = CASES[name]
     values = case.values()
     members = run_members(case.scenario, values, QUANTITIES)
@@ -43,7 +43,7 @@ def test_members_are_those_of_simulate(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["rate", "slip", "driver", "linear block", "gauss"])
-def test_neither_threads_nor_order_nor_company_matter(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_do_not_depend_on_threads_order_or_other_members(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]
     values = case.values(203)
     alone = run_members(case.scenario, values, QUANTITIES)
@@ -57,7 +57,7 @@ def test_neither_threads_nor_order_nor_company_matter(name: str, monkeypatch: py
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_what_a_workspace_held_before_does_not_matter(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_do_not_depend_on_what_a_workspace_held_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     case = CASES[name]
     values = case.values()
     expected = run_members(case.scenario, values, QUANTITIES)
@@ -84,7 +84,7 @@ def test_each_quantity_comes_out_the_same_when_it_is_asked_for_alone() -> None:
         assert found.tobytes() == together.results[quantity].tobytes(), quantity
 
 
-def test_bad_members_stop_nobody() -> None:
+def test_bad_members_do_not_stop_others() -> None:
     case = CASES["coulomb"]
     static = np.array([0.6, 0.4, math.nan, 0.7, -1.0])
     members = run_members(case.scenario, {"friction.static": static}, ("slip", "events"), threads=2)
@@ -108,7 +108,7 @@ def test_bad_members_stop_nobody() -> None:
         ("friction.dynamic", -0.1),
     ],
 )
-def test_what_a_member_refuses_the_batch_refuses(key: str, value: float) -> None:
+def test_the_batch_refuses_what_a_member_refuses(key: str, value: float) -> None:
     case = Case(CASES["rate"].scenario, {key: (value, value)})
     with pytest.raises(InputError) as error:
         one(case, {key: np.array([value])}, 0)
@@ -127,7 +127,7 @@ def test_far_stress_needs_a_driver_that_gives_way() -> None:
     assert beside.status.tolist() == [Stop.FINISHED, BAD_PARAMETERS]
 
 
-def test_rigid_and_other_drivers_massless_and_heavy_contacts_mix() -> None:
+def test_one_batch_mixes_drivers_and_contacts_of_every_kind() -> None:
     case = CASES["driver"]
     values = {
         "body.driver_impedance": np.array([math.inf, 5e6, 1e300, 0.0, math.inf]),
@@ -140,7 +140,7 @@ def test_rigid_and_other_drivers_massless_and_heavy_contacts_mix() -> None:
         assert members.results["slip"][n] == pytest.approx(expected["slip"], **ROUNDING)
 
 
-def test_a_history_that_outgrows_the_store_is_folded_as_it_goes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_history_that_outgrows_the_store_is_reduced_along_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
     case = Case(replace(CASES["coulomb block"].scenario, duration=2e5), {"friction.static": (0.55, 0.6)})
     values = case.values(2)
     whole = run_members(case.scenario, values, QUANTITIES)
@@ -155,7 +155,7 @@ def test_a_history_that_outgrows_the_store_is_folded_as_it_goes(monkeypatch: pyt
         assert folded.results[quantity] == pytest.approx(whole.results[quantity], nan_ok=True, rel=1e-12, abs=1e-12), quantity
 
 
-def test_members_beside_a_long_one_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_member_does_not_change_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = CASES["coulomb block"].scenario
     values = {"run.duration": np.array([1e3, 2e5, 1e3])}
     monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
@@ -165,7 +165,7 @@ def test_members_beside_a_long_one_are_the_same(monkeypatch: pytest.MonkeyPatch)
         assert np.float64(first).tobytes() == np.float64(last).tobytes()
 
 
-def test_the_window_of_several_solutions_is_told() -> None:
+def test_a_member_is_irregular_only_above_the_critical_value() -> None:
     alpha = SLAB.impedance / (SLAB.normal_stress * 0.5) * np.array([0.0, 1.0 - 1e-9, 1.0 + 1e-9])
     members = run_members(CASES["rate"].scenario, {"friction.alpha": alpha}, ("branches", "irregular"))
     assert members.results["branches"].tolist() == [1.0, 1.0, 1.0]

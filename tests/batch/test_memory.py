@@ -27,7 +27,7 @@ BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 """What varies, two quantities, status."""
 
 
-def test_memory_is_flat() -> None:
+def test_memory_grows_only_by_the_results_of_each_member() -> None:
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)
     before, after = (int(word) for word in done.stdout.split())
     assert after - before < 90_000 * BYTES_OF_A_MEMBER + 8e6

@@ -39,7 +39,7 @@ def branch_of(setups: Setups, n: int) -> at.Floats:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_setups_are_those_of_single_runs(name: str) -> None:
+def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
     case = CASES[name]
     drawn = case.values(12, seed=7)
     for _, places, values in groups(case.scenario, drawn):
@@ -69,7 +69,7 @@ def test_setups_are_those_of_single_runs(name: str) -> None:
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("name", ["rate", "stribeck", "gauss", "power"])
-def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> None:
+def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule: str) -> None:
     """Over many decades of what makes the contact irregular, and next to where it becomes so."""
     scenario = CASES[name].scenario
     scenario = replace(scenario, problem=replace(scenario.problem, selection=rule))
@@ -93,7 +93,7 @@ def test_branches_are_those_of_the_contact_equation(name: str, rule: str) -> Non
 
 
 @pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
-def test_laws_that_bend_one_way_do(kind: str) -> None:
+def test_laws_that_claim_to_bend_one_way_do(kind: str) -> None:
     law = CASES_OF_KIND[kind]
     rates = np.geomspace(1e-6, 1e3, 4001)
     mu = law.coefficient(0.1, rates)
@@ -119,11 +119,11 @@ def test_laws_know_where_friction_has_a_slope(kind: str) -> None:
 CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}
 
 
-def test_every_law_of_many_has_a_case() -> None:
+def test_every_vectorised_law_has_a_case() -> None:
     assert {kind for kind, law in LAWS.items() if law.many} == set(CASES_OF_KIND)
 
 
-def test_why_not() -> None:
+def test_why_not_names_what_a_batch_cannot_do() -> None:
     scenario = CASES["rate"].scenario
     assert why_not(scenario, ("friction.alpha", "body.thickness", "run.duration"), ("events",)) == ""
     assert "not one that a batch can keep" in why_not(scenario, ("friction.alpha",), ("horizon",))
@@ -138,7 +138,7 @@ def test_why_not() -> None:
     assert "not a plain number" in why_not(stribeck, ("friction.exponent",), ("slip",))
 
 
-def test_why_not_of_other_laws() -> None:
+def test_why_not_names_laws_that_a_batch_cannot_run() -> None:
     law = ss.friction.VelocityStrengthening(0.6, 0.01)
     scenario = Scenario(ss.Problem(SLAB, law, PULL, initial_excess=0.0), 1.0)
     assert why_not(scenario, ("friction.a",), ("slip",)) == "VelocityStrengthening is not made of plain numbers alone"
@@ -147,7 +147,7 @@ def test_why_not_of_other_laws() -> None:
     assert "memory 'since-arrest'" in why_not(scenario, ("friction.static",), ("slip",))
 
 
-def test_loads_next_to_the_strength_are_the_strength() -> None:
+def test_loads_within_rounding_of_the_strength_become_the_strength() -> None:
     scenario = CASES["rate"].scenario
     strength = scenario.problem.strength
     ulp = float(np.spacing(strength))

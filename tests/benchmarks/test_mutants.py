@@ -17,11 +17,11 @@ from stickslip.friction import LAWS
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_every_named_mistake_has_its_place_once() -> None:
+def test_every_named_mistake_occurs_once_in_the_source() -> None:
     assert [one.name for one in named(ROOT)] == [one.name for one in NAMED]
 
 
-def test_random_mutants_parse_differ_and_come_again() -> None:
+def test_random_mutants_parse_and_differ_and_are_reproducible() -> None:
     mutants = drawn(ROOT, 300, seed=3)
     assert mutants == drawn(ROOT, 300, seed=3)
     assert len({mutant.name for mutant in mutants}) > 290
@@ -31,7 +31,7 @@ def test_random_mutants_parse_differ_and_come_again() -> None:
         ast.parse(mutant.applied(text))
 
 
-def test_soak_draws_every_kind_and_the_same_problem_again() -> None:
+def test_soak_draws_every_kind_reproducibly() -> None:
     kinds = [draw(5, index).kind for index in range(len(LAWS))]
     assert kinds == list(LAWS)
     assert repr(draw(5, 3)) == repr(draw(5, 3))
@@ -42,7 +42,7 @@ def test_soak_finds_nothing_wrong_with_the_first_problems(index: int) -> None:
     assert run(draw(5, index), limit=60.0).wrong == ()
 
 
-def test_what_must_be_compiled_again_for_a_mutant() -> None:
+def test_only_functions_that_use_a_mutant_are_compiled_again() -> None:
     by_name = {mutant.name: mutant for mutant in named(ROOT)}
     sign = must_compile(ROOT, by_name["echo-sign"])
     assert ("stickslip.engine.waves.incoming_load", "echo_piece") in sign
@@ -52,7 +52,7 @@ def test_what_must_be_compiled_again_for_a_mutant() -> None:
         assert must_compile(ROOT, by_name[name]) == set()
 
 
-def test_the_function_around_a_mutant() -> None:
+def test_each_mutant_knows_the_function_around_it() -> None:
     around = {
         mutant.name: function_around((ROOT / SOURCE / mutant.path).read_bytes(), mutant)
         for mutant in named(ROOT)

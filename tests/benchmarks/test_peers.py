@@ -25,24 +25,24 @@ def error(method: ModuleType, case: Case, tolerance: float) -> float:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_scipy(case: Case) -> None:
+def test_scipy_agrees_with_the_reference(case: Case) -> None:
     assert error(scipy_peer, case, 1e-12) < 2e-9
 
 
 @pytest.mark.parametrize("case", stiff.CASES, ids=lambda case: case.name)
-def test_radau_on_stiff_contacts(case: Case) -> None:
+def test_radau_and_the_engine_agree_with_the_reference_on_stiff_contacts(case: Case) -> None:
     assert float(stiff.radau(case, 1e-8).error()) < 2e-9
     assert float(ours.runner(case, 1e-9).error()) < 1e-11
 
 
 @pytest.mark.parametrize("case", [TRANSIT, EVENT], ids=lambda case: case.name)
-def test_heyoka(case: Case) -> None:
+def test_heyoka_agrees_with_the_reference(case: Case) -> None:
     if heyoka_peer.heyoka is None:
         pytest.skip("heyoka is not installed")
     assert error(heyoka_peer, case, 1e-15) < 2e-9
 
 
-def test_jitcdde() -> None:
+def test_jitcdde_agrees_with_the_reference() -> None:
     """It solves the slab as a neutral delay equation, which is another formulation, too."""
     pytest.importorskip("jitcdde")
     with warnings.catch_warnings():
@@ -53,7 +53,7 @@ def test_jitcdde() -> None:
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_the_same_algorithm_in_c(case: Case) -> None:
+def test_the_same_algorithm_in_c_takes_the_same_steps(case: Case) -> None:
     """Step by step the same: as many steps, the same slip to rounding (which the problem amplifies)."""
     try:
         in_c = c_peer.runner(case, 1e-10)
@@ -67,13 +67,13 @@ def test_the_same_algorithm_in_c(case: Case) -> None:
     assert in_c.slip(case.times) == pytest.approx(compiled.slip(case.times), rel=0.0, abs=1e-10 * total)
 
 
-def test_the_engine_against_the_closed_form() -> None:
+def test_the_engine_agrees_with_the_closed_form() -> None:
     """The reference of this problem is no run of the engine but a closed form in 50 digits."""
     assert error(ours, SHOCKS, 1e-6) < 1e-14
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_a_wrong_answer_is_noticed(case: Case) -> None:
+def test_the_error_shows_a_wrong_answer(case: Case) -> None:
     run = ours.runner(case, 1e-10)
     run.run()
     assert case.error(run.slip(case.times) * (1.0 + 1e-6), case.arrest) > 5e-7

@@ -42,7 +42,7 @@ def test_a_block_is_driven_rigidly_and_sends_no_waves() -> None:
     assert not replace(SLAB, driver_impedance=9.8e6).is_driven_rigidly
 
 
-def test_a_slab_or_a_block_can_be_asked_for() -> None:
+def test_as_slab_and_as_block_return_the_body_or_refuse_it() -> None:
     assert as_slab(SLAB) is SLAB
     assert as_block(BLOCK) is BLOCK
     with pytest.raises(ss.InputError, match="run: needs a slab"):

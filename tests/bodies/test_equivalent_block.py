@@ -16,7 +16,7 @@ mp.dps = 40
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
 
 
-def test_it_is_the_slow_limit_of_the_slabs_dynamic_stiffness() -> None:
+def test_the_block_is_the_slow_limit_of_the_slabs_dynamic_stiffness() -> None:
     """Load per displacement at the frequency w is G k cot(k h), k = w/c: K - m w^2 with an error of (k h)^4/45 of K."""
     block = SLAB.equivalent_block()
     stiffness = mpf(SLAB.shear_modulus) / mpf(SLAB.thickness)
@@ -29,7 +29,7 @@ def test_it_is_the_slow_limit_of_the_slabs_dynamic_stiffness() -> None:
     assert (block.normal_force, block.damping) == (1e8, 0.0)
 
 
-def test_its_kinetic_energy_is_that_of_a_slab_sheared_evenly() -> None:
+def test_the_block_has_the_kinetic_energy_of_an_evenly_sheared_slab() -> None:
     """Integral of rho (1 - x/h)^2 / 2 over the thickness, by Gauss's rule: exact."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     x = 0.5 * (nodes + 1.0)
@@ -37,7 +37,7 @@ def test_its_kinetic_energy_is_that_of_a_slab_sheared_evenly() -> None:
     assert 0.5 * SLAB.equivalent_block().mass == pytest.approx(energy, rel=1e-14, abs=0.0)
 
 
-def test_it_swings_faster_than_the_slab() -> None:
+def test_the_block_swings_faster_than_the_slab() -> None:
     """sqrt(3) c / (2 pi h) against c / 4h: said in the docstring."""
     swing = 1.0 / SLAB.equivalent_block().period
     assert swing == pytest.approx(math.sqrt(3.0) * 3500 / (2e4 * math.pi), rel=1e-14, abs=0.0)
@@ -49,7 +49,7 @@ def test_mass_on_the_contact_moves_with_it() -> None:
 
 
 @pytest.mark.parametrize("impedance", [0.0, 9.8e6, 1e9])
-def test_behind_another_driver_there_is_no_spring(impedance: float) -> None:
+def test_a_slab_without_a_rigid_driver_has_no_equivalent_block(impedance: float) -> None:
     with pytest.raises(ss.InputError, match="needs a rigid driver"):
         replace(SLAB, driver_impedance=impedance).equivalent_block()
 
@@ -71,7 +71,7 @@ def slower() -> dict[float, tuple[float, float, float]]:
     return found
 
 
-def test_the_slower_the_event_the_nearer_the_block(slower: dict[float, tuple[float, float, float]]) -> None:
+def test_slower_events_of_the_slab_are_nearer_to_those_of_the_block(slower: dict[float, tuple[float, float, float]]) -> None:
     """Slip differs by 0.104 e, duration by less than 3e-4 however slow: with m = rho h / 2 it would be 22 % off."""
     assert slower[0.025][2] > 1.9 * slower[0.1][2] > 8.0
     for beyond, (slip, duration, _) in slower.items():

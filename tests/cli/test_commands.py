@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from importlib import import_module
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from stickslip.cli.names import (
 )
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
+from tests.limits import limit_of_process
 
 COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
@@ -34,7 +34,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
     assert f"stickslip {name} " in shown.out.partition("Usage")[2].partition("\n")[2]
 
 
-def test_without_arguments_it_teaches(command):
+def test_without_arguments_the_help_is_shown(command):
     shown = command()
     assert shown.code == 0
     for name in COMMANDS:
@@ -42,20 +42,18 @@ def test_without_arguments_it_teaches(command):
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
 
-def test_version(command):
+def test_version_prints_the_version(command):
     assert command("--version").out == f"stickslip {__version__}\n"
 
 
 def test_help_is_fast_because_it_compiles_and_validates_nothing():
-    code = (
+    code = limit_of_process(5) + (
         "import sys\nfrom stickslip.cli.main import main\ntry:\n    main(['--help'])\nexcept SystemExit:\n    pass\n"
         "print(*({'numba', 'pydantic', 'pandas', 'pint', 'matplotlib'} & set(sys.modules)), end='', file=sys.stderr)"
     )
-    start = time.perf_counter()
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert done.returncode == 0
-    assert time.perf_counter() - start < 5.0
 
 
 @pytest.mark.parametrize("name", templates.template_names())
@@ -70,14 +68,14 @@ def test_new_lists_every_name(command):
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
 
 
-def test_what_new_prints_can_be_checked_and_run(command, tmp_path: Path):
+def test_a_scenario_that_new_prints_can_be_checked_and_run(command, tmp_path: Path):
     (tmp_path / "mine.toml").write_text(command("new", "slab").out)
     assert command("check", "mine.toml").code == 0
     assert command("run", "mine.toml").code == 0
 
 
 @pytest.mark.parametrize("name", library.names())
-def test_check(command, name):
+def test_check_prints_its_four_sections(command, name):
     shown = command("check", name)
     assert shown.code == 0
     assert shown.out.startswith(load_scenario(name).title)
@@ -99,7 +97,7 @@ def test_check_shows_units_folds_and_warnings(command):
     assert "warning" in out
 
 
-def test_check_says_what_jumps_and_what_rests_on_the_rule(command):
+def test_check_says_what_jumps_and_what_depends_on_the_rule(command):
     out = command("check", "fig6-slab").out
     for pattern in (
         r"^critical value +friction\.alpha = 0\.196 s/m; here above it, at 1",
@@ -212,16 +210,16 @@ def test_ensemble_shows_events_around_the_first_that_is_lost(command):
 
 
 def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    original = import_module("stickslip.studies.ensemble")._run
+    original = import_module("stickslip.studies.ensemble").simulate
     done = []
 
-    def stops(*arguments):
+    def stops(*arguments, **options):
         if len(done) == 3:
             raise KeyboardInterrupt
-        done.append(original(*arguments))
+        done.append(original(*arguments, **options))
         return done[-1]
 
-    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "_run", stops)
+    monkeypatch.setattr(import_module("stickslip.studies.ensemble"), "simulate", stops)
     shown = command("ensemble", "cycles-block", "--out", "a.nc")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "Interrupted: 2 of 8 members." in shown.out
@@ -250,7 +248,7 @@ def test_run_draws_where_the_energy_is(command, tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["energy.svg"]
 
 
-def test_pictures_of_the_slabs_inside(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_run_draws_space_time_and_animation(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.figures.runs.animation.FRAMES", 3)
     out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif", "--figure", "run.png").out
     assert out.endswith("written: run.png\nwritten: waves.svg\nwritten: slab.gif\n")

@@ -123,7 +123,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("arguments", "message"), CASES)
-def test_one_line_and_nothing_written(command, tmp_path: Path, arguments: list[str], message: str):
+def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, arguments: list[str], message: str):
     (tmp_path / "bad.toml").write_text(command("new", "slab").out.replace("thickness =", "thicknes ="))
     shown = command(*arguments)
     assert shown.code == 2
@@ -141,7 +141,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_
     assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: the folder . is not writable\n")
 
 
-def test_ctrl_c_is_one_line(command, monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_gives_one_line(command, monkeypatch: pytest.MonkeyPatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
@@ -150,7 +150,7 @@ def test_ctrl_c_is_one_line(command, monkeypatch: pytest.MonkeyPatch):
     assert (shown.code, shown.out, shown.err) == (130, "", "stickslip: interrupted\n")
 
 
-def test_a_full_disk_is_one_line_and_leaves_no_half_file(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_full_disk_gives_one_line_and_leaves_no_half_file(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     def fails(self, path, **_):
         Path(path).write_text("half")
         raise OSError(28, "No space left on device", str(path))
@@ -163,7 +163,7 @@ def test_a_full_disk_is_one_line_and_leaves_no_half_file(command, tmp_path: Path
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok])
+@pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok], ids=lambda status: status.name)
 def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: pytest.MonkeyPatch, status):
     original = Scenario.run
 

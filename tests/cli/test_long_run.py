@@ -19,7 +19,7 @@ from stickslip.run.progress import Progress, Report
 from tests.long_runs.problems import differences
 
 
-def test_a_run_goes_on(command, tmp_path: Path):
+def test_a_run_continues(command, tmp_path: Path):
     assert command("run", "cycles-block", "--until", "20 years", "--out", "run.nc").code == 0
     shown = command("run", "--resume", "run.nc", "--until", "50 years")
     assert shown.code == 0
@@ -32,7 +32,7 @@ def test_a_run_goes_on(command, tmp_path: Path):
     assert ss.open_solution(tmp_path / "longer.nc").duration == 60 * ss.YEAR
 
 
-def test_a_catalogue_goes_on(command, tmp_path: Path):
+def test_a_catalogue_continues(command, tmp_path: Path):
     shown = command("run", "cycles-block", "--until", "100 years", "--catalog", "events.csv")
     assert shown.code == 0
     for text in ("finished: the run reached its duration", "22 slip events", "written: events.csv", "events.checkpoint.nc"):
@@ -42,7 +42,7 @@ def test_a_catalogue_goes_on(command, tmp_path: Path):
     pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole, check_exact=True)
 
 
-def test_events_stop_a_run(command, tmp_path: Path):
+def test_a_run_stops_after_the_requested_events(command, tmp_path: Path):
     shown = command("run", "cycles-block", "--until", "10000 years", "--events", "3", "--out", "run.nc")
     assert "enough events: the run reached the requested number of slip events" in shown.out
     assert "3 slip events" in shown.out
@@ -70,7 +70,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("arguments", "message"), REFUSED)
-def test_one_line_and_nothing_changed(command, tmp_path: Path, arguments: list[str], message: str):
+def test_bad_input_gives_one_line_and_changes_nothing(command, tmp_path: Path, arguments: list[str], message: str):
     (tmp_path / "bad.nc").write_text("no")
     ss.simulate(ss.load_scenario("cycles-block").problem, 20 * ss.YEAR, checkpoint=tmp_path / "run.nc")
     before = (tmp_path / "run.nc").read_bytes()
@@ -107,7 +107,7 @@ def test_creep_is_leapt_over(command, tmp_path: Path):
 
 
 @pytest.mark.parametrize("events", ['"5"', "0", "2.5", "true"])
-def test_a_bad_number_of_events_in_a_scenario(command, tmp_path: Path, events: str):
+def test_a_scenario_with_a_bad_number_of_events_is_refused(command, tmp_path: Path, events: str):
     (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", f"[run]\nevents = {events}\n"))
     shown = command("run", "mine.toml")
     assert shown.code == 2
@@ -124,7 +124,7 @@ def heeds_ctrl_c() -> Iterator[None]:
 
 @pytest.mark.usefixtures("heeds_ctrl_c")
 @pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalog", "run.csv"]])
-def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
+def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
     @contextmanager
     def interrupting(_: str) -> Iterator[Progress]:
         yield lambda report: signal.raise_signal(signal.SIGINT) if report.events >= 2 else None
@@ -148,7 +148,7 @@ def test_ctrl_c_leaves_a_file_that_goes_on(command, monkeypatch: pytest.MonkeyPa
         pd.testing.assert_frame_equal(read_table(Path("run.csv")), whole.events, check_exact=True)
 
 
-def test_progress_is_told_in_sensible_units():
+def test_progress_is_shown_in_sensible_units():
     report = Report(150 * ss.YEAR, 10_000 * ss.YEAR, 31, None, 5000, "stuck", 120.3 * ss.YEAR, 81.9)
     assert so_far(report) == "150 of 10000 years, 31 slip events, stuck, 120 years a second, 1.4 min left"
     start = Report(0.0, 12.0, 1, 4, 0, "slipping", float("nan"), float("nan"))

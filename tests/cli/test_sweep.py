@@ -13,7 +13,7 @@ from stickslip.sweeps.sweep import SweepProgress
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
 
 
-def test_it_says_what_came_of_it(command):
+def test_sweep_says_what_came_of_it(command):
     shown = command(*MAP, "--out", "map.zarr")
     assert (shown.code, shown.err) == (0, "")
     assert "4 x 2 = 8 members over friction.alpha, body.thickness" in shown.out
@@ -24,7 +24,7 @@ def test_it_says_what_came_of_it(command):
         assert found.events.values.tolist() == [[0, 0], [1, 1], [1, 1], [1, 1]]
 
 
-def test_quantities_series_and_tables_are_taken(command, tmp_path: Path):
+def test_sweep_accepts_quantities_series_and_tables(command, tmp_path: Path):
     (tmp_path / "members.csv").write_text("friction.alpha,thickness\n1,1 km\n0.5 s/m,2 km\n")
     asked = ["--list", "members.csv", "-q", "slip", "-q", "heat", "--series", "slip, load", "--samples", "7", "--out", "list.zarr"]
     shown = command("sweep", "fig6-slab", *asked)
@@ -36,7 +36,7 @@ def test_quantities_series_and_tables_are_taken(command, tmp_path: Path):
         assert found.sizes == {"member": 2, "time": 7}
 
 
-def test_samples_are_drawn(command):
+def test_sweep_draws_samples(command):
     shown = command("sweep", "fig6-slab", "-v", "alpha=0.1..1:log", "--design", "lhs", "-m", "6", "--seed", "3")
     assert shown.code == 0
     assert "6 members drawn as a Latin hypercube over friction.alpha" in shown.out
@@ -78,7 +78,7 @@ def test_failures_are_counted_with_their_reasons(command):
         (["-v", "alpha=1..2", "--design", "lhs"], "sweep: members must be a whole number above 0 for the design lhs, got None"),
     ],
 )
-def test_bad_input_is_one_line(command, tmp_path: Path, arguments, said):
+def test_bad_input_gives_one_line(command, tmp_path: Path, arguments, said):
     shown = command("sweep", "fig6-slab", *arguments)
     assert (shown.code, shown.out) == (2, "")
     assert shown.err.startswith(f"stickslip: {said}")
@@ -86,7 +86,7 @@ def test_bad_input_is_one_line(command, tmp_path: Path, arguments, said):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_progress_is_one_line():
+def test_progress_is_shown_in_one_line():
     assert so_far(SweepProgress(0, 0, 100, float("nan"), float("nan"))) == "0 of 100 members"
     assert so_far(SweepProgress(50, 2, 100, 12.5, 240.0)) == "50 of 100 members, 12.5 a second, 4 min left, 2 failed"
 

@@ -11,7 +11,7 @@ from stickslip.sweeps.execution import cluster
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
 
 
-def test_it_refines_and_draws(command, tmp_path: Path):
+def test_sweep_refines_and_draws(command, tmp_path: Path):
     shown = command(*MAP, "-q", "events", "--refine", "irregular", "--depth", "2", "--out", "map.zarr", "--figure", "map.png")
     assert (shown.code, shown.err) == (0, "")
     with xr.open_zarr("map.zarr") as found:
@@ -24,7 +24,7 @@ def test_it_refines_and_draws(command, tmp_path: Path):
     assert command(*MAP, "-q", "events", "--refine", "irregular", "--depth", "2", "--out", "map.zarr").code == 0
 
 
-def test_it_draws_a_grid(command, tmp_path: Path):
+def test_sweep_draws_a_grid(command, tmp_path: Path):
     five = ["-v", "friction.alpha=0.1..0.4:5", "-v", "body.normal_stress=50MPa..200MPa:5"]
     assert command("sweep", "fig6-slab", *five, "--figure", "map.svg").code == 0
     drawn = (tmp_path / "map.svg").read_text()
@@ -32,7 +32,7 @@ def test_it_draws_a_grid(command, tmp_path: Path):
     assert "<image" in drawn  # the map itself, as pixels
 
 
-def test_it_draws_words(command):
+def test_sweep_draws_axes_of_words(command):
     """Three selection rules along an axis of maps, which a parameter with two values tells apart."""
     three = ["-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:2", "-v", "thickness=5km..10km:5"]
     shown = command("sweep", "fig6-slab", *three, "-q", "slip", "--figure", "map.png")
@@ -54,7 +54,7 @@ def test_it_draws_words(command):
         (["--workers", "2", "--threads", "2"], "sweep: give one of threads, workers"),
     ],
 )
-def test_what_it_cannot_do(command, options: list[str], message: str):
+def test_impossible_sweeps_are_refused_in_one_line(command, options: list[str], message: str):
     shown = command(*MAP[:4], "-v", "body.normal_stress=50MPa,100MPa", *options)
     if "lhs" in options:
         shown = command("sweep", "fig6-slab", "-v", "alpha=0.1..1", *options)
@@ -63,7 +63,7 @@ def test_what_it_cannot_do(command, options: list[str], message: str):
     assert len(shown.err.splitlines()) == 1
 
 
-def test_chunks_that_a_cluster_lost_are_told(command, monkeypatch: pytest.MonkeyPatch):
+def test_chunks_that_a_cluster_lost_are_reported(command, monkeypatch: pytest.MonkeyPatch):
     def lose(work: object, chunks: object) -> Iterator[object]:
         raise cluster.ChunksLostError("sweep: the dask scheduler is lost")
         yield

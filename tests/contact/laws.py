@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from hypothesis import strategies as st
+
 import stickslip as ss
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.expression import cos, exp
@@ -56,3 +58,15 @@ def slab_problem(law: ss.friction.FrictionLaw, selection: str = "perfect-delay",
 def q_of(alpha: float) -> float:
     """The paper's q = sqrt(alpha / alpha_c)."""
     return math.sqrt(alpha / ALPHA_C)
+
+
+wavy_laws = st.builds(
+    Wavy,
+    mean=st.just(0.7),
+    amplitude=st.floats(0.02, 0.3),
+    beat=st.floats(0.05, 3.0),
+    fade=st.floats(0.5, 20.0),
+    turn=st.just(0.4),
+    step=st.sampled_from([0.0, 0.05]),
+)
+"""Draw laws that rise and fall with the rate."""

@@ -12,23 +12,13 @@ import stickslip as ss
 from stickslip.contact.branches import branches, branches_of, rate_on, rates_at
 from stickslip.contact.equation import resistance
 
-from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem
+from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws
 
 EVERY_ALPHA = [0.2, 1.0, 37.0, 1e3, 1e6, 1e9]
 
-wavy_laws = st.builds(
-    Wavy,
-    mean=st.just(0.7),
-    amplitude=st.floats(0.02, 0.3),
-    beat=st.floats(0.05, 3.0),
-    fade=st.floats(0.5, 20.0),
-    turn=st.just(0.4),
-    step=st.sampled_from([0.0, 0.05]),
-)
-
 
 @pytest.mark.parametrize("alpha", EVERY_ALPHA)
-def test_folds_of_the_hyperbolic_law(alpha):
+def test_folds_of_the_hyperbolic_law_have_their_closed_form(alpha):
     q = q_of(alpha)
     (branch,) = branches(slab_problem(hyperbolic(alpha)))
     assert branch.rate_from == pytest.approx((q - 1) / alpha, rel=1e-13, abs=0)
@@ -36,7 +26,7 @@ def test_folds_of_the_hyperbolic_law(alpha):
     assert (branch.rate_to, branch.excess_to) == (math.inf, math.inf)
 
 
-def test_fold_just_above_the_critical_value():
+def test_the_fold_just_above_the_critical_value_agrees_with_40_digits():
     mpmath = pytest.importorskip("mpmath")
     law = hyperbolic(ALPHA_C + 1e-6)
     with mpmath.workdps(40):
@@ -51,19 +41,19 @@ def test_fold_just_above_the_critical_value():
 
 
 @pytest.mark.parametrize("alpha", [0.0, 1e-6, 0.1, ALPHA_C])
-def test_one_branch_up_to_the_critical_value(alpha):
+def test_up_to_the_critical_value_there_is_one_branch_from_rest(alpha):
     (branch,) = branches(slab_problem(hyperbolic(alpha)))
     assert (branch.rate_from, branch.excess_from, branch.rate_to) == (0.0, 0.0, math.inf)
 
 
 @pytest.mark.parametrize("alpha", EVERY_ALPHA)
-def test_upward_jump_of_the_hyperbolic_law(alpha):
+def test_the_upward_jump_of_the_hyperbolic_law_has_its_closed_form(alpha):
     problem = slab_problem(hyperbolic(alpha))
     (branch,) = branches(problem)
     assert rate_on(resistance(problem), branch, 0.0) == pytest.approx((q_of(alpha) ** 2 - 1) / alpha, rel=1e-13, abs=0)
 
 
-def test_rate_given_in_the_design_near_the_critical_value():
+def test_the_rate_near_the_critical_value_is_that_of_the_design():
     problem = slab_problem(hyperbolic(ALPHA_C + 1e-6))
     (branch,) = branches(problem)
     assert rate_on(resistance(problem), branch, 0.0) == pytest.approx(2.60306876818e-5, rel=1e-10, abs=0)
@@ -79,7 +69,7 @@ def test_rate_given_in_the_design_near_the_critical_value():
         (ss.friction.HyperbolicRate(0.3, 0.8, 2.0), 0.0),
     ],
 )
-def test_laws_with_one_branch_from_rest(law, start):
+def test_laws_that_do_not_weaken_with_rate_have_one_branch_from_rest(law, start):
     (branch,) = branches(slab_problem(law))
     assert (branch.rate_from, branch.rate_to, branch.excess_to) == (0.0, math.inf, math.inf)
     assert branch.excess_from == pytest.approx(start, rel=1e-15, abs=0)
@@ -92,7 +82,7 @@ def test_rate_on_a_branch_without_rate_dependence_is_linear():
         assert rate_on(resistance(problem), branch, excess) == pytest.approx((excess + 0.5 * S) / Z, rel=1e-14, abs=0)
 
 
-def test_rate_on_a_branch_that_does_not_exist_there():
+def test_a_branch_has_no_rate_below_its_loads():
     problem = slab_problem(hyperbolic(1.0))
     (branch,) = branches(problem)
     with pytest.raises(ValueError, match="no slip rate"):
@@ -120,7 +110,7 @@ class Endless(ss.friction.FrictionLaw):
         return 0.5, 0.5
 
 
-def test_friction_that_seems_to_fall_faster_than_the_waves_for_ever():
+def test_friction_that_never_stops_falling_is_refused():
     problem = ss.Problem(ss.ElasticSlab(1e-9, 1e-9, 1.0, 1e8), Endless(), pull_rate=1e-9, initial_excess=0.0)
     with pytest.raises(ss.InputError, match=r"Endless: friction still falls at least as fast as Z v rises at 1e\+04 m/s"):
         branches(problem)
@@ -174,12 +164,12 @@ def test_branches_are_where_the_resistance_rises(law, slip):
     assert np.array_equal(inside[clear], slope[clear] > 0)
 
 
-def test_scales_do_not_leave_the_search_without_a_rate():
+def test_friction_without_a_scale_is_searched_at_one_metre_per_second():
     g = resistance(ss.Problem(SLAB, ss.friction.Coulomb(0.5, 0.5), initial_load=0.0))
     assert g.scales == (1.0,)
 
 
-def test_no_unstable_rate_inside_the_step_from_static_to_sliding_friction():
+def test_the_step_from_static_to_sliding_friction_holds_no_unstable_rate():
     law = Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3, step=0.05)
     g = resistance(slab_problem(law), 1.0)
     stable = branches_of(g)

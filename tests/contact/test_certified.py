@@ -93,7 +93,7 @@ def test_a_bump_has_its_critical_normal_stress(width):
     assert margin(problem) == pytest.approx(1.0 - S / exact, rel=1e-12, abs=0)
 
 
-def test_narrow_folds_that_move_with_slip():
+def test_both_folds_of_a_bump_that_moves_with_slip_are_found():
     """The bump moves along the rate as the contact slips: at every slip its two folds are found."""
     law = FromExpression(f"0.5 + {HEIGHT}*exp(-((v - 1 - 0.1*sin(u))/w)**2)", {"w": 1e-4})
     exact = [float(one) - 1.0 for one in folds_of_bump(1e-4)]

@@ -39,7 +39,7 @@ def steepest_by_scan(law: ss.friction.FrictionLaw) -> float:
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_closed_forms_against_the_root_finder(name):
+def test_closed_forms_agree_with_the_root_finder(name):
     problem = slab_problem(CLOSED[name])
     place, value = CLOSED[name].critical_value(Z, S)
     found = ss.studies.critical_value(problem, place)
@@ -50,7 +50,7 @@ def test_closed_forms_against_the_root_finder(name):
 
 
 @pytest.mark.parametrize("name", [name for name in CLOSED if name not in ("coulomb", "polyline")])
-def test_closed_forms_against_a_dense_scan(name):
+def test_friction_falls_by_the_impedance_at_the_closed_form(name):
     """At the critical value the steepest fall of friction is Z/S."""
     place, value = CLOSED[name].critical_value(Z, S)
     problem = slab_problem(CLOSED[name])
@@ -69,7 +69,7 @@ def test_the_regime_changes_where_it_is_said_to(name, step):
     assert (margin(changed) < 0.0) == (side == "irregular")
 
 
-def test_laws_that_have_no_critical_value():
+def test_laws_that_never_weaken_enough_have_no_critical_value():
     strengthening = F.VelocityStrengthening(0.6, 0.01, 1e-6, 0.1)
     assert strengthening.critical_value(Z, S) is None
     assert F.ExponentialStribeck(0.4, 0.6, 0.1).critical_value(Z, S) is None
@@ -84,7 +84,7 @@ def test_laws_that_have_no_critical_value():
         assert found.searched[0] < 1e2 * found.present < 1e4 * found.present < found.searched[1]
 
 
-def test_the_normal_stress_of_a_law_without_closed_form():
+def test_a_law_without_closed_form_has_a_critical_normal_stress():
     law = F.FromExpression("b + (a - b) / (1 + alpha*v)", {"a": 0.8, "b": 0.3, "alpha": "1 s/m"})
     found = ss.uniqueness(slab_problem(law))
     assert (found.critical_parameter, found.critical_value) == ("normal_stress", pytest.approx(Z / 0.5, rel=1e-14, abs=0))
@@ -93,7 +93,7 @@ def test_the_normal_stress_of_a_law_without_closed_form():
     assert ss.studies.critical_value(slab_problem(law), "a").value == pytest.approx(0.3 + Z / S, rel=1e-13, abs=0)
 
 
-def test_parts_of_a_product_at_the_slip_that_is_reached():
+def test_the_critical_value_of_a_product_depends_on_slip():
     law = F.SlipTimesRate(F.LinearSlipWeakening(0.7, 0.5, 0.4), F.HyperbolicRate(1.0, 0.5, 1.0))
     for slip in (0.0, 0.2, 1.0):
         factor = max(0.7 - 0.5 * slip, 0.5)
@@ -105,7 +105,7 @@ def test_parts_of_a_product_at_the_slip_that_is_reached():
     assert along.regimes == ("regular", "irregular", "regular")
 
 
-def test_a_number_with_two_critical_values():
+def test_a_parameter_can_have_two_critical_values():
     """Friction falls by 0.5 k exp(-k), steepest at rest: irregular only for k neither too small nor too large."""
     law = F.FromExpression("0.3 + 0.5 * k * exp(-k) / (1 + v)", {"k": 1.0})
     found = ss.studies.critical_value(slab_problem(law), "k")
@@ -130,13 +130,13 @@ def test_from_zero_the_search_goes_by_orders_of_magnitude():
         ("exponent", "friction.exponent is whole"),
     ],
 )
-def test_what_has_no_critical_value(name, message):
+def test_parameters_that_are_unknown_or_whole_are_refused(name, message):
     law = hyperbolic(1.0) if name == "alpa" else F.PowerStribeck(0.6, 0.4, 0.1, 2)
     with pytest.raises(ss.InputError, match=message.replace("?", r"\?")):
         ss.studies.critical_value(slab_problem(law), name)
 
 
-def test_inertia_has_none():
+def test_bodies_with_inertia_have_no_critical_value():
     block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
     with pytest.raises(ss.InputError, match="block"):
         ss.studies.critical_value(block, "alpha")
@@ -169,7 +169,7 @@ def test_margin_says_what_the_branches_say(factor, exponent):
     assert (margin(problem) < 0.0, several) == (factor < 1.0, factor < 1.0)
 
 
-def test_margin_of_friction_that_no_rate_changes():
+def test_friction_that_no_rate_changes_has_margin_one():
     assert margin(slab_problem(F.LinearSlipWeakening(0.6, 0.3, 2.0))) == 1.0
 
 
@@ -181,8 +181,9 @@ def test_margin_of_friction_that_no_rate_changes():
         (lambda x: math.copysign(1.0, 0.3 - x), 0.0, 1.0, 0.3),
         (lambda x: 1e-300 * (x - 0.7) ** 9, 0.0, 1.0, None),
     ],
+    ids=["cubic", "jump from minus infinity", "jump down", "flat root"],
 )
-def test_sign_change(function, low, high, root):
+def test_sign_change_finds_the_crossing_from_its_upper_side(function, low, high, root):
     found = sign_change(function, low, high)
     assert function(found) >= 0.0
     if root is not None:

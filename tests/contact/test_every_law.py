@@ -90,7 +90,7 @@ def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
 
 @settings(max_examples=60, deadline=None)
 @given(law=st.sampled_from(["hyperbolic-rate", "exponential-stribeck", "power-stribeck"]).flatmap(laws))
-def test_closed_forms_say_what_the_normal_stress_says(law):
+def test_closed_forms_agree_with_the_critical_normal_stress(law):
     """At a critical value of its own number, the law's critical normal stress is the present one."""
     problem = problem_of(law)
     found = ss.uniqueness(problem)

@@ -20,7 +20,7 @@ def potential(rate, alpha):
 
 
 @pytest.mark.parametrize("alpha", [0.3, 1.0, 100.0, 1e6])
-def test_area_of_the_hyperbolic_law(alpha):
+def test_the_loop_of_the_hyperbolic_law_has_the_area_of_the_closed_form(alpha):
     """Perfect delay jumps at muS S from 0 to vB and at the lower fold from v1 to 0."""
     q = q_of(alpha)
     v_b, v_1 = (q**2 - 1) / alpha, (q - 1) / alpha
@@ -34,7 +34,7 @@ def test_area_of_the_hyperbolic_law(alpha):
 
 
 @pytest.mark.parametrize("alpha", [0.3, 1.0, 100.0])
-def test_area_as_what_the_way_down_has_more_of_slip(alpha):
+def test_the_area_is_the_integral_of_the_rate_difference_over_the_load(alpha):
     """Integral over the load of the slip rate on the way down minus that on the way up, by scipy."""
     integrate = pytest.importorskip("scipy.integrate")
     found = ss.uniqueness(slab_problem(hyperbolic(alpha)))
@@ -52,7 +52,7 @@ def test_a_rule_without_memory_retraces_its_way(rule):
         assert found.loop.branches == found.loop.branches[::-1]
 
 
-def test_a_loop_over_several_branches():
+def test_a_loop_over_several_branches_has_the_area_between_its_jumps():
     integrate = pytest.importorskip("scipy.integrate")
     found = ss.uniqueness(slab_problem(Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3)), 1.0)
     assert len(found.branches) >= 3
@@ -66,7 +66,7 @@ def test_a_loop_over_several_branches():
     assert g.strength > 0.0
 
 
-def test_no_loop_where_the_rate_is_unique():
+def test_a_unique_rate_has_no_loop():
     found = ss.uniqueness(slab_problem(hyperbolic(0.1)))
     assert (found.loop_area, found.loop.jumps, found.loop.branches) == (0.0, (), (-1, 0, -1))
     block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
@@ -81,7 +81,7 @@ def test_a_run_encloses_the_area_of_the_loop():
     assert area == pytest.approx(ss.uniqueness(solution.problem).loop_area, rel=1e-6, abs=0)
 
 
-def test_tractions_before_and_after_a_jump():
+def test_jumps_have_the_tractions_of_the_law():
     up, down = ss.uniqueness(slab_problem(hyperbolic(1.0))).jumps
     assert (up.traction_before, up.traction_after) == pytest.approx((8e7, 39_800_000.0), rel=1e-14, abs=0)
     assert down.traction_after == down.load == pytest.approx(64_471_887.242, rel=0, abs=5e-4)

@@ -39,7 +39,7 @@ def test_a_function_is_a_rule():
     assert found.loop_area == 0.0
 
 
-def test_it_runs_and_is_saved_by_its_name(tmp_path: Path):
+def test_an_own_rule_runs_and_is_saved_by_its_name(tmp_path: Path):
     scenario = ss.load_scenario("fig4-loop")
     solution = ss.simulate(replace(scenario.problem, selection=halfway), scenario.duration)
     level = [jump.load for jump in ss.uniqueness(solution.problem).jumps]
@@ -66,7 +66,7 @@ def test_a_registered_rule_is_named_in_scenarios(tmp_path: Path):
     assert replace(solution.problem, selection=halfway) == solution.problem  # a registered function is kept by its name
 
 
-def test_a_name_may_be_given_anew_and_the_next_run_follows(tmp_path: Path):
+def test_a_name_can_be_registered_again_and_the_next_run_follows(tmp_path: Path):
     from stickslip.contact.rules.selection import maximal, minimal
 
     scenario = ss.load_scenario("fig4-loop")
@@ -86,7 +86,7 @@ def test_a_name_may_be_given_anew_and_the_next_run_follows(tmp_path: Path):
         ("mine", None, "must be a function"),
     ],
 )
-def test_what_cannot_be_registered(name, rule, message):
+def test_bad_rules_and_names_cannot_be_registered(name, rule, message):
     with pytest.raises(ss.InputError, match=message):
         ss.selection.register(name, rule)
     assert registered == {}
@@ -106,7 +106,7 @@ def maxwell(g, stable):
         (3, r"must be a name or a function \(g, stable\).*, got int"),
     ],
 )
-def test_what_a_problem_refuses(rule, message):
+def test_a_problem_refuses_unknown_rules(rule, message):
     with pytest.raises(ss.InputError, match=message):
         slab_problem(hyperbolic(1.0), rule)
 
@@ -132,7 +132,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_table_that_cannot_be_followed_is_one_line(name):
+def test_a_table_that_cannot_be_followed_is_refused_in_one_line(name):
     make, message = BAD[name]
 
     def bad(g, stable):

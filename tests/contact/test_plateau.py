@@ -16,7 +16,7 @@ LEVEL = 0.65 * S + Z
 
 
 @pytest.mark.parametrize("rule", SELECTION_RULES)
-def test_a_continuum_between_two_branches(rule):
+def test_a_plateau_between_two_branches_is_a_continuum(rule):
     found = ss.uniqueness(slab_problem(PLATEAU, rule))
     assert found.regime == "continuum"
     assert [(p.rate_from, p.rate_to) for p in found.plateaus] == [(1.0, 2.0)]
@@ -34,14 +34,14 @@ def test_a_continuum_between_two_branches(rule):
 
 
 @pytest.mark.parametrize("load", [0.0, 0.3 * S, LEVEL - 1.0, LEVEL + 1.0, 2 * LEVEL])
-def test_one_slip_rate_beside_it(load):
+def test_beside_the_plateau_there_is_one_slip_rate(load):
     found = ss.uniqueness(slab_problem(PLATEAU))
     assert found.continuum(load) is None
     assert found.admissible(load).size == 1
     assert found.stability(load).all()
 
 
-def test_a_continuum_from_rest():
+def test_a_plateau_from_rest_is_a_continuum():
     found = ss.uniqueness(slab_problem(AT_REST))
     assert found.regime == "continuum"
     assert found.window == (0.0, 0.0)
@@ -52,7 +52,7 @@ def test_a_continuum_from_rest():
 
 
 @pytest.mark.parametrize("step", [-1e-12, 1e-12])
-def test_a_slope_that_is_not_exact_makes_none(step):
+def test_a_slope_that_is_not_exact_makes_no_continuum(step):
     """Off by 1e-4 Pa over the stretch, which is beyond the rounding of 7.5e7 Pa: regular, or a window of that width."""
     found = ss.uniqueness(slab_problem(replace(PLATEAU, coefficients=(0.6, 0.65, 0.65 - FALL + step, 0.5))))
     assert found.regime == ("irregular" if step < 0 else "regular")
@@ -60,7 +60,7 @@ def test_a_slope_that_is_not_exact_makes_none(step):
         assert found.window[1] - found.window[0] == pytest.approx(-step * S, rel=1e-3, abs=0)
 
 
-def test_a_continuum_and_folds():
+def test_a_law_can_have_a_continuum_and_folds():
     law = ss.friction.PiecewiseLinearRate((0.0, 1.0, 2.0, 4.0, 6.0), (0.6, 0.65, 0.65 - FALL, 0.2, 0.2))
     found = ss.uniqueness(slab_problem(law))
     assert found.regime == "continuum"

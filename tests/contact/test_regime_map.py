@@ -33,13 +33,13 @@ def test_the_curve_does_not_care_which_axis_is_which():
         assert np.abs(difference) == pytest.approx(np.full(difference.shape, Z / S), rel=1e-13)
 
 
-def test_a_boundary_that_one_axis_does_not_move():
+def test_an_axis_without_effect_does_not_move_the_boundary():
     found = regime_map(slab_problem(hyperbolic(1.0)), Axis("alpha", 0.1, 1.0, 5), Axis("thickness", 1e3, 1e4, 4))
     assert len(found.boundary) == 3
     assert found.boundary[..., 0] == pytest.approx(np.full((3, 2), 0.196), rel=1e-14)
 
 
-def test_where_the_problem_is_refused_there_is_nothing():
+def test_the_map_is_empty_where_the_problem_is_refused():
     problem = slab_problem(F.Coulomb(0.6, 0.5))
     found = regime_map(problem, Axis("static", 0.1, 0.9, 5), Axis("dynamic", 0.2, 0.8, 4))
     static, dynamic = np.meshgrid(found.x.values, found.y.values)
@@ -57,7 +57,7 @@ def test_where_the_problem_is_refused_there_is_nothing():
         (("alpha", 0.0, 1.0), ("beta", 0.1, 1.0), "parameter 'beta' is unknown"),
     ],
 )
-def test_what_is_refused(x, y, message):
+def test_bad_axes_are_refused(x, y, message):
     with pytest.raises(ss.InputError, match=message):
         regime_map(slab_problem(hyperbolic(1.0)), Axis(*x), Axis(*y))
 
@@ -88,7 +88,7 @@ def test_along_slip_an_oscillating_factor_comes_and_goes():
         assert S * (1 + 0.5 * np.sin(5 * one.slip_to)) * 0.08 == pytest.approx(Z, rel=1e-13, abs=0)
 
 
-def test_along_slip_a_law_of_one_of_the_two_is_one_stretch():
+def test_a_law_of_slip_or_rate_alone_has_one_regime_along_slip():
     for law, regime in ((hyperbolic(1.0), "irregular"), (F.SinusoidalSlip(1.0, 0.5, 5.0), "regular")):
         (one,) = regimes_along_slip(slab_problem(law))
         assert one.regime == regime
@@ -103,5 +103,5 @@ def test_along_slip_a_law_of_one_of_the_two_is_one_stretch():
         (hyperbolic(1.0), 20.0),
     ],
 )
-def test_how_far_slip_is_looked_at(law, reach):
+def test_slip_reach_covers_the_scales_of_the_law(law, reach):
     assert slip_reach(law) == pytest.approx(reach, rel=1e-14, abs=0)

@@ -14,8 +14,7 @@ from stickslip.contact.rules.maxwell import area
 from stickslip.contact.rules.selection import RULES, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
 
-from .laws import ALPHA_C, S, Z, hyperbolic, q_of, slab_problem
-from .test_branches import wavy_laws
+from .laws import ALPHA_C, S, Z, hyperbolic, q_of, slab_problem, wavy_laws
 
 
 def maxwell_level(alpha):
@@ -37,31 +36,31 @@ def settle(table, branch, excess):
     return table.descend(branch, excess) if excess < table.keep_from[branch] else branch
 
 
-def test_one_list_of_names():
+def test_the_rules_have_one_list_of_names():
     assert tuple(RULES) == SELECTION_RULES
 
 
 @pytest.mark.parametrize("alpha", [1.0, 100.0, 1e6])
-def test_maxwell_level_of_the_hyperbolic_law(alpha):
+def test_the_maxwell_level_of_the_hyperbolic_law_cuts_equal_areas(alpha):
     excess, rate = maxwell_level(alpha)
     (branch,), table = selection_table(slab_problem(hyperbolic(alpha), "maxwell"))
     assert table.stick_to == table.keep_from[0] == pytest.approx(excess, rel=1e-13, abs=0)
     assert rate_on(resistance(slab_problem(hyperbolic(alpha))), branch, table.stick_to) == pytest.approx(rate, rel=1e-12, abs=0)
 
 
-def test_maxwell_level_given_in_the_design():
+def test_the_maxwell_level_is_that_of_the_design():
     (branch,), table = selection_table(slab_problem(hyperbolic(1.0), "maxwell"))
     assert table.stick_to + 0.8 * S == pytest.approx(67_215_203.566, rel=0, abs=5e-4)
     assert rate_on(resistance(slab_problem(hyperbolic(1.0))), branch, table.stick_to) == pytest.approx(2.20613081, rel=0, abs=5e-9)
 
 
-def test_maxwell_level_just_above_the_critical_value():
+def test_the_maxwell_level_just_above_critical_is_three_quarters_of_the_fold():
     # There g - S muS = -a s + b s^2 up to a relative 1e-5, and equal areas lie at 3/4 of the fold's depth
     (branch,), table = selection_table(slab_problem(hyperbolic(ALPHA_C + 1e-6), "maxwell"))
     assert table.stick_to == pytest.approx(0.75 * branch.excess_from, rel=1e-5, abs=0)
 
 
-def test_tables_of_the_hyperbolic_law():
+def test_rules_differ_in_where_the_hyperbolic_law_leaves_rest_and_returns():
     (branch,), delay = selection_table(slab_problem(hyperbolic(1.0)))
     fold = branch.excess_from
     tables = {rule: selection_table(slab_problem(hyperbolic(1.0), rule))[1] for rule in ("minimal", "maximal")}
@@ -75,7 +74,7 @@ def test_tables_of_the_hyperbolic_law():
     ("rule", "stick_to", "keep_from"),
     [("perfect-delay", 0.0, -0.5 * S), ("minimal", 0.0, 0.0), ("maximal", -0.5 * S, -0.5 * S), ("maxwell", -0.5 * S, -0.5 * S)],
 )
-def test_tables_of_coulomb_friction(rule, stick_to, keep_from):
+def test_tables_of_coulomb_friction_have_their_closed_form(rule, stick_to, keep_from):
     _, table = selection_table(slab_problem(ss.friction.Coulomb(0.8, 0.3), rule))
     assert (table.stick_to, table.keep_from[0]) == pytest.approx((stick_to, keep_from), rel=1e-15, abs=0)
 
@@ -100,7 +99,7 @@ def best(rule, g, stable, excess):
 
 @settings(max_examples=25, deadline=None)
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(-0.5, 1.0), rule=st.sampled_from(SELECTION_RULES[1:]))
-def test_memoryless_rules_by_brute_force(law, slip, share, rule):
+def test_memoryless_rules_agree_with_brute_force(law, slip, share, rule):
     g = resistance(slab_problem(law), slip)
     stable = branches_of(g)
     table = RULES[rule](g, stable)
@@ -135,7 +134,7 @@ def test_perfect_delay_takes_the_nearest_stable_root(law, slip, path):
         assert branch == wanted
 
 
-def test_area_by_its_closed_form():
+def test_the_area_has_its_closed_form():
     g = resistance(slab_problem(hyperbolic(1e4)))
     for start, end, excess in [(0.0, 3.0, -1e7), (1e-7, 2e-3, 0.0), (0.5, 0.6, 4e6)]:
         log = math.log1p(1e4 * end) - math.log1p(1e4 * start)

@@ -12,7 +12,7 @@ from stickslip.problem.selection_rule import SELECTION_RULES
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
 
 
-def test_critical_value_and_regimes():
+def test_the_regime_changes_at_the_critical_value():
     for alpha, regime in [(0.1, "regular"), (ALPHA_C, "regular"), (ALPHA_C + 1e-6, "irregular"), (1.0, "irregular")]:
         found = uniqueness(slab_problem(hyperbolic(alpha)))
         assert found.regime == regime
@@ -21,7 +21,7 @@ def test_critical_value_and_regimes():
         assert found.critical_value == pytest.approx(0.196, rel=1e-15, abs=0)
 
 
-def test_folds_and_window():
+def test_the_fold_and_the_window_of_loads_have_their_closed_form():
     found = uniqueness(slab_problem(hyperbolic(1.0)))
     (fold,) = found.folds
     assert fold.rate == pytest.approx(q_of(1.0) - 1.0, rel=1e-14, abs=0)
@@ -38,7 +38,7 @@ def test_folds_and_window():
         ("maximal", (0.0, 1.25876975726, 64_471_887.242), (1.25876975726, 0.0, 64_471_887.242)),
     ],
 )
-def test_what_each_rule_does(rule, up, down):
+def test_each_rule_jumps_where_the_closed_form_says(rule, up, down):
     found = uniqueness(slab_problem(hyperbolic(1.0), rule))
     assert [jump.direction for jump in found.jumps] == ["up", "down"]
     for jump, wanted in zip(found.jumps, (up, down), strict=True):
@@ -57,7 +57,7 @@ def test_what_each_rule_does(rule, up, down):
         (8.1e7, 1, [True]),
     ],
 )
-def test_three_or_one_admissible_rates(load, count, stable):
+def test_there_are_three_admissible_rates_in_the_window_and_one_outside(load, count, stable):
     found = uniqueness(slab_problem(hyperbolic(1.0)))
     rates = found.admissible(load)
     assert rates.size == count
@@ -66,7 +66,7 @@ def test_three_or_one_admissible_rates(load, count, stable):
     assert Z * moving + S * (0.3 + 0.5 / (1 + moving)) == pytest.approx(np.full(moving.shape, load), rel=1e-14, abs=0)
 
 
-def test_two_admissible_rates_at_the_folds():
+def test_there_are_two_admissible_rates_at_the_folds():
     found = uniqueness(slab_problem(hyperbolic(1.0)))
     assert found.admissible(found.folds[0].load)[0] == 0.0
     at_rest = found.admissible(0.8 * S)  # the upper end of the window: stick and the fast branch
@@ -98,7 +98,7 @@ def test_admissible_rates_solve_the_quadratic(load, alpha):
 
 
 @pytest.mark.parametrize("rule", SELECTION_RULES)
-def test_where_the_rule_has_no_effect(rule):
+def test_the_summary_says_why_the_rule_has_no_effect(rule):
     block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0, selection=rule)
     cases = {
         "The block has inertia": uniqueness(block),
@@ -112,13 +112,13 @@ def test_where_the_rule_has_no_effect(rule):
         assert (found.regime, found.jumps, found.folds, found.window) == ("regular", (), (), None)
 
 
-def test_admissible_rates_of_a_state():
+def test_a_contact_with_mass_has_no_admissible_rates():
     found = uniqueness(slab_problem(hyperbolic(1.0), contact_mass=10.0))
     with pytest.raises(ss.InputError, match="state"):
         found.admissible(7e7)
 
 
-def test_critical_value_of_other_laws():
+def test_laws_know_their_own_critical_value():
     assert ss.friction.Coulomb(0.8, 0.3).critical_value(Z, S) == ("static", 0.3)
     assert ss.friction.HyperbolicRate(0.3, 0.8, 1.0).critical_value(Z, S) is None
 

@@ -37,7 +37,7 @@ def _forget_rules() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
-def test_examples(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_example_does_what_its_page_shows(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     mpl.use("agg")
     module = types.ModuleType(f"page_{page.stem.replace('-', '_')}")
@@ -76,7 +76,7 @@ def lines(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
-def test_links(page: Path) -> None:
+def test_every_link_has_its_target(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for target in LINK.findall(text):
         if re.match(r"[a-z]+://|mailto:", target):
@@ -100,7 +100,7 @@ def test_no_page_is_lost() -> None:
         assert page.stem == "index" or f"({page.name})" in index
 
 
-def test_no_html() -> None:
+def test_pages_hold_no_html() -> None:
     for page in PAGES[1:]:
         prose = re.sub(r"^```.*?^```$|`[^`\n]*`", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
         assert not re.search(r"</?[a-zA-Z][^>]*>|<!--", prose), page.name

@@ -66,3 +66,19 @@ def problem(rng: np.random.Generator, body: ss.ElasticSlab | ss.SpringBlock, law
 
 def duration(body: ss.ElasticSlab | ss.SpringBlock, rounds: float) -> float:
     return rounds * (body.two_way_time if isinstance(body, ss.ElasticSlab) else body.period)
+
+
+KINDS = {
+    "slab, slip law": lambda rng: (body := slab(rng), slip_law(rng, body)),
+    "slab, rate law": lambda rng: (body := slab(rng), rate_law(rng, body)),
+    "lossy slab, slip law": lambda rng: (
+        body := slab(rng, driver_impedance=float(10 ** rng.uniform(5, 8))),
+        slip_law(rng, body),
+    ),
+    "dead load, rate law": lambda rng: (body := slab(rng, driver_impedance=0.0), rate_law(rng, body)),
+    "slab with mass, slip law": lambda rng: (body := slab(rng, contact_mass=1e6), slip_law(rng, body)),
+    "slab with mass, rate law": lambda rng: (body := slab(rng, contact_mass=1e6), rate_law(rng, body)),
+    "block, slip law": lambda rng: (body := block(rng), slip_law(rng, body)),
+    "block, rate law": lambda rng: (body := block(rng), rate_law(rng, body)),
+}
+"""Body and law drawn at random, of every kind that the method of steps can follow."""

@@ -8,25 +8,13 @@ import pytest
 import stickslip as ss
 from stickslip.reference.method_of_steps import method_of_steps
 from tests.engine import problems
-
-KINDS = {
-    "slab, slip law": lambda rng: (body := problems.slab(rng), problems.slip_law(rng, body)),
-    "slab, rate law": lambda rng: (body := problems.slab(rng), problems.rate_law(rng, body)),
-    "lossy slab, slip law": lambda rng: (
-        body := problems.slab(rng, driver_impedance=float(10 ** rng.uniform(5, 8))),
-        problems.slip_law(rng, body),
-    ),
-    "dead load, rate law": lambda rng: (body := problems.slab(rng, driver_impedance=0.0), problems.rate_law(rng, body)),
-    "slab with mass, slip law": lambda rng: (body := problems.slab(rng, contact_mass=1e6), problems.slip_law(rng, body)),
-    "slab with mass, rate law": lambda rng: (body := problems.slab(rng, contact_mass=1e6), problems.rate_law(rng, body)),
-    "block, slip law": lambda rng: (body := problems.block(rng), problems.slip_law(rng, body)),
-    "block, rate law": lambda rng: (body := problems.block(rng), problems.rate_law(rng, body)),
-}
+from tests.engine.problems import KINDS
+from tests.engine.shocks import away_from_jumps
 
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", KINDS)
-def test_random_problem(kind: str, seed: int) -> None:
+def test_slip_and_rate_of_random_problems_agree_with_scipy(kind: str, seed: int) -> None:
     rng = np.random.default_rng([seed, *kind.encode()])
     body, law = KINDS[kind](rng)
     problem = problems.problem(rng, body, law)
@@ -41,11 +29,3 @@ def test_random_problem(kind: str, seed: int) -> None:
     away = away_from_jumps(ours, times)
     rates = theirs.slip_rate(times)
     assert np.abs(ours.slip_rate(times) - rates)[away].max() <= 2e-6 * np.abs(rates).max()
-
-
-def away_from_jumps(run: ss.Solution, times: np.ndarray) -> np.ndarray:
-    """Times that are not within a hair of a shock, where the two may stand on different sides."""
-    shocks = run.shocks.time.to_numpy()
-    if len(shocks) == 0:
-        return np.ones(len(times), bool)
-    return np.abs(times[:, None] - shocks).min(axis=1) > 1e-6 * run.duration

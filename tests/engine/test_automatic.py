@@ -61,7 +61,7 @@ def test_the_first_round_trips_are_all_run() -> None:
     assert same_pieces(exact, short, len(exact.history))
 
 
-def test_none_where_there_is_no_creep_to_leap_over() -> None:
+def test_runs_without_creep_have_no_leaps() -> None:
     """Other laws, no pull, and pulses without rest between them: no pause and no leap."""
     assert creep_tolerance(WEAKENING, None, 1e-10) == 0.0
     assert creep_tolerance(printed(0), None, 1e-10) == 0.0
@@ -75,7 +75,7 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
-def test_taken_up_it_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
+def test_a_resumed_run_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
     """Stopped before the first leap, in it, and behind it."""
     file, whole = tmp_path / "run.nc", ss.simulate(printed(1), DAYS)
     ss.simulate(printed(1), share * whole.creep.end.iloc[0]).to_netcdf(file)
@@ -116,7 +116,7 @@ def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
 
 
 @pytest.mark.parametrize("alpha", [0.1, 0.15])
-def test_slip_and_energy_are_kept(alpha: float) -> None:
+def test_lumping_keeps_slip_and_energy(alpha: float) -> None:
     """Five round trips later: slip of the run that resolves every event within 4 %, energy to 1e-9 of the heat."""
     end = np.array([17 * ROUND])
     exact, lumped = (ss.simulate(weakening(alpha), float(end[0]), shortest_event=size) for size in (0.0, None))
@@ -127,7 +127,7 @@ def test_slip_and_energy_are_kept(alpha: float) -> None:
 
 
 @pytest.mark.parametrize("alpha", [0.05, 0.1, 0.15, 0.19, 0.1959])
-def test_below_the_critical_value_runs_end(alpha: float) -> None:
+def test_runs_below_the_critical_value_finish(alpha: float) -> None:
     """105 round trips of doubling: within a million pieces; what is lumped is a share of the round trip."""
     run = ss.simulate(weakening(alpha, thickness=1e3), 60.0)
     assert run.status.name == "finished"
@@ -135,7 +135,7 @@ def test_below_the_critical_value_runs_end(alpha: float) -> None:
     assert np.bincount(run.history.store.trip).max() < 3 * MOST_PIECES
 
 
-def test_lumped_runs_are_taken_up_streamed_and_batched(tmp_path: Path) -> None:
+def test_lumped_runs_can_be_resumed_streamed_and_batched(tmp_path: Path) -> None:
     file, problem, end = tmp_path / "run.nc", weakening(0.15, thickness=1e3), 12.0
     whole = ss.simulate(problem, end)
     for stop in (7.0, 11.0):
@@ -179,14 +179,14 @@ def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: P
     assert ss.open_solution(file).status.name == "finished"
 
 
-def test_a_file_is_as_large_as_is_said(tmp_path: Path) -> None:
+def test_a_file_has_the_size_that_is_documented(tmp_path: Path) -> None:
     """0.44 GB a million pieces, to a tenth."""
     run = ss.simulate(printed(1), 150 * ROUND)
     size = run.to_netcdf(tmp_path / "run.nc").stat().st_size
     assert size / len(run.history) == pytest.approx(440.0, rel=0.1, abs=0.0)
 
 
-def test_a_run_that_slides_for_ever_is_hardly_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_slides_for_ever_is_rarely_examined_for_creep(monkeypatch: pytest.MonkeyPatch) -> None:
     """3000 round trips under a fast pull, without a leap: the same run, with twelve looks at most."""
     looks, look = [], CreepLeaps.at_row_end
     monkeypatch.setattr(CreepLeaps, "at_row_end", lambda *a: looks.append(0) or look(*a))

@@ -148,7 +148,7 @@ def test_a_folder_of_another_user_is_not_private(tmp_path: Path, monkeypatch: py
         private_folder(folder)
 
 
-def test_somebody_who_waits_for_the_compiler_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compiling_the_engine_is_announced(monkeypatch: pytest.MonkeyPatch) -> None:
     """The engine takes seconds to compile; a small kernel does not, and nothing is said of it."""
     from stickslip.engine.codegen import cache
     from stickslip.engine.loop import run_until

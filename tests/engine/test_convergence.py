@@ -7,7 +7,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.reference.slab.pulse_period import PulseTrain
-from tests.engine.test_verified_numbers import MODULUS, slip_law_block, slip_law_slab
+from tests.problems import MODULUS, slip_law_block, slip_law_slab
 
 CASES = {
     "slab": (slip_law_slab(50.0, 1e-3, extra_load=3430.0, pull=0.0), 9.0),
@@ -39,7 +39,7 @@ def test_a_loose_tolerance_is_worse() -> None:
     assert error(problem, duration, 1e-4, truth) > 1e3 * error(problem, duration, 1e-9, truth)
 
 
-def test_pulses_under_constant_load_against_their_closed_form() -> None:
+def test_pulses_under_constant_load_have_their_closed_form() -> None:
     """tan(theta / 2) moves uniformly under constant load: the slip is closed-form up to the first echo."""
     problem = slip_law_slab(50.0, 1e-3, extra_load=3430.0, pull=0.0)
     body = problem.body

@@ -7,7 +7,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.studies.verdict import local_orders
-from tests.engine.test_verified_numbers import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS
+from tests.problems import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS
 
 ALPHAS = 10.0 ** np.arange(1, 7)
 DROP = 0.5
@@ -25,14 +25,14 @@ def missing(body: ss.ElasticSlab | ss.SpringBlock) -> np.ndarray:
     return 1.0 - np.array(slips) / SLIP[body]
 
 
-def test_slab() -> None:
+def test_slip_of_a_slab_tends_to_the_coulomb_limit_with_order_one() -> None:
     """It slides at (muS - muD) S / Z - 1 / alpha for one round trip: the share is alpha_c / alpha, exactly."""
     found = missing(SLAB)
     assert found == pytest.approx(IMPEDANCE / (DROP * NORMAL) / ALPHAS, rel=2e-6, abs=0.0)
     assert local_orders(1.0 / ALPHAS, found)[1:] == pytest.approx(1.0, abs=1e-6)
 
 
-def test_block() -> None:
+def test_slip_of_a_block_tends_to_the_coulomb_limit_with_order_one() -> None:
     """The work that friction does beyond Coulomb's falls as 1 / alpha, but for a share in 1 / alpha^2 ln(alpha)."""
     orders = local_orders(1.0 / ALPHAS, missing(BLOCK))[1:]
     assert (np.diff(orders) > 0.0).all()

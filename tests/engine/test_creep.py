@@ -54,7 +54,7 @@ KINKED = F.PiecewiseLinearSlip(slips=(0.0, 8e-4, 1.2e-3, 1e-2), coefficients=(0.
 # ---- the printed slab ---------------------------------------------------------------------------------------------------------
 
 
-def test_first_pulse_of_the_printed_slab() -> None:
+def test_the_first_pulse_of_the_printed_slab_comes_when_a_grid_method_says() -> None:
     """It comes 2.72 days after the start, 41 107 round trips, by a method that shares nothing with this one: to 0.1 ms."""
     solution = ss.simulate(printed(1), PULSE_BY_GRID + 60.0, creep_rtol=1e-6)
     assert solution.status.ok
@@ -64,7 +64,7 @@ def test_first_pulse_of_the_printed_slab() -> None:
 
 
 @pytest.mark.parametrize("tolerance", [2e-5, 1e-4, 1e-3])
-def test_slip_within_the_bound(tolerance: float) -> None:
+def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
     """A hundred times faster: averaged slip within the bound where a leap lands, within the tolerance all along."""
     exact, solution = brute_force(printed(100), 420), ss.simulate(printed(100), 420 * ROUND, creep_rtol=tolerance)
     assert len(solution.creep) > 0
@@ -76,7 +76,7 @@ def test_slip_within_the_bound(tolerance: float) -> None:
 
 
 @pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 0.2), (1e-4, 5e-3), (1e-5, 2e-4), (1e-6, 5e-5)])
-def test_time_of_the_pulse(tolerance: float, error: float) -> None:
+def test_the_error_of_the_pulse_time_falls_with_the_tolerance(tolerance: float, error: float) -> None:
     """Ten times faster, 134 million pieces by brute force: the error of the pulse's time (s) falls with the tolerance."""
     near = PULSE_BY_ENGINE[10]
     solution = ss.simulate(printed(10), near + 30, creep_rtol=tolerance)
@@ -84,7 +84,7 @@ def test_time_of_the_pulse(tolerance: float, error: float) -> None:
     assert error < float(solution.creep.time_error.iloc[0]) < 0.01 * near
 
 
-def test_exact_before_anything_dynamic() -> None:
+def test_leaps_end_before_anything_dynamic() -> None:
     """No leap reaches into slip that is faster than a hundred times the pull, nor within ten round trips of it."""
     problem, near = printed(100), PULSE_BY_ENGINE[100]
     solution = ss.simulate(problem, near + 60, creep_rtol=1e-3)
@@ -123,7 +123,9 @@ def test_no_leap_passes_over_a_feature_of_the_law() -> None:
     ],
     ids=["stable", "after-an-event", "kinks"],
 )
-def test_other_laws_both_ways(law: F.FrictionLaw, excess: float, pull: float, trips: int) -> None:
+def test_slip_under_other_laws_stays_within_the_tolerance_in_both_directions(
+    law: F.FrictionLaw, excess: float, pull: float, trips: int
+) -> None:
     """Weakening, strengthening, kinks: within the tolerance of brute force; and backwards the same with the other sign."""
     problem = ss.Problem(SLAB, law, pull_rate=pull, initial_excess=excess)
     exact, solution = brute_force(problem, trips), ss.simulate(problem, trips * ROUND, creep_rtol=1e-4)
@@ -162,7 +164,7 @@ def test_bounds_hold_where_slip_goes_up_and_down(law: F.FrictionLaw) -> None:
             leaps += 1
 
 
-def test_no_leap_over_a_kink_of_the_law() -> None:
+def test_no_leap_passes_over_a_kink_of_the_law() -> None:
     """The exact engine passes a knot in slip."""
     problem = ss.Problem(SLAB, KINKED, pull_rate=5e-7, initial_excess=1e3)
     solution = ss.simulate(problem, 500 * ROUND, creep_rtol=1e-4)
@@ -172,7 +174,7 @@ def test_no_leap_over_a_kink_of_the_law() -> None:
         assert KINKED.piece_at(slips[0]) == KINKED.piece_at(slips[1])
 
 
-def test_years_of_the_printed_slab() -> None:
+def test_the_printed_slab_creeps_for_years_without_gaps() -> None:
     """Creep behind the first pulse as well: 330 days, 5 million round trips, the second pulse; and the energy balances."""
     second = []
     for tolerance in (1e-5, 1e-6):
@@ -194,7 +196,7 @@ def test_years_of_the_printed_slab() -> None:
 # ---- the machinery ------------------------------------------------------------------------------------------------------------
 
 
-def test_a_leap_that_lands_wrongly_is_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Exact round trips behind the landing do not go on as predicted: as if there had been no leap."""
     land = stepper.landing
     monkeypatch.setattr(stepper, "landing", lambda averaged, creep: land(averaged, replace(creep, slip=1.3 * creep.slip)))
@@ -205,7 +207,7 @@ def test_a_leap_that_lands_wrongly_is_taken_back(monkeypatch: pytest.MonkeyPatch
     np.testing.assert_array_equal(solution.slip(time), exact.slip(time))
 
 
-def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_leaps_are_stored_and_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Leaps are in the table, in the summary and in the file; the waves within are not known."""
     solution = ss.simulate(printed(100), 300 * ROUND, creep_rtol=1e-4)
     again = ss.open_solution(solution.to_netcdf(tmp_path / "creep.nc"))
@@ -230,7 +232,7 @@ def test_stored_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-d
         ({"pull_rate": 0.0}, "a pull rate that is not 0"),
     ],
 )
-def test_refused(changes: dict[str, object], message: str) -> None:
+def test_creep_rtol_is_refused_where_there_are_no_leaps(changes: dict[str, object], message: str) -> None:
     """Where there are no such leaps, asking for them is a mistake."""
     problem = replace(printed(1), **changes)  # type: ignore[arg-type]
     with pytest.raises(ss.InputError, match=message):
@@ -238,7 +240,7 @@ def test_refused(changes: dict[str, object], message: str) -> None:
 
 
 @pytest.mark.parametrize("rtol", [-1e-6, 0.1, float("nan")])
-def test_tolerance_out_of_range(rtol: float) -> None:
+def test_creep_rtol_out_of_range_is_refused(rtol: float) -> None:
     """One clear line."""
     with pytest.raises(ss.InputError, match="creep_rtol must be"):
         ss.simulate(printed(1), 10.0, creep_rtol=rtol)
@@ -252,7 +254,7 @@ class Columns:
         self.area, self.length, self.border = (np.array([getattr(a, name) for a in found]) for name in ("area", "length", "border"))
 
 
-def test_what_lies_above_a_level() -> None:
+def test_areas_and_lengths_above_a_level_agree_with_quadrature() -> None:
     """Area, length and border sum of a load in pieces, against quadrature and differences."""
     rng = np.random.default_rng(3)
     load = np.zeros((3, TERMS))

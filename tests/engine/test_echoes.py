@@ -32,7 +32,7 @@ def intervals(count: int, seed: int) -> at.Store:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_last_piece_at_a_phase(seed: int) -> None:
+def test_the_phase_index_finds_the_latest_piece_at_every_phase(seed: int) -> None:
     store = intervals(60, seed)
     phases, phase = Phases.of(store, 1.0), (np.arange(40) + 0.5) / 40.0
     for upto in (0, 7, 59):
@@ -45,7 +45,7 @@ def test_the_last_piece_at_a_phase(seed: int) -> None:
         assert stands.tolist() == last.tolist()
 
 
-def test_at_an_edge_the_side_decides() -> None:
+def test_the_side_decides_which_piece_is_read_at_a_border() -> None:
     store = at.new_store(2)
     store.phase_from[:], store.phase_to[:] = [0.0, 0.5], [0.5, 1.0]
     edge, upto = np.array([0.5]), np.array([1])
@@ -54,7 +54,7 @@ def test_at_an_edge_the_side_decides() -> None:
 
 
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
-def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
+def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
     run, last, met = Session.begin(problem, RunOptions(2000.0)), split_time(2000.0, problem.round_trip_time), 0
     impedance, ramp = SLAB.impedance, float(run.setup.params.ramp)
@@ -75,7 +75,7 @@ def test_no_onset_is_passed_over(problem: ss.Problem) -> None:
     assert met > 10
 
 
-def test_an_event_costs_what_it_slips() -> None:
+def test_each_micro_event_adds_two_pieces() -> None:
     """Thousands of micro-events, whose echoes all go on: two pieces each, early and late."""
     problem = ss.load_scenario("fig7-slab-critical").problem
     pieces = [len(ss.simulate(problem, rows * SLAB.two_way_time).history) for rows in (17_000, 18_000, 23_000, 24_000)]

@@ -97,14 +97,14 @@ def size_errors(found: pd.DataFrame, exact: pd.DataFrame, apart: float) -> dict[
     return {"duration": float(duration.max()), "slip": float(slip.max()), "peak_rate": float(peak_rate.max())}
 
 
-def test_the_first_events_at_alpha_one() -> None:
+def test_the_first_events_at_alpha_one_agree_with_50_digits() -> None:
     exact = truth(ALPHA_ONE)[:ALPHA_ONE_EVENTS]
     found = simulated(ALPHA_ONE.slab, ALPHA_ONE_EVENTS)
     worst = time_errors(found, exact, ALPHA_ONE.slab) | size_errors(found, exact, 2.0 * offset_error(ALPHA_ONE.slab, exact))
     assert all(error <= 1.0 for error in worst.values()), worst
 
 
-def test_the_first_micro_events_just_above_critical() -> None:
+def test_the_first_micro_events_just_above_critical_agree_with_50_digits() -> None:
     """All cuts between micro-events are made in the same way: they are off alike, and sizes are as good as the slope is.
 
     Not so phase 0, where the first two events begin, and the few places where two steps of the first slip meet.
@@ -122,7 +122,7 @@ def test_the_first_micro_events_just_above_critical() -> None:
     assert worst["duration"] <= 1.0, worst
 
 
-def test_events_that_break_into_fragments() -> None:
+def test_events_that_break_into_fragments_agree_with_50_digits() -> None:
     exact = truth(FAST)
     found = simulated(FAST.slab, len(exact), rtol=1e-13)
     assert exact.duration.min() < 1e-2
@@ -131,7 +131,7 @@ def test_events_that_break_into_fragments() -> None:
     assert all(error <= 1.0 for error in worst.values()), worst
 
 
-def test_two_generations_of_micro_events() -> None:
+def test_two_generations_of_micro_events_agree_with_50_digits() -> None:
     """Those of the second last 0.2 to 20 ps, as the square of a load: known to 1e-7, after two slips that multiply by 4e5."""
     exact = truth(GENERATIONS)
     found = simulated(GENERATIONS.slab, len(exact))
@@ -144,7 +144,7 @@ def test_two_generations_of_micro_events() -> None:
 
 
 @pytest.mark.parametrize("table", [ALPHA_ONE, JUST_ABOVE_CRITICAL], ids=["alpha-1", "just-above-critical"])
-def test_what_is_allowed_tells_a_slightly_different_slab(table: Table) -> None:
+def test_the_allowed_errors_exclude_a_slightly_different_slab(table: Table) -> None:
     """Another alpha, by 1e-12 of itself, is another sequence: it is off by 10 times what is allowed and more."""
     exact = truth(table)[:20]
     other = replace(table.slab, alpha=table.slab.alpha * (1.0 + 1e-12))

@@ -43,7 +43,7 @@ def example_problem(kind: str, body: str) -> ss.Problem:
 
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
-def test_law_under_body(kind: str, body: str) -> None:
+def test_every_law_under_every_body_balances_energy_and_agrees_with_scipy(kind: str, body: str) -> None:
     problem = example_problem(kind, body)
     law = problem.friction
     duration = 2.2 * (problem.body.period if isinstance(problem.body, ss.SpringBlock) else SLAB.two_way_time)

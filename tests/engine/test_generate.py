@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
-from collections.abc import Callable
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -15,25 +12,7 @@ from numpy.polynomial import Polynomial
 from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.state.layout import TERMS
 from stickslip.friction.formula import expression as e
-
-DOUBLE = ctypes.POINTER(ctypes.c_double)
-JET = ctypes.CFUNCTYPE(None, DOUBLE, DOUBLE, DOUBLE, DOUBLE)
-VALUE = ctypes.CFUNCTYPE(None, DOUBLE, ctypes.c_double, ctypes.c_double, DOUBLE)
-
-Formula = Callable[[Any, Any, Any], Any]
-
-FORMULAS: dict[str, Formula] = {
-    "sin": lambda f, u, v: 1.0 + 0.3 * f.sin(5.0 * u),
-    "cos": lambda f, u, v: 1.0 + 0.3 * f.cos(5.0 * u + v),
-    "exp": lambda f, u, v: 0.3 + 0.5 * f.exp(-4.0 * u),
-    "log": lambda f, u, v: 0.3 + 0.1 * f.log(1.0 + 3.0 * u + v),
-    "sqrt": lambda f, u, v: 0.3 + 0.2 * f.sqrt(1.0 + u * u),
-    "tanh": lambda f, u, v: 0.6 - 0.2 * f.tanh(3.0 * u - v),
-    "arcsinh": lambda f, u, v: 0.5 + 0.05 * f.arcsinh(2.0 * v + u),
-    "quotient": lambda f, u, v: 0.3 + 0.5 / (1.0 + 2.0 * v),
-    "product": lambda f, u, v: (0.9 - 0.2 * u) * (0.7 + 0.1 * v),
-    "power": lambda f, u, v: 0.3 + 0.2 * (1.0 + u) ** -1.7,
-}
+from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
 
 
 class MpmathFunctions:
@@ -50,17 +29,6 @@ class MpmathFunctions:
     )
 
 
-def pointer(array: np.ndarray) -> Any:
-    return array.ctypes.data_as(DOUBLE)
-
-
-def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
-    functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), ())
-    constants, none = np.zeros(functions.size), np.zeros(1)
-    functions.fill(none, reference, constants)
-    return functions, constants
-
-
 @pytest.mark.parametrize("name", FORMULAS)
 def test_difference_keeps_its_digits(name: str) -> None:
     """mu(u0 + d, s) - mu(u0, 0) against 50 digits, for steps where plain subtraction has none left."""
@@ -74,7 +42,7 @@ def test_difference_keeps_its_digits(name: str) -> None:
         assert out[0] == pytest.approx(float(exact), rel=5e-12, abs=0.0)
 
 
-def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
+def test_the_difference_of_an_exponential_is_exact_where_it_underflows() -> None:
     """exp(-1000) is 0 and exp(1000) is infinite: their product must not be taken."""
     functions, constants = compiled(lambda f, u, v: 0.3 + 0.5 * f.exp(-1000.0 * u), 1.0)
     out = np.zeros(3)
@@ -87,7 +55,7 @@ def test_difference_of_an_exponential_back_from_where_it_underflows() -> None:
 
 
 @pytest.mark.parametrize("name", FORMULAS)
-def test_slopes(name: str) -> None:
+def test_slopes_agree_with_mpmath(name: str) -> None:
     formula, out = FORMULAS[name], np.zeros(3)
     functions, constants = compiled(formula, 0.21)
     VALUE(functions.address("value"))(pointer(constants), 0.1, 0.4, pointer(out))

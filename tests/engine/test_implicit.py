@@ -18,7 +18,7 @@ STRENGTHENING = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-6)
 FALLING = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
 
 
-def test_the_points_are_radaus() -> None:
+def test_the_weights_integrate_to_the_order_of_radau() -> None:
     """Sum of weights times x^k is 1/(k+1) up to k = 2 s - 2, and no further; the start has no weight. Absolute 1e-14."""
     weights = INTEGRAL[-1]
     assert abs(weights[0]) < 1e-15
@@ -58,7 +58,7 @@ def first_trip(problem: ss.Problem, mass: float, times: Any) -> Any:
 
 
 @pytest.mark.parametrize("mass", [1.0, 1e3, 3e5])
-def test_a_stiff_contact_against_scipy(mass: float) -> None:
+def test_a_stiff_contact_agrees_with_scipy(mass: float) -> None:
     """The contact settles 3e8 times a second and slower; slip to 1e-8 of its end, in at most 400 pieces."""
     problem = ss.Problem(replace(SLAB, contact_mass=mass), STRENGTHENING, pull_rate=1e-3, initial_excess=1e4)
     times = np.linspace(0.0, 5.0, 41)[1:]
@@ -130,7 +130,7 @@ def test_a_lag_that_is_healing_gives_way_earlier() -> None:
     assert held < 0.99 * 8e7
 
 
-def test_lag_with_a_direct_effect_against_scipy() -> None:
+def test_a_lag_with_a_direct_effect_agrees_with_scipy() -> None:
     law = ss.friction.LaggedFriction(ss.friction.ExponentialStribeck(0.6, 0.4, 0.1), 0.02, direct=0.01, direct_rate=1e-3)
     block = ss.SpringBlock(1e3, 1e6, 1e5)
     problem = ss.Problem(block, law, initial_excess=5e3)
@@ -147,7 +147,7 @@ def test_lag_with_a_direct_effect_against_scipy() -> None:
     assert run.state(times) == pytest.approx(theirs.y[2], rel=0.0, abs=1e-7 * theirs.y[2].max())
 
 
-def test_what_cannot_lag_is_refused() -> None:
+def test_laws_that_cannot_lag_are_refused() -> None:
     for law in (ss.friction.Coulomb(0.6, 0.5), ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1)):
         with pytest.raises(ss.InputError, match=r"^LaggedFriction: rate must be a [^\n]*$"):
             ss.friction.LaggedFriction(law, 0.1)

@@ -140,7 +140,7 @@ def drawn(seed: int) -> Slide:
 
 
 @pytest.mark.parametrize("seed", range(24))
-def test_random_features_of_the_law(seed: int) -> None:
+def test_implicit_steps_meet_random_features_of_the_law(seed: int) -> None:
     check(drawn(seed))
 
 

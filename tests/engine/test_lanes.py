@@ -18,8 +18,7 @@ from stickslip.engine.series.polynomial import bound_below, magnitude, moment, m
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
 from stickslip.engine.state.layout import TERMS
-
-from .test_generate import FORMULAS, JET, compiled
+from tests.engine.formulas import FORMULAS, JET, compiled
 
 Block = Any
 
@@ -53,7 +52,7 @@ def series(seed: int) -> Block:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_function_of_lanes_is_that_of_each_float(name: str) -> None:
+def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     function = njit(fastmath={"contract"}, error_model="numpy")(FUNCTIONS[name])
 
     @njit
@@ -71,7 +70,7 @@ def test_a_function_of_lanes_is_that_of_each_float(name: str) -> None:
     assert len(set(out[0].tolist())) > 1
 
 
-def test_a_step_is_stretched_alike() -> None:
+def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
     @njit
     def side_by_side(block: int, powers: int, out: int) -> None:
         powers_of(lanes_at(block)[0], lanes_at(powers))
@@ -91,7 +90,7 @@ def test_a_step_is_stretched_alike() -> None:
 
 
 @pytest.mark.parametrize("name", FORMULAS)
-def test_series_side_by_side_are_those_of_each_run(name: str) -> None:
+def test_series_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     part = "motion_jet" if name in WITH_MASS else "rate_jet"
     functions, constants = compiled(FORMULAS[name], 0.21)
     random = np.random.default_rng(8)

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.reference.method_of_steps import method_of_steps
-from tests.engine.test_against_method_of_steps import away_from_jumps
+from tests.engine.shocks import away_from_jumps
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 LOSSY = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=4e6)
@@ -115,7 +115,7 @@ SLIDING = ("slow tone", "fast tone", "steps", "piecewise linear", "hold and slid
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("body", BODIES)
-def test_against_the_method_of_steps(body: str, law: str) -> None:
+def test_runs_under_every_history_agree_with_the_method_of_steps(body: str, law: str) -> None:
     """Slip to 2e-8 of all of it, slip rate to 1e-6 of the largest; the energy balance to 1e-12 of the heat."""
     for name in SLIDING if (body, law) == ("slab", "hyperbolic") else SLIDING[len(body + law) % 3 :: 3]:
         normal = 1e14 if body == "block" else 1e8
@@ -141,7 +141,7 @@ FAR = {
 
 @pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6, 3e7])
 @pytest.mark.parametrize("name", FAR)
-def test_a_far_stress_that_varies(name: str, impedance: float) -> None:
+def test_a_varying_far_stress_agrees_with_the_method_of_steps(name: str, impedance: float) -> None:
     """Besides a steady pull and a steady growth of its own; slip, load and energies as above."""
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=impedance)
     problem = ss.Problem(slab, LAWS["linear"], pull_rate=0.01, far_stress=FAR[name], far_stress_rate=1e4, initial_load=7.9e7)
@@ -159,7 +159,7 @@ def test_a_far_stress_that_varies(name: str, impedance: float) -> None:
 # ---- breaks, leaps, where it ends ---------------------------------------------------------------------------------
 
 
-def test_breaks_and_their_echoes_are_edges() -> None:
+def test_breaks_and_their_echoes_are_ends_of_pieces() -> None:
     """A break at t is met at t + h/c and at every round trip from there on, to 4 ulp of the time; jumps are shocks."""
     history = Steps((0.0, 3.0, 7.7), (1.0, 3.0, 2.0))
     run = ss.simulate(ss.Problem(SLAB, COULOMB, pull_rate=history, initial_load=8.5e7), 40.0)
@@ -175,7 +175,7 @@ def test_breaks_and_their_echoes_are_edges() -> None:
     assert run.load(first) - run.load(first, side="left") == pytest.approx(jump, rel=1e-12)
 
 
-def test_centuries_of_tides_are_leaped_over() -> None:
+def test_centuries_of_tides_at_rest_are_leaped_over() -> None:
     """A plate and a tide of ten times its stress rate: slip begins where the closed form first reaches the strength; few pieces.
 
     Onset to 1e-9 s at 80 years, where a float resolves 5e-7 s: so to 2 ulp of the time.
@@ -198,7 +198,7 @@ def test_centuries_of_tides_are_leaped_over() -> None:
     assert len(run.history) < 3000
 
 
-def test_the_energy_over_leaped_rest() -> None:
+def test_energy_balances_across_leaped_rest() -> None:
     """A slab slips, rests for hours under a hold, a ramp and a tone, and slips again: balance to 1e-11 of the heat."""
     ramp = PiecewiseLinear((0.0, 40.0, 50.0, 4000.0, 40_000.0), (1.0, 1.0, 0.0, 0.0, 1e-3))
     for history in (ramp, Sinusoidal(1e-3, 2e-2, 300.0), HoldAndSlide(1e-3, 100.0, (3000.0, 10_000.0))):
@@ -233,7 +233,7 @@ def test_a_pull_that_stops_locks_the_contact() -> None:
     assert len(run.history) < 100
 
 
-def test_longer_runs_go_on_as_shorter_ones() -> None:
+def test_longer_runs_begin_with_the_shorter_ones() -> None:
     """Whatever the end cuts; to 2 ulp, for the piece that is cut is summed anew."""
     for history in (HISTORIES["fast tone"], HISTORIES["steps"], HISTORIES["piecewise linear"]):
         for body in (SLAB, BLOCK):

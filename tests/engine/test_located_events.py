@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, NORMAL, RATE_LAW, ROUND, SLAB, THICKNESS
+from tests.problems import IMPEDANCE, MODULUS, NORMAL, RATE_LAW, ROUND, SLAB, THICKNESS
 
 F = ss.friction
 
@@ -19,27 +19,27 @@ def slips_from(run: ss.Solution) -> float:
     return float(run.history.start[np.flatnonzero(store.mode)[0]])
 
 
-def test_onset_of_a_slowly_loaded_slab() -> None:
+def test_the_onset_of_a_slowly_loaded_slab_has_its_closed_form() -> None:
     """beta = tau0 + G V t / h reaches the strength at -excess h / (G V), here inside the first round trip."""
     pull, excess = 0.01, -1.2e5
     run = ss.simulate(ss.Problem(SLAB, RATE_LAW, pull_rate=pull, initial_excess=excess), 5.0)
     assert slips_from(run) == pytest.approx(-excess * THICKNESS / (MODULUS * pull), rel=1e-12, abs=0.0)
 
 
-def test_onset_of_a_slowly_loaded_block() -> None:
+def test_the_onset_of_a_slowly_loaded_block_has_its_closed_form() -> None:
     block = ss.SpringBlock(2.0, 50.0, 10.0)
     run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.3), pull_rate=1e-3, initial_excess=-4.0), 100.0)
     assert slips_from(run) == pytest.approx(4.0 / (50.0 * 1e-3), rel=1e-12, abs=0.0)
 
 
-def test_arrest_of_a_coulomb_block() -> None:
+def test_a_coulomb_block_stops_after_half_a_period() -> None:
     """V = 0: half a period of free oscillation, whatever the load."""
     block = ss.SpringBlock(2.0, 50.0, 10.0)
     run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.4), initial_excess=0.3), 10.0)
     assert run.catalogue(0.0).end.iloc[0] == pytest.approx(math.pi * math.sqrt(2.0 / 50.0), rel=1e-12, abs=0.0)
 
 
-def test_folds_of_the_dead_load_loop() -> None:
+def test_the_dead_load_loop_jumps_at_its_folds() -> None:
     """The load rises and falls linearly in time: it passes S muS on its way up and the lower fold on its way down."""
     pull, slope = 2.6, IMPEDANCE * 2.6 / (ROUND / 2)
     slab = replace(SLAB, driver_impedance=0.0)
@@ -64,7 +64,7 @@ def test_slip_rate_ends_as_a_square_root_at_a_fold() -> None:
     assert by_law == pytest.approx(run.load(fold - left), rel=1e-13, abs=0.0)
 
 
-def test_knot_of_a_law() -> None:
+def test_a_knot_of_a_law_is_passed_at_its_slip() -> None:
     """Linear weakening over D on a slab without pull: the knot is passed exactly at slip D, and v then stays constant."""
     law = F.LinearSlipWeakening(0.8, 0.3, 2.0)
     run = ss.simulate(ss.Problem(SLAB, law, initial_excess=1e4), 5.0)
@@ -98,7 +98,7 @@ def test_micro_events_just_above_critical_end_at_their_fold_at_any_tolerance(rto
     assert second.rate_before.iloc[1] == pytest.approx(1.30153e-5, rel=1e-5, abs=0.0)
 
 
-def test_maximal_rule_takes_up_slip_at_the_fold_under_a_smooth_load() -> None:
+def test_maximal_rule_begins_slip_at_the_fold_under_a_smooth_load() -> None:
     """There g turns: v - v1 starts as the root of time. Contact equation and energy balance hold all the way."""
     slab = replace(SLAB, driver_impedance=0.0)
     problem = ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6, selection="maximal")

@@ -21,14 +21,14 @@ YEARS = 30_000.0
 """The storm begins after 23 700 of them (`tests/truth`)."""
 
 
-def test_without_it_the_run_ends_in_a_storm() -> None:
+def test_without_lumping_the_run_ends_in_a_storm() -> None:
     run = ss.simulate(SLOW, YEARS * ss.YEAR)
     assert run.status == STATUSES[Stop.STORM]
     assert run.history.end[-1] / ss.YEAR == pytest.approx(23_700.0, abs=20.0)
 
 
 @pytest.mark.parametrize("shortest", [1e-4, 1e-2])
-def test_before_the_storm_nothing_changes(shortest: float) -> None:
+def test_lumping_changes_nothing_before_the_storm(shortest: float) -> None:
     """The first 40 events, by a tenth of a round trip in row and 1e-6 of slip; lumps make them late by the time to that excess."""
     exact, lumped = (ss.simulate(SLOW, 19_000.0 * ss.YEAR, shortest_event=size).catalogue() for size in (0.0, shortest))
     assert len(exact) == len(lumped) == 41
@@ -36,7 +36,7 @@ def test_before_the_storm_nothing_changes(shortest: float) -> None:
     np.testing.assert_allclose(lumped.start, exact.start, rtol=shortest / TRIP, atol=TRIP)
 
 
-def test_behind_it_slip_goes_on_as_the_driver_pulls() -> None:
+def test_after_the_storm_slip_keeps_up_with_the_driver() -> None:
     """Slip of V t, but for one event of up to 23.4 m under way; and the energy that lumps lose is below 1e-6 of the heat."""
     run = ss.simulate(SLOW, 30_000 * ss.YEAR, shortest_event=1e-2)
     events = run.catalogue()
@@ -48,7 +48,7 @@ def test_behind_it_slip_goes_on_as_the_driver_pulls() -> None:
     assert 1e-10 < abs(float(energy.balance[0] / energy.heat[0])) < 1e-6
 
 
-def test_a_catalogue_of_many_times_that_needs_bounded_memory() -> None:
+def test_a_long_lumped_catalogue_fits_in_bounded_memory() -> None:
     events = ss.catalogue(SLOW, 100_000 * ss.YEAR, shortest_event=2e-2, max_pieces=60_000)
     assert events.attrs["status"] == "finished"
     assert len(events) > 60_000
@@ -63,7 +63,7 @@ def test_pieces_in_a_round_trip_are_bounded() -> None:
     assert len(standing) < 4 * TRIP / 2e-2
 
 
-def test_taken_up_it_goes_on_as_if_it_had_not_stopped(tmp_path: Path) -> None:
+def test_a_resumed_run_continues_as_if_it_had_not_stopped(tmp_path: Path) -> None:
     """Bit for bit, in the middle of the storm; and a catalogue that forgets is the table of the whole run."""
     file, years = tmp_path / "run.nc", 24_500 * ss.YEAR
     whole = ss.simulate(SLOW, years, shortest_event=1e-2)
@@ -81,6 +81,6 @@ def test_taken_up_it_goes_on_as_if_it_had_not_stopped(tmp_path: Path) -> None:
         (ss.load_scenario("fig6-block-printed").problem, 1e-3, "only under a slab with a rigid driver"),
     ],
 )
-def test_what_cannot_be_lumped(problem: ss.Problem, shortest: float, message: str) -> None:
+def test_runs_that_cannot_be_lumped_are_refused(problem: ss.Problem, shortest: float, message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         ss.simulate(problem, 1.0, shortest_event=shortest)

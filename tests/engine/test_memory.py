@@ -73,7 +73,7 @@ def test_cycles_of_a_block_are_all_alike_and_known(direction: int) -> None:
     assert len(ss.simulate(replace(problem, friction=replace(WEAKENING, memory="all")), run.duration).catalogue(1e-2)) == 1
 
 
-def test_coulomb_limit() -> None:
+def test_a_vanishing_weakening_distance_gives_coulomb_cycles() -> None:
     """Distance and pull rate to 0: slip 2 (muS - muD) S / K, duration pi sqrt(m / K), recurrence slip / V."""
     law, pull = replace(WEAKENING, distance=1e-9), 1e-9
     slip = 2 * 0.2 * BLOCK.normal_force / BLOCK.stiffness
@@ -103,7 +103,7 @@ def healing_problem(kind: str, seed: int) -> tuple[ss.Problem, float]:
 
 
 @pytest.mark.parametrize(("kind", "seed"), [*itertools.product(HEALING, SEEDS), ("slab", 16)])
-def test_random_problem_against_scipy(kind: str, seed: int) -> None:
+def test_random_problems_that_heal_agree_with_scipy(kind: str, seed: int) -> None:
     """In slab 16 a step reaches a knot of the law, and far beyond it, but for arrest, would go back over it."""
     problem, duration = healing_problem(kind, seed)
     ours, theirs = ss.simulate(problem, duration, rtol=1e-12), method_of_steps(problem, duration, rtol=1e-11)

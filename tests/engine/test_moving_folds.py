@@ -18,28 +18,22 @@ from stickslip.engine.state.layout import Branch
 from stickslip.engine_input import branch_table
 from stickslip.run.options import RunOptions
 from stickslip.run.session import Session
-
-F = ss.friction
-Z, S = 9.8e6, 1e8
-SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e3, normal_stress=S)
-MATCHED = replace(SLAB, driver_impedance=Z)
-"""Nothing comes back: the load is what the far side makes it."""
-ROUND = SLAB.two_way_time
-
-WEAKENING = F.SlipPlusRate(slip=F.LinearSlipWeakening(0.4, 0.3, 0.5), rate=F.HyperbolicRate(0.4, 0.2, 1.5))
-WAVY = F.SlipPlusRate(slip=F.SinusoidalSlip(0.3, 0.05, 3.0), rate=F.HyperbolicRate(0.45, 0.1, 1.0))
-PRODUCT = F.SlipTimesRate(slip=F.SinusoidalSlip(0.6, 0.1, 2.0), rate=F.HyperbolicRate(1.0, 0.4, 1.0))
-FREE = F.FromExpression("0.35 + 0.1*cos(3*u) + 0.3*(1 + 0.2*sin(u))*exp(-(v/0.7)**2)")
-KINKED = F.SlipPlusRate(
-    slip=F.SinusoidalSlip(0.3, 0.05, 3.0), rate=F.PiecewiseLinearRate((0.0, 0.5, 1.5, 2.0), (0.4, 0.25, 0.32, 0.2))
+from tests.engine.moving_folds import (
+    FREE,
+    KINKED,
+    KINKED_WEAKENING,
+    MATCHED,
+    PRODUCT,
+    ROUND,
+    SLAB,
+    WAVY,
+    WEAKENING,
+    S,
+    Z,
+    hardening,
 )
 
-KINKED_WEAKENING = replace(KINKED, slip=F.ExponentialSlipWeakening(0.35, 0.3, 0.5))
-
-
-def hardening(slope: float = 0.05) -> ss.friction.FrictionLaw:
-    """mu = 0.3 + 0.5 / (1 + v) + slope u: the lower fold of the fast branch rises with slip until it takes the slip away."""
-    return F.FromExpression("0.3 + 0.5/(1 + v) + k*u", {"k": slope}, counts="path")
+F = ss.friction
 
 
 @pytest.mark.parametrize("sense", [1, -1])
@@ -164,14 +158,16 @@ def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.Fricti
     assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-10
 
 
-def test_some_of_these_runs_jump_at_folds_often() -> None:
+def test_a_run_under_the_wavy_law_jumps_at_folds_repeatedly() -> None:
     run = ss.simulate(ss.Problem(SLAB, WAVY, pull_rate=0.1, initial_excess=1e6), 12.0)
     assert (run.shocks.cause == "fold").sum() >= 2
 
 
 @pytest.mark.parametrize(("selection", "pick"), [("minimal", min), ("maximal", max)])
 @pytest.mark.parametrize("law", [WEAKENING, KINKED_WEAKENING], ids=["weakening", "kinked"])
-def test_smallest_and_largest_root(law: ss.friction.FrictionLaw, selection: str, pick: Callable[[list[float]], float]) -> None:
+def test_minimal_and_maximal_rules_take_the_smallest_and_largest_root(
+    law: ss.friction.FrictionLaw, selection: str, pick: Callable[[list[float]], float]
+) -> None:
     """The load falls after h/c: the levels at which the rule changes branch have moved with slip by then."""
     far_side = {"far_stress_rate": -8e7}
     run = ss.simulate(ss.Problem(MATCHED, law, initial_excess=1e6, selection=selection, **far_side), 1.2)
@@ -211,7 +207,7 @@ def test_a_rule_that_slip_works_against_is_a_storm_and_no_hang(selection: str, e
     assert float(run.slip(run.history.end[-1])) < 1e-6
 
 
-def test_a_storm_from_the_very_start_is_said_in_one_line() -> None:
+def test_a_storm_from_the_very_start_is_refused_in_one_line() -> None:
     with pytest.raises(ss.InputError, match=r"^simulate: [^\n]*another law$"):
         ss.simulate(ss.Problem(SLAB, hardening(), pull_rate=0.01, initial_excess=0.0, selection="minimal"), 20.0)
 
@@ -234,7 +230,7 @@ LOSSY = replace(SLAB, driver_impedance=5 * Z)
 
 @pytest.mark.parametrize("selection", ["minimal", "maximal", "maxwell"])
 @pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
-def test_compiled_levels_are_those_of_the_table(
+def test_compiled_levels_agree_with_the_table(
     law: ss.friction.FrictionLaw, selection: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The same run with the levels of `contact.rules.selection`, worked out in Python in every step: shocks and slip to 1e-12."""

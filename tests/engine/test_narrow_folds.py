@@ -29,7 +29,7 @@ def test_the_load_carries_the_contact_over_a_bump_and_the_rate_jumps(width):
     assert jump.time == pytest.approx(slab.thickness / slab.wave_speed + (load - START) / LOADING, rel=1e-11, abs=0)
 
 
-def test_rising_load_reaches_a_fold_in_one_step_of_the_root_of_time() -> None:
+def test_rising_load_reaches_a_fold_in_one_step() -> None:
     """The last step before the jump spans 0.05 s; steps in time itself would halve 40 times on the way."""
     law = ss.friction.FromExpression("0.6 + 0.1*exp(-((v - 1)/0.3)**2)")
     run = ss.simulate(ss.Problem(ss.ElasticSlab(2e3, 1e3, 1e3, 1e8), law, pull_rate=2.0, initial_excess=0.0), 4.0)

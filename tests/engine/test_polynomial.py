@@ -51,7 +51,7 @@ def test_touching_zero_is_no_descent() -> None:
     assert descent(poly.polyfromroots([0.5, 0.5]) + np.array([1e-14, 0, 0])) == NONE
 
 
-def test_roots_at_the_start() -> None:
+def test_a_root_at_the_start_counts_only_where_the_polynomial_falls() -> None:
     assert descent(np.array([0.0, 1.0])) == NONE  # rises from zero
     assert descent(np.array([0.0, -1.0])) == 0.0
     assert descent(np.array([-1e-300, 1.0])) == 0.0
@@ -71,7 +71,7 @@ def test_restrict_is_a_change_of_variable(coefficients: list[float], start: floa
 
 @given(st.lists(st.floats(-3, 3), min_size=2, max_size=9))
 @settings(max_examples=100, deadline=None)
-def test_maximum_against_a_dense_scan(coefficients: list[float]) -> None:
+def test_the_maximum_agrees_with_a_dense_scan(coefficients: list[float]) -> None:
     c = padded(np.array(coefficients))
     scan = Polynomial(c)(np.linspace(0, 1, 20001))
     assert maximum(c) >= scan.max() - 1e-12

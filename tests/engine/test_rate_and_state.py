@@ -50,7 +50,7 @@ def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
 @pytest.mark.parametrize("share", [0.98, 1.02])
 @pytest.mark.parametrize("damping", [0.0, 2e9])
 @pytest.mark.parametrize("evolution", ["ageing", "slip"])
-def test_critical_stiffness_and_growth_rate(damping: float, evolution: str, share: float) -> None:
+def test_a_block_grows_at_the_rate_of_the_linearised_system(damping: float, evolution: str, share: float) -> None:
     """k_c = S (b - a) / Dc - damping V / Dc, for hardly any mass.
 
     Measured growth against the linearised system: 2e-6 of the frequency of the swings, whose amplitude is 1e-4.
@@ -88,7 +88,7 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
-def test_growth_on_a_slab(share: float) -> None:
+def test_a_slab_grows_at_the_rate_of_its_dispersion_relation(share: float) -> None:
     """S (a - b / (1 + s Dc/V)) / V + Z coth(s h/c) = 0: the slab's own equation, waves and all. Tolerance 2e-4 of the frequency."""
     slab = ss.ElasticSlab(2800, 3500, 3.43e10 / (share * CRITICAL), NORMAL)
     root = SLIDING.slab_growth(slab.impedance, 0.5 * slab.two_way_time)
@@ -99,7 +99,7 @@ def test_growth_on_a_slab(share: float) -> None:
 
 
 @EVOLUTIONS
-def test_block_against_scipy(evolution: str) -> None:
+def test_a_block_agrees_with_scipy(evolution: str) -> None:
     """A whole stick-slip event, against Radau on ln v. Absolute 1e-6 of the slip and of the state's logarithm."""
     law = law_of(evolution)
     block = ss.SpringBlock(1e3, 0.3 * CRITICAL, NORMAL)
@@ -126,7 +126,7 @@ def test_block_against_scipy(evolution: str) -> None:
 
 
 @EVOLUTIONS
-def test_slab_against_scipy(evolution: str) -> None:
+def test_a_slab_agrees_with_scipy(evolution: str) -> None:
     """Two round trips of a slab without contact mass: theta by LSODA, v from the contact equation by bisection at every call."""
     law = law_of(evolution)
     slab = ss.ElasticSlab(2800, 3500, 10.0, NORMAL)
@@ -198,7 +198,7 @@ def test_state_friction_dissipates_and_the_contact_equation_holds() -> None:
     assert (traction * rate >= 0.0).all()
 
 
-def test_steady_sliding() -> None:
+def test_steady_sliding_has_the_coefficient_of_the_closed_form() -> None:
     """mu_ss = reference + (a - b) ln(v / rate), and b ln 2 more for PRZ, whose steady theta is 2 Dc / v. Relative 1e-12."""
     for evolution in ("ageing", "slip", "prz"):
         law = law_of(evolution)
@@ -218,12 +218,12 @@ def test_steady_sliding() -> None:
         ({"initial_excess": 0.0, "initial_state": 1.0}, "no static strength"),
     ],
 )
-def test_bad_starts_are_told_in_one_line(given: dict[str, float], message: str) -> None:
+def test_bad_starts_are_refused_in_one_line(given: dict[str, float], message: str) -> None:
     with pytest.raises(ss.InputError, match=f"^Problem: [^\n]*{message}[^\n]*$"):
         ss.Problem(ss.SpringBlock(1.0, 1.0, 1e8), LAW, **given)
 
 
-def test_bad_laws_are_told_in_one_line() -> None:
+def test_bad_laws_are_refused_in_one_line() -> None:
     with pytest.raises(ss.InputError, match=r"^RateAndState: a must be at least 0.0025[^\n]*$"):
         ss.friction.RateAndState(0.6, 1e-3, 0.015, 1e-5)
     with pytest.raises(ss.InputError, match=r"evolution 'agein' is unknown; did you mean 'ageing'"):

@@ -74,7 +74,9 @@ def ramp_run(selection: str) -> ss.Solution:
 
 
 @pytest.mark.parametrize(("selection", "pick"), [("minimal", min), ("maximal", max)])
-def test_smallest_and_largest_root_of_a_polyline(selection: str, pick: Callable[[list[float]], float]) -> None:
+def test_minimal_and_maximal_rules_take_the_smallest_and_largest_root_of_a_polyline(
+    selection: str, pick: Callable[[list[float]], float]
+) -> None:
     run = ramp_run(selection)
     times = np.linspace(0.0, 2 * HALF - 1e-9, 1201)[1:-1]
     expected = [pick(stable_rates(load)) for load in run.load(times).tolist()]
@@ -106,7 +108,7 @@ def test_maxwell_jumps_at_equal_areas_of_a_polyline() -> None:
 
 
 @pytest.mark.parametrize("contact_mass", [0.0, 3e5])
-def test_heat_of_a_table_over_rate_with_echoes(contact_mass: float) -> None:
+def test_energy_balances_under_a_table_over_rate_with_echoes(contact_mass: float) -> None:
     law = ss.friction.FromTable(friction=[0.7, 0.5, 0.45, 0.5], rate=[0.0, 0.2, 1.0, 3.0])
     slab = replace(SLAB, thickness=1e3, contact_mass=contact_mass)
     run = ss.simulate(ss.Problem(slab, law, pull_rate=0.3, initial_excess=-1e5), 6.0)

@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.run.progress import Report
-from tests.engine.test_verified_numbers import (
+from tests.problems import (
     IMPEDANCE,
     MODULUS,
     NORMAL,
@@ -26,7 +26,7 @@ from tests.engine.test_verified_numbers import (
 F = ss.friction
 
 
-def test_limits_at_a_shock() -> None:
+def test_a_shock_has_two_limits() -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
     time = run.shocks.time.iloc[1]
     assert float(run.slip_rate(time, side="left")) == pytest.approx(4.1020408203, rel=1e-9, abs=0.0)
@@ -49,7 +49,7 @@ def test_contact_equation_holds_everywhere() -> None:
         assert total == pytest.approx(run.load(times, side=side), rel=1e-14, abs=1e-6)
 
 
-def test_shapes_and_scalars() -> None:
+def test_readings_have_the_shape_of_their_times() -> None:
     run = ss.simulate(rate_law_slab(), 6.0)
     assert run.slip(1.0).shape == ()
     assert run.slip([1.0, 2.0]).shape == (2,)
@@ -62,13 +62,13 @@ def test_slip_is_absolute() -> None:
 
 
 @pytest.mark.parametrize("time", [-1.0, 7.0, np.nan])
-def test_times_outside_the_run(time: float) -> None:
+def test_times_outside_the_run_are_refused(time: float) -> None:
     run = ss.simulate(rate_law_slab(), 6.0)
     with pytest.raises(ss.InputError, match="between 0 and the end"):
         run.slip(time)
 
 
-def test_unknown_side_and_curve() -> None:
+def test_unknown_sides_and_curves_are_refused() -> None:
     run = ss.simulate(rate_law_slab(), 6.0)
     with pytest.raises(ss.InputError, match="side must be"):
         run.slip_rate(1.0, side="middle")  # type: ignore[arg-type]
@@ -77,7 +77,7 @@ def test_unknown_side_and_curve() -> None:
 
 
 @pytest.mark.parametrize(("duration", "rtol"), [(0.0, 1e-10), (-1.0, 1e-10), (np.inf, 1e-10), (1.0, 0.0), (1.0, 0.5)])
-def test_bad_duration_and_tolerance(duration: float, rtol: float) -> None:
+def test_bad_durations_and_tolerances_are_refused(duration: float, rtol: float) -> None:
     with pytest.raises(ss.InputError):
         ss.simulate(rate_law_slab(), duration, rtol)
 
@@ -197,7 +197,7 @@ def test_far_stress_rate_reloads_a_lossy_slab() -> None:
     assert run.shocks.time.iloc[0] == pytest.approx(1e6 + lag, rel=1e-9, abs=0.0)
 
 
-def test_readable_repr() -> None:
+def test_repr_names_body_law_status_and_rule() -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
     for word in ("ElasticSlab", "HyperbolicRate", "finished", "depends on the rule", "rtol"):
         assert word in repr(run)

@@ -21,9 +21,8 @@ from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
 from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
 from stickslip.trajectory.tables import default_event_rate
-from tests.engine.test_verified_numbers import SLAB
 from tests.long_runs.problems import RUNS
-from tests.problems import scaled_rate
+from tests.problems import SLAB, scaled_rate
 
 F = ss.friction
 SWING = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
@@ -166,7 +165,7 @@ def run(request: pytest.FixtureRequest) -> ss.Solution:
 
 
 @pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
-def test_every_column_of_every_event(run: ss.Solution, rate: Callable[[ss.Solution], float]) -> None:
+def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, rate: Callable[[ss.Solution], float]) -> None:
     history, threshold = run.history, rate(run)
     table, events = run.catalogue(threshold), plain_events(run.history, threshold)
     assert len(table) == len(events) > 0
@@ -188,7 +187,7 @@ def test_every_column_of_every_event(run: ss.Solution, rate: Callable[[ss.Soluti
     assert table.recurrence.to_numpy() == pytest.approx([np.nan, *since], rel=1e-15, abs=2e-9 * width, nan_ok=True)
 
 
-def test_every_shock(run: ss.Solution) -> None:
+def test_every_shock_agrees_with_a_plain_walk(run: ss.Solution) -> None:
     history, shocks = run.history, run.shocks
     pieces = [n for n in range(len(history)) if history.store.cause[n] > 0]
     assert len(shocks) == len(pieces)
@@ -210,7 +209,7 @@ def test_slip_is_summed_from_the_start_of_each_event(run: ss.Solution) -> None:
         assert together[n] == run.history.slipped_since(one.begin, one.end)[0]
 
 
-def test_what_is_largest_within_each_event() -> None:
+def test_highest_finds_the_largest_value_of_each_event() -> None:
     values, found = np.array([3.0, 1.0, 2.0, 2.0, 5.0, 4.0]), np.empty(3, np.int64)
     highest(values, np.array([0, 1, 4]), np.array([1, 4, 6]), found)
     assert found.tolist() == [0, 2, 4]
@@ -229,7 +228,7 @@ def test_bounds_never_hide_a_change_of_sign() -> None:
 
 
 @pytest.mark.parametrize("name", ["block that heals", "slab that heals", "folds, lossy", "rate law, maximal"])
-def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_from_the_end_finds_the_waves_in_the_body(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.trajectory.phase_index.FEW", 4)
     history = ss.simulate(*RUNS[name]).history
     for one, other in zip(
@@ -240,7 +239,7 @@ def test_what_stands_in_the_body_is_found_from_behind(name: str, monkeypatch: py
         assert np.array_equal(one, other)
 
 
-def test_a_wrong_sum_would_be_seen() -> None:
+def test_the_comparison_shows_a_wrong_sum() -> None:
     """The comparison above sees one micrometre in a metre."""
     run = ss.simulate(*CASES["events that heal"])
     store = scaled_rate(run.history.store, 1.0 + 1e-6)

@@ -11,38 +11,21 @@ from dataclasses import replace
 import pytest
 
 import stickslip as ss
-
-DENSITY, SPEED, THICKNESS, NORMAL = 2800.0, 3500.0, 1e4, 1e8
-IMPEDANCE, MODULUS, ROUND = DENSITY * SPEED, DENSITY * SPEED**2, 2 * THICKNESS / SPEED
-PULL = 0.05 / ss.YEAR
-SLAB = ss.ElasticSlab(DENSITY, SPEED, THICKNESS, NORMAL)
-RATE_LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
-CRITICAL = IMPEDANCE / (NORMAL * 0.5)
-
-
-def slip_law_slab(wavenumber: float, beyond: float, extra_load: float = 0.0, pull: float = PULL) -> ss.Problem:
-    """The slab `beyond` the slip of largest friction, under the load that friction held there."""
-    start = math.pi / (2 * wavenumber) + beyond
-    return ss.Problem(
-        SLAB,
-        ss.friction.SinusoidalSlip(1.0, 0.5, wavenumber),
-        pull_rate=pull,
-        initial_slip=start,
-        initial_load=1.5e8 + extra_load,
-    )
-
-
-def slip_law_block(wavenumber: float, stiffness: float) -> ss.Problem:
-    """The block at the slip where S mu' + K = 0, its driver 1e-3 m too far."""
-    start = (math.pi / 2 + math.asin(stiffness / (1e14 * 0.5 * wavenumber))) / wavenumber
-    block = ss.SpringBlock(DENSITY * 1e9, stiffness, 1e14)
-    law = ss.friction.SinusoidalSlip(1.0, 0.5, wavenumber)
-    return ss.Problem(block, law, pull_rate=PULL, initial_slip=start, initial_excess=stiffness * 1e-3)
-
-
-def rate_law_slab(alpha: float = 1.0, **changes: object) -> ss.Problem:
-    problem = ss.Problem(SLAB, replace(RATE_LAW, alpha=alpha), pull_rate=PULL, initial_excess=0.0)
-    return replace(problem, **changes)
+from tests.problems import (
+    CRITICAL,
+    DENSITY,
+    IMPEDANCE,
+    MODULUS,
+    NORMAL,
+    PULL,
+    RATE_LAW,
+    ROUND,
+    SLAB,
+    THICKNESS,
+    rate_law_slab,
+    slip_law_block,
+    slip_law_slab,
+)
 
 
 def close(value: float, digits: str) -> bool:

@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS
-from tests.engine.test_verified_numbers import ROUND, SLAB, rate_law_slab, slip_law_slab
+from tests.problems import ROUND, SLAB, rate_law_slab, slip_law_slab
 
 F = ss.friction
 RATE = F.HyperbolicRate(0.8, 0.3, 1.0)
@@ -49,7 +49,7 @@ def same_slip(early: ss.Solution, late: ss.Solution) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_same_event_after_a_second_and_after_nine_hundred_years(kind: str) -> None:
+def test_an_event_is_as_sharp_after_900_years_as_after_a_second(kind: str) -> None:
     """The run's seconds, which late in it are 4e-6 apart, do not show it: the tolerance would notice."""
     early, late = (ss.simulate(delayed(kind, t), t + 30.0, rtol=1e-14) for t in (1.0, LONG))
     local, seconds = same_slip(early, late)
@@ -60,7 +60,7 @@ def test_the_same_event_after_a_second_and_after_nine_hundred_years(kind: str) -
         assert late.events[name][0] == pytest.approx(early.events[name][0], rel=1e-12, abs=0.0), name
 
 
-def test_the_same_event_under_a_driver_that_lets_waves_out() -> None:
+def test_an_event_under_a_lossy_driver_is_as_sharp_after_900_years() -> None:
     """Far stress that grows by 1 kPa a year, after the start has rung down, reflection -0.2; late is 900 years later."""
     slab = replace(SLAB, driver_impedance=1.5 * SLAB.impedance)
     rate, runs = 1e3 / ss.YEAR, []
@@ -137,7 +137,7 @@ def test_block_and_slab_catalogues_have_the_same_columns() -> None:
         assert not run.catalogue(0.0, energies=True).drop(columns=may_lack).isna().any(axis=None)
 
 
-def test_columns_say_the_same_thing() -> None:
+def test_columns_of_the_catalogue_agree_with_each_other() -> None:
     run = ss.simulate(rate_law_slab(selection="maximal"), 380 * ss.YEAR)
     events = run.events
     assert len(events) == 3
@@ -179,7 +179,7 @@ def test_epochs_and_windows_survive_a_file(tmp_path: Path) -> None:
     assert back.events.start_row[1] == 2_589_011_266
 
 
-def test_window_as_a_dataset() -> None:
+def test_a_window_becomes_a_dataset_with_its_epoch() -> None:
     window = ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1)
     dataset = window.to_dataset([0.0, 1.0])
     assert (dataset.epoch_trip, dataset.epoch_offset, dataset.round_trip_time) == (2_589_011_266, 0.0, ROUND)
@@ -187,7 +187,7 @@ def test_window_as_a_dataset() -> None:
     assert float(dataset.event_slip[1]) == pytest.approx(4.10204082, rel=1e-8, abs=0.0)
 
 
-def test_what_is_shown() -> None:
+def test_a_window_shows_its_span_within_the_run() -> None:
     run = ss.simulate(slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0)
     window = run.window(0, before=3.0, after=4.0)
     assert window.shown == (0.0, 4.0)  # nothing lies before the start of the run
@@ -198,20 +198,20 @@ def test_what_is_shown() -> None:
 
 
 @pytest.mark.parametrize("event", [1, -2])
-def test_no_such_event(event: int) -> None:
+def test_events_that_do_not_exist_are_refused(event: int) -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
     with pytest.raises(ss.InputError, match=rf"window: no event {event}: the run has 1, 0 to 0"):
         run.window(event)
 
 
 @pytest.mark.parametrize(("before", "after"), [(-1.0, None), (None, 0.0), (None, np.nan), (np.inf, None)])
-def test_bad_spans(before: float | None, after: float | None) -> None:
+def test_bad_spans_are_refused(before: float | None, after: float | None) -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
     with pytest.raises(ss.InputError, match="window: before and after"):
         run.window(0, before, after)
 
 
-def test_local_times_outside_the_run() -> None:
+def test_local_times_outside_the_run_are_refused() -> None:
     window = ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1)
     with pytest.raises(ss.InputError, match=r"times must lie between -1\.479"):
         window.slip(-469 * ss.YEAR)

@@ -12,7 +12,7 @@ RUN = ss.load_scenario("fig6-slab").run()
 HEIGHT = 1e4
 
 
-def test_it_is_the_field_there() -> None:
+def test_a_series_inside_the_slab_is_the_field_there() -> None:
     series = sample(RUN, 40.0, x=3500.0)
     found = RUN.field(3500.0, series.time)
     np.testing.assert_array_equal(series.slip_rate, found.velocity)
@@ -27,7 +27,7 @@ def test_the_driver_does_not_feel_the_slip() -> None:
     np.testing.assert_allclose(series.slip_rate, RUN.problem.pull_rate, rtol=0.0, atol=1e-14)
 
 
-def test_filtered_it_holds_the_same_displacement() -> None:
+def test_a_filtered_series_holds_the_same_displacement() -> None:
     pytest.importorskip("scipy")
     series = sample(RUN, 10.0, end=10.0, x=5000.0, antialias=True)
     assert series.slip_rate.sum() / 10.0 == pytest.approx(series.slip[-1], rel=2e-3, abs=0.0)

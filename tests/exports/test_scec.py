@@ -23,7 +23,7 @@ def read(path: Path) -> tuple[dict[str, str], list[str], np.ndarray]:
     return header, rest[0].split(), np.array([[float(word) for word in line.split()] for line in rest[1:]])
 
 
-def test_what_is_written_is_what_was_computed(tmp_path: Path) -> None:
+def test_the_file_holds_what_was_computed(tmp_path: Path) -> None:
     header, fields, numbers = read(RUN.to_scec(tmp_path / "a.txt", 30.0, problem="slab", station="x = 0"))
     assert fields == ["t", "slip", "slip-rate", "shear-stress"]
     assert (header["problem"], header["location"], header["code"]) == ("slab", "x = 0", "stickslip")
@@ -46,7 +46,7 @@ def test_a_sample_on_a_shock_is_its_right_limit() -> None:
     assert float(RUN.slip_rate(4.0, side="left")) > 4.1
 
 
-def test_all_components_of_the_benchmarks(tmp_path: Path) -> None:
+def test_all_components_of_the_benchmarks_can_be_written(tmp_path: Path) -> None:
     _, fields, numbers = read(RUN.to_scec(tmp_path / "a.txt", 1.0, components=True))
     assert fields == ["t", "h-slip", "h-slip-rate", "h-shear-stress", "v-slip", "v-slip-rate", "v-shear-stress", "n-stress"]
     assert (numbers[:, 4:7] == 0.0).all()
@@ -68,7 +68,7 @@ def test_a_window_is_written_in_local_time(tmp_path: Path) -> None:
     np.testing.assert_allclose(numbers[:, 2], late.window(1).slip_rate(np.arange(301) / 100.0), rtol=1e-12, atol=0.0)
 
 
-def test_times_are_those_that_were_asked_for() -> None:
+def test_the_file_has_the_times_that_were_asked_for() -> None:
     series = sample(RUN, 10.0, start=0.55, end=1.0)
     assert (series.time[0], len(series.time)) == (0.55, 5)
     assert len(sample(RUN, 1 / 3).time) == 3
@@ -100,7 +100,7 @@ def test_the_filter_keeps_what_is_slow_and_the_slip_of_what_is_fast() -> None:
         (1.0, {"problem": "two\nlines"}, "problem must be one line of text"),
     ],
 )
-def test_what_is_refused(tmp_path: Path, rate: float, options: dict[str, object], message: str) -> None:
+def test_bad_exports_are_refused(tmp_path: Path, rate: float, options: dict[str, object], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         RUN.to_scec(tmp_path / "a.txt", rate, **options)
     assert list(tmp_path.iterdir()) == []

@@ -10,7 +10,8 @@ import pytest
 from matplotlib import pyplot
 
 import stickslip as ss
-from tests.figures.test_figures import BLOCK_PROBLEM, SLAB_PROBLEM, has_unit, labels
+from tests.figures.labels import has_unit, labels
+from tests.figures.problems import BLOCK_PROBLEM, SLAB_PROBLEM
 
 mpl.use("Agg")
 

@@ -13,7 +13,7 @@ import stickslip as ss
 from stickslip.figures.runs import catalogue
 from stickslip.figures.runs.run import plot_run
 from stickslip.figures.style import time_unit
-from tests.engine.test_verified_numbers import SLAB, rate_law_slab
+from tests.problems import SLAB, rate_law_slab
 
 mpl.use("Agg")
 
@@ -37,7 +37,7 @@ def test_every_axis_has_its_unit(cycles: ss.Solution) -> None:
     assert [panel(figure, name).get_xlabel().split()[-1] for name in "BCD"] == ["(year)", "(s)", "(ms)"]
 
 
-def test_it_draws_the_catalogue(cycles: ss.Solution) -> None:
+def test_the_figure_shows_the_numbers_of_the_catalogue(cycles: ss.Solution) -> None:
     events = cycles.events
     figure = catalogue.draw(catalogue.data(cycles))
     marks, ring = panel(figure, "A").lines

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,26 +20,12 @@ from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import plot_run
 from stickslip.figures.studies import ensemble, regularise
 from stickslip.figures.style import STYLE, image
+from tests.figures.labels import has_unit, labels
+from tests.figures.problems import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM
 
 mpl.use("Agg")
 
-SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
-BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
-LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
-SLAB_PROBLEM = ss.Problem(SLAB, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
-BLOCK_PROBLEM = ss.Problem(BLOCK, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
 LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
-
-UNIT = re.compile(r"\((m|m/s|s|year|MPa|Pa|TN|N)\)$")
-
-
-def labels(figure: Figure) -> list[str]:
-    """Axis labels that are shown."""
-    return [text for axes in figure.axes if axes.axison for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
-
-
-def has_unit(text: str) -> bool:
-    return bool(UNIT.search(text)) or text.startswith("friction coefficient")
 
 
 def test_systems_show_the_papers_symbols() -> None:
@@ -57,7 +42,7 @@ def test_laws_have_a_panel_each() -> None:
     assert all(has_unit(text) for text in labels(figure))
 
 
-def test_corners_of_an_irregular_contact() -> None:
+def test_corners_of_an_irregular_contact_have_their_closed_form() -> None:
     found = resistance.corners(SLAB_PROBLEM, 6.0)
     assert found["A"] == (0.0, 8e7)
     assert found["B"][0] == pytest.approx(4.10204081633, rel=1e-11)
@@ -73,7 +58,7 @@ def test_a_regular_contact_has_no_corners() -> None:
     assert dashed == [0, 1]
 
 
-def test_loop_is_walked_by_the_run() -> None:
+def test_the_run_follows_the_loop_up_and_down() -> None:
     dataset = hysteresis.data(ss.simulate(LOOP, 5.7))
     up, down = dataset.run_load[: int(dataset.run_turn) + 1], dataset.run_load[int(dataset.run_turn) :]
     assert (np.diff(up) >= 0.0).all()
@@ -197,7 +182,7 @@ def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
         assert f"{study.verdict.order.power:.2f}" in {text.get_text() for text in figure.axes[0].texts}
 
 
-def test_an_ensemble_draws_what_members_share_and_how_they_part() -> None:
+def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:
     study = ss.studies.ensemble(
         ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4
     )

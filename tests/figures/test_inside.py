@@ -20,7 +20,8 @@ from PIL import Image
 import stickslip as ss
 from stickslip.figures.runs import animation, snapshots, space_time
 from stickslip.figures.style import image
-from tests.figures.test_figures import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM, labels
+from tests.figures.labels import labels
+from tests.figures.problems import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM
 
 mpl.use("Agg")
 
@@ -155,7 +156,7 @@ def test_snapshots_are_the_field(run: ss.Solution) -> None:
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["1", "4"]
 
 
-def test_snapshots_of_an_event(run: ss.Solution) -> None:
+def test_snapshots_of_an_event_show_displacement_since_it_began(run: ss.Solution) -> None:
     dataset = snapshots.data(run.window(0))
     assert dataset.displacement.attrs["long_name"] == "displacement since the event began"
     assert 0.0 < float(dataset.time[0]) < float(dataset.time[-1]) < ROUND
@@ -202,7 +203,7 @@ def test_a_gif_has_every_frame_and_they_differ(run: ss.Solution, tmp_path: Path)
 
 @NEEDS_FFMPEG
 @pytest.mark.parametrize(("suffix", "begins"), [(".mp4", b"ftyp"), (".webm", b"\x1aE\xdf\xa3")])
-def test_videos(suffix: str, begins: bytes, run: ss.Solution, tmp_path: Path) -> None:
+def test_videos_have_the_format_of_their_suffix(suffix: str, begins: bytes, run: ss.Solution, tmp_path: Path) -> None:
     path = run.window(0).plot.animation(tmp_path / f"slab{suffix}", frames=4)
     assert begins in path.read_bytes()[:12]
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
@@ -217,7 +218,7 @@ def test_a_failure_leaves_no_file(run: ss.Solution, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_cannot_be_animated(run: ss.Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_impossible_animations_are_refused(run: ss.Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FFMpegWriter, "isAvailable", lambda: False)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
@@ -247,7 +248,7 @@ def test_a_block_has_no_inside_to_draw(draw: str) -> None:
         (-1.0, 3.0, "times must lie between 0"),
     ],
 )
-def test_no_such_time(run: ss.Solution, start: float | None, end: float | None, text: str) -> None:
+def test_times_outside_the_run_are_refused(run: ss.Solution, start: float | None, end: float | None, text: str) -> None:
     for draw in (space_time.data, animation.data):
         with pytest.raises(ss.InputError, match=text):
             draw(run, start, end)

@@ -44,7 +44,7 @@ def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float
     pyplot.close(figure)
 
 
-def test_a_far_stress_in_its_unit() -> None:
+def test_a_far_stress_is_drawn_in_its_unit() -> None:
     scenario = ss.load_scenario("stress-pulse-slab")
     figure = plot_run(scenario.run())
     time, stress = figure.axes[3].lines[0].get_xydata().T

@@ -90,7 +90,7 @@ def test_few_whole_numbers_have_a_colour_each_and_a_key() -> None:
     assert keys == shades
 
 
-def test_yes_and_no() -> None:
+def test_flags_are_named_in_the_legend() -> None:
     figure = ss.figures.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS, flag_meanings="no yes"), "answer")
     assert legend(figure) == ["no", "yes"]
 
@@ -157,7 +157,7 @@ def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
         assert np.array_equal(line.get_xydata(), np.stack([AXES[ALPHA], values[:, k]], axis=1))
 
 
-def test_words_have_their_place() -> None:
+def test_words_label_their_places_on_the_axis() -> None:
     dataset = grid(np.arange(9.0), ALPHA).assign_coords({ALPHA: ("friction.alpha", [f"rule{k}" for k in range(9)])})
     figure = ss.figures.plot_sweep(dataset, "answer")
     assert [text.get_text() for text in figure.axes[0].get_xticklabels()] == [f"rule{k}" for k in range(9)]
@@ -242,7 +242,7 @@ def test_words_are_an_axis_of_curves_and_of_maps(alphas: int, thicknesses: int) 
         assert meshes(figure, 1).get_array().tolist() == first[np.argsort(RULES)].T.tolist()
 
 
-def test_cuts_through_three_keys() -> None:
+def test_a_refined_map_of_three_keys_is_cut_along_one() -> None:
     vary = {ALPHA: np.linspace(0.1, 0.4, 3), STRESS: np.linspace(50e6, 200e6, 3), "body.wave_speed": ["2 km/s", "5 km/s"]}
     figure = ss.figures.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["wave speed 2000 m/s", "wave speed 5000 m/s"]
@@ -253,7 +253,7 @@ def test_cuts_through_three_keys() -> None:
 
 
 @pytest.mark.parametrize("status", [FAILED, NOT_RUN, 0])
-def test_nothing_to_be_seen(status: int) -> None:
+def test_a_sweep_without_numbers_can_be_drawn(status: int) -> None:
     nothing = np.full((9, 13), np.nan)
     assert len(ss.figures.plot_sweep(grid(nothing, ALPHA, THICKNESS, status=status)).axes) == 1  # no scale of nothing
     assert (
@@ -267,12 +267,12 @@ def test_nothing_to_be_seen(status: int) -> None:
     )[1:]
 
 
-def test_it_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
+def test_the_figure_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
     ss.figures.plot_sweep(refined, path=tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
 
-def test_what_cannot_be_drawn() -> None:
+def test_sweeps_that_cannot_be_drawn_are_refused() -> None:
     dataset = grid(np.ones((9, 13)), ALPHA, THICKNESS)
     with pytest.raises(ss.InputError, match="this sweep has no quantity 'anser'; did you mean 'answer'"):
         ss.figures.plot_sweep(dataset, "anser")

@@ -32,7 +32,7 @@ class _Exact:
 @pytest.mark.parametrize("name", FORMULAS)
 @pytest.mark.parametrize("slip", [0.0, 0.7, 30.0])
 @pytest.mark.parametrize(("step", "rate"), [(0.0, 1e-14), (1e-13, 0.0), (1e-9, 1e-7), (0.02, 0.3), (-1e-3, 2.0)])
-def test_difference_against_mpmath(name, slip, step, rate):
+def test_differences_and_slopes_agree_with_mpmath(name, slip, step, rate):
     formula = FORMULAS[name]
     value, slope = difference(formula(SLIP, RATE, expression), {}, slip, step, rate)
     with mpmath.workdps(60):
@@ -64,17 +64,17 @@ def test_laws_without_rate_have_no_slope(law):
         assert value.tolist() == slope.tolist() == [0.0, 0.0, 0.0]
 
 
-def test_square_root_and_power_from_zero():
+def test_roots_have_an_infinite_slope_at_zero():
     value, slope = difference(expression.sqrt(RATE) + RATE**0.5 + expression.sqrt(SLIP), {}, 0.0, 0.0, [0.0, 4.0])
     assert value.tolist() == [0.0, 4.0]
     assert slope.tolist() == [np.inf, 0.5]
 
 
-def test_arcsinh_of_numbers_whose_squares_overflow():
+def test_arcsinh_is_exact_where_squares_overflow():
     value, _ = difference(expression.arcsinh(1e200 * RATE) + expression.arcsinh(-1e300 * SLIP), {}, 1.0, 1.0, [0.0, 1.0])
     np.testing.assert_allclose(value, [-np.log(2.0), np.log(2e200) - np.log(2.0)], rtol=1e-12)
 
 
-def test_unknown_parameter():
+def test_an_unknown_parameter_is_an_error():
     with pytest.raises(KeyError, match="slope"):
         difference(as_expression(1.0) + Parameter("slope") * RATE, {}, 0.0, 0.0, 1.0)

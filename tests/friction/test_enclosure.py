@@ -157,8 +157,12 @@ def test_functions_of_cells_are_the_hull_of_their_values(name):
         assert np.all(outside >= -steepest - size)
 
 
-@pytest.mark.parametrize("formula", [lambda v: 1.0 / (1.0 + v), lambda v: exp(-v), OPERATIONS["tanh"], OPERATIONS["arcsinh"]])
-def test_cells_without_end(formula):
+@pytest.mark.parametrize(
+    "formula",
+    [lambda v: 1.0 / (1.0 + v), lambda v: exp(-v), OPERATIONS["tanh"], OPERATIONS["arcsinh"]],
+    ids=["quotient", "exp", "tanh", "arcsinh"],
+)
+def test_bounds_of_cells_without_end_hold_the_values(formula):
     tree = formula(RATE)
     value, first, _ = enclose(tree, {}, 0.0, np.array([0.0]), np.array([np.inf]))
     for rate in (0.0, 1e-3, 1.0, 30.0):
@@ -166,7 +170,7 @@ def test_cells_without_end(formula):
     assert np.all(np.isfinite(first))
 
 
-def test_nothing_is_said_where_a_formula_may_be_undefined():
+def test_cells_where_a_formula_may_be_undefined_have_no_bounds():
     for tree in (OPERATIONS["log"](RATE - 1.0), OPERATIONS["sqrt"](RATE - 1.0), 1.0 / (RATE - 1.0), (RATE - 1.0) ** 0.5):
         first = enclose(tree, {}, 0.0, np.array([0.5]), np.array([2.0]))[1]
         assert first.tolist() == [[-np.inf], [np.inf]]
@@ -198,7 +202,11 @@ def test_many_cells_are_bounded_as_one_by_one():
         assert all(np.array_equal(one[:, k], other[:, 0]) for one, other in zip(together, alone, strict=True))
 
 
-@pytest.mark.parametrize("tree", [RATE * STATE, Expression("erf", (RATE,)), Expression("pow", (1.0 + RATE, RATE))])
+@pytest.mark.parametrize(
+    "tree",
+    [RATE * STATE, Expression("erf", (RATE,)), Expression("pow", (1.0 + RATE, RATE))],
+    ids=["state", "erf", "power of the rate"],
+)
 def test_what_has_no_sure_bounds_is_refused(tree):
     with pytest.raises(NotEnclosedError):
         enclose(tree, {}, 0.0, np.array([0.0]), np.array([1.0]))

@@ -45,13 +45,12 @@ def test_an_expression_is_the_built_in_law_to_the_last_digit() -> None:
         ("0x10", 0, 0, 16.0),
     ],
 )
-def test_reading(text: str, u: float, v: float, value: float) -> None:
+def test_an_expression_is_read_with_its_value(text: str, u: float, v: float, value: float) -> None:
     from stickslip.friction.formula.expression import evaluate
 
     assert float(evaluate(parse(text, ()), {}, np.float64(u), np.float64(v))) == pytest.approx(value, rel=1e-15)
 
 
-ALLOWED = "allowed are numbers, u, v, pi, declared parameters, + - * / ** and sin, cos, exp, log, sqrt, tanh, arcsinh"
 HOSTILE = [
     ("", "is not an expression"),
     ("   ", "is not an expression"),
@@ -203,7 +202,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("text", "values", "message"), REFUSED)
-def test_laws_that_are_no_friction(text: str, values: dict[str, float | str], message: str) -> None:
+def test_expressions_that_are_no_friction_are_refused(text: str, values: dict[str, float | str], message: str) -> None:
     with pytest.raises(InputError) as caught:
         FromExpression(text, values)
     assert message in str(caught.value)
@@ -229,7 +228,7 @@ UNITS = [
 
 
 @pytest.mark.parametrize(("text", "values", "message"), UNITS)
-def test_units(text: str, values: dict[str, float | str], message: str | None) -> None:
+def test_units_of_an_expression_must_fit(text: str, values: dict[str, float | str], message: str | None) -> None:
     counts = "path"
     if message is None:
         assert FromExpression(text, values, counts=counts).coefficient(0.0) >= 0
@@ -245,7 +244,7 @@ def test_units_become_si() -> None:
     assert law.rate_scales == (1e-3,)
 
 
-def test_static_friction_at_rest() -> None:
+def test_static_friction_is_added_at_rest() -> None:
     law = FromExpression("0.4 + 0.1*v", static=0.6)
     assert law.static_excess == pytest.approx(0.2, rel=1e-15)
     assert float(law.static_coefficient(0.0)) == pytest.approx(0.6, rel=1e-15)
@@ -257,7 +256,7 @@ def test_static_friction_at_rest() -> None:
         FromExpression("0.4 + 0.1*sin(u)", static=0.6)
 
 
-def test_path_or_net() -> None:
+def test_counts_is_path_or_net() -> None:
     assert FromExpression("0.5 + 0.01*u", counts="path").counts == "path"
     with pytest.raises(InputError, match=r"counts 'nett' is unknown; did you mean 'net'\?"):
         FromExpression("0.5", counts="nett")  # type: ignore[arg-type]

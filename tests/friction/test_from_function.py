@@ -28,7 +28,7 @@ def test_a_function_is_the_built_in_law() -> None:
     assert pickle.loads(pickle.dumps(law)) == law
 
 
-def test_decorator() -> None:
+def test_from_function_is_a_decorator() -> None:
     @FromFunction(mu_s=0.8, alpha="1 s/m", counts="path")
     def law(u: Any, v: Any, mu_s: float, alpha: float) -> Any:
         return mu_s / (1 + alpha * v)
@@ -53,7 +53,7 @@ NUMPY: dict[str, Callable[[Any, Any], Any]] = {
 
 
 @pytest.mark.parametrize("name", NUMPY)
-def test_numpy_functions(name: str) -> None:
+def test_numpy_functions_can_be_traced(name: str) -> None:
     function = NUMPY[name]
     law = FromFunction(function)
     for u, v in ((0.0, 0.0), (0.7, 0.3), (-2.0, 4.0)):

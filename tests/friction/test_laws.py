@@ -132,7 +132,7 @@ def test_a_law_written_to_a_scenario_is_read_back_to_the_last_digit(kind: str, d
 
 @KINDS
 @pytest.mark.parametrize("body", ["slab", "block"])
-def test_new_shows_every_law_with_values_that_run(kind: str, body: str) -> None:
+def test_the_template_of_every_law_can_be_read(kind: str, body: str) -> None:
     text = template(body, kind)
     assert read_scenario(text, "new").problem.friction.kind == kind
     assert f'kind = "{kind}"' in text
@@ -163,12 +163,12 @@ CLOSED: dict[str, tuple[dict[str, Any], float, float, float]] = {
 
 
 @pytest.mark.parametrize("kind", CLOSED)
-def test_values_by_hand(kind: str) -> None:
+def test_every_law_has_the_value_worked_out_by_hand(kind: str) -> None:
     fields, slip, rate, mu = CLOSED[kind]
     assert float(LAWS[kind](**fields).coefficient(slip, rate)) == pytest.approx(mu, rel=1e-14, abs=0)
 
 
-def test_what_a_composite_is_made_of() -> None:
+def test_a_composite_combines_its_parts() -> None:
     slip = LAWS["linear-slip-weakening"](0.7, 0.5, 0.4)
     rate = LAWS["hyperbolic-rate"](1.0, 0.5, 1.0)
     product, total = LAWS["product"](slip, rate), LAWS["sum"](slip, Coulomb(0.2, 0.1))
@@ -198,7 +198,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("kind", "parts", "message"), BAD)
-def test_parts_that_do_not_go_together(kind: str, parts: dict[str, str], message: str) -> None:
+def test_parts_that_do_not_fit_are_refused(kind: str, parts: dict[str, str], message: str) -> None:
     made = {place: read_scenario(template("slab", part), "part").problem.friction for place, part in parts.items()}
     with pytest.raises(ValueError, match=message):
         LAWS[kind](**made)

@@ -16,7 +16,7 @@ CHOICE = '# memory = "all"'
 
 
 @pytest.mark.parametrize("kind", LAWS)
-def test_exactly_the_laws_of_slip_offer_it(kind: str) -> None:
+def test_exactly_the_laws_of_slip_offer_a_memory(kind: str) -> None:
     text = template("slab", kind)
     law = read_scenario(text, "new").problem.friction
     assert law.memory == "all"
@@ -38,7 +38,7 @@ def test_a_part_of_a_composite_decides(kind: str) -> None:
     assert LAWS["sum"](SinusoidalSlip(0.6, 0.1, 5.0, memory="since-arrest"), Coulomb(0.1, 0.0)).memory == "since-arrest"
 
 
-def test_construction_by_position_is_as_before() -> None:
+def test_memory_cannot_be_given_by_position() -> None:
     assert SinusoidalSlip(1.0, 0.5, 5.0) == SinusoidalSlip(mean=1.0, amplitude=0.5, wavenumber=5.0, memory="all")
     with pytest.raises(TypeError, match="positional"):
         LinearSlipWeakening(0.6, 0.3, 0.1, "since-arrest")  # type: ignore[misc]
@@ -60,12 +60,12 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_nothing_to_forget(name: str) -> None:
+def test_laws_that_do_not_depend_on_slip_refuse_to_forget(name: str) -> None:
     with pytest.raises(InputError, match=r"^\w+: memory 'since-arrest' needs friction that depends on slip; allowed here: all$"):
         REFUSED[name]()
 
 
-def test_a_word_that_is_none() -> None:
+def test_unknown_memories_are_refused() -> None:
     with pytest.raises(InputError, match=r"^LinearSlipWeakening: memory 'since arrest' is unknown; did you mean 'since-arrest'\?$"):
         LinearSlipWeakening(0.6, 0.3, 0.1, memory="since arrest")  # type: ignore[arg-type]
     text = template("slab", "linear-slip-weakening").replace(CHOICE, 'memory = "none"')

@@ -59,7 +59,7 @@ BAD_POINTS: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("given_points", "message"), BAD_POINTS)
-def test_points_that_are_no_table(given_points: dict[str, Any], message: str) -> None:
+def test_bad_points_are_refused(given_points: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         FromTable(**given_points)
 
@@ -80,7 +80,7 @@ def load(folder: Path, content: str | bytes, table: str = FILE, kind: str = "tab
     return load_scenario(folder / "s.toml").problem.friction
 
 
-def test_files(tmp_path: Path) -> None:
+def test_tables_are_read_from_files(tmp_path: Path) -> None:
     wanted = FromTable(slip=[0.0, 0.1, 1.0], friction=[0.7, 0.6, 0.4])
     assert load(tmp_path, "# measured\nslip, friction\n0, 0.7\n\n0.1,0.6\n1.0,0.4\n") == wanted
     assert load(tmp_path, "\ufefftime,friction,slip\r\n1,0.7,0\r\n2,0.6,1e-1\r\n3,0.4,1\r\n") == wanted
@@ -116,7 +116,7 @@ BAD_FILES = [
 
 
 @pytest.mark.parametrize(("content", "message"), BAD_FILES)
-def test_one_line_with_file_and_line(tmp_path: Path, content: str | bytes, message: str) -> None:
+def test_bad_files_are_refused_in_one_line_with_file_and_line(tmp_path: Path, content: str | bytes, message: str) -> None:
     with pytest.raises(InputError) as caught:
         load(tmp_path, content)
     assert message in str(caught.value)
@@ -140,7 +140,7 @@ def test_one_line_with_file_and_line(tmp_path: Path, content: str | bytes, messa
         ("slips = [0, 1]\nfriction = [0.5, 0.4]", "[friction] slips is unknown; did you mean 'slip'?"),
     ],
 )
-def test_tables_of_a_scenario(tmp_path: Path, table: str, message: str) -> None:
+def test_bad_tables_of_a_scenario_are_refused(tmp_path: Path, table: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         load(tmp_path, "slip,friction\n0,1\n1,1\n", table)
     assert message in str(caught.value)

@@ -31,7 +31,7 @@ def test_every_kind_is_registered_under_its_name_and_says_what_it_is() -> None:
         assert set(history.example) <= set(fields_of(history))
 
 
-def test_values_at_times() -> None:
+def test_every_history_has_its_values_at_times() -> None:
     ramp = PiecewiseLinear([1.0, 3.0], [2.0, 6.0])
     assert ramp.at([-1.0, 0.0, 1.0, 2.0, 3.0, 9.0]).tolist() == [2.0, 2.0, 2.0, 4.0, 6.0, 6.0]
     assert STEPS.at([-1.0, 0.0, np.nextafter(1.0, 0.0), 1.0, 5.0]).tolist() == [1.0, 1.0, 1.0, 2.0, 2.0]
@@ -126,7 +126,7 @@ class Bare(LoadingHistory):
         ),
     ],
 )
-def test_mistakes(make: Callable[[], Any], message: str) -> None:
+def test_mistakes_are_refused_in_one_line(make: Callable[[], Any], message: str) -> None:
     with pytest.raises(ss.InputError) as caught:
         make()
     assert str(caught.value) == message
@@ -139,7 +139,7 @@ def test_mistakes(make: Callable[[], Any], message: str) -> None:
         ({"shortest_event": 1e-6}, "shortest_event must be 0 here: events are lumped under a constant pull only"),
     ],
 )
-def test_what_needs_a_constant_pull(how: dict[str, float], message: str) -> None:
+def test_options_that_need_a_constant_pull_refuse_another(how: dict[str, float], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         ss.simulate(ss.Problem(SLAB, LAW, pull_rate=STEPS, initial_excess=-1.0), 1.0, **how)  # type: ignore[arg-type] # that is the point
 

@@ -45,7 +45,7 @@ def kind_of(problem: ss.Problem) -> str:
 
 
 @pytest.mark.parametrize("problem", CASES, ids=kind_of)
-def test_a_saved_run_gives_the_same_readings(problem: ss.Problem, tmp_path: Path) -> None:
+def test_a_saved_run_gives_the_same_values(problem: ss.Problem, tmp_path: Path) -> None:
     run = ss.simulate(problem, 20.0)
     assert run.status.ok
     assert len(run.catalogue(event_rate=0.0)) > 0

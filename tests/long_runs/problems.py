@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
+import h5py
 import numpy as np
 
 import stickslip as ss
-from tests.engine.test_moving_folds import KINKED, MATCHED, hardening
-from tests.engine.test_moving_folds import SLAB as THIN
+from tests.engine.moving_folds import KINKED, MATCHED, hardening
+from tests.engine.moving_folds import SLAB as THIN
+from tests.problems import SLAB
 
 F = ss.friction
-SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 
 
 def bundled(name: str, times: float = 1.0) -> tuple[ss.Problem, float]:
@@ -58,9 +60,6 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
     ),
 }
 
-SLOW = ("moving levels", "moving levels, knots")
-"""Runs of seconds: the branches are worked out anew at every step."""
-
 
 def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
     """What is not the same in two solutions, bit for bit."""
@@ -73,3 +72,17 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
         found += [] if np.array_equal(a, b, equal_nan=a.dtype.kind == "f") else [f"checkpoint {name}"]
     ends = [(run.status, run.duration, run.history.duration, run.problem) for run in (one, other)]
     return found + ([] if ends[0] == ends[1] else ["end"])
+
+
+def differences_of_files(one: Path, other: Path) -> list[str]:
+    """Return what is not the same in the files of two solutions, bit for bit, but for the memory in which the engine calculates."""
+    with h5py.File(one) as a, h5py.File(other) as b:
+        tables = [name for name in sorted({*a, *b}) if name != "engine_scratch"]
+        found = [name for name in tables if name not in a or name not in b or _bits(a[name]) != _bits(b[name])]
+        attributes = sorted({*a.attrs, *b.attrs})
+        return found + [name for name in attributes if not np.array_equal(a.attrs.get(name), b.attrs.get(name))]
+
+
+def _bits(table: h5py.Dataset) -> tuple[object, ...]:
+    values = table[()]
+    return table.shape, table.dtype, values.tolist() if table.dtype.hasobject else values.tobytes()

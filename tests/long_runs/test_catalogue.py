@@ -26,8 +26,8 @@ from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
-from tests.long_runs.problems import RUNS, SLOW, bundled, differences
-from tests.long_runs.test_resume import killed
+from tests.long_runs.problems import RUNS, bundled, differences
+from tests.long_runs.processes import killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
 SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]
@@ -38,9 +38,9 @@ def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
     pd.testing.assert_frame_equal(one, other, check_exact=True)
 
 
-@pytest.mark.parametrize("name", [name for name in RUNS if name not in SLOW])
+@pytest.mark.parametrize("name", RUNS)
 @pytest.mark.parametrize("capacity", [64, 512])
-def test_it_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", capacity)
     monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", capacity)
     problem, duration = RUNS[name]
@@ -59,7 +59,7 @@ def test_files_hold_every_digit(suffix: str, tmp_path: Path) -> None:
     assert sorted(file.name for file in tmp_path.iterdir()) == ["events.checkpoint.nc", path.name]
 
 
-def test_netcdf_speaks_for_itself(tmp_path: Path) -> None:
+def test_netcdf_holds_scenario_status_and_units(tmp_path: Path) -> None:
     ss.catalogue(*RUNS["slab that heals"], tmp_path / "events.nc")
     with xr.open_dataset(tmp_path / "events.nc", engine="h5netcdf", decode_times=False) as file:
         assert file.attrs["status"] == "finished"
@@ -77,7 +77,7 @@ def test_netcdf_names_the_units_of_energies(name: str, unit: str, tmp_path: Path
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
+def test_a_finished_catalogue_continues(suffix: str, tmp_path: Path) -> None:
     """Also where the end of the first run cut an event, whose row is made again."""
     problem, duration = RUNS["slab that heals"]
     whole = ss.simulate(problem, duration).catalogue()
@@ -90,7 +90,7 @@ def test_a_finished_catalogue_goes_on(suffix: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals", "block that heals"])
-def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As those of the whole run, and taken up too: relative 1e-12 of the largest, for sums run over other pieces."""
     monkeypatch.setattr(module, "CAPACITY", 64)
     problem, duration = RUNS[name]
@@ -107,7 +107,7 @@ def test_energies_of_events_whose_history_is_forgotten(name: str, tmp_path: Path
 
 
 @pytest.mark.parametrize("events", [1, 5])
-def test_events_stop_it_where_they_stop_a_run(events: int, tmp_path: Path) -> None:
+def test_a_number_of_events_stops_a_catalogue_as_it_stops_a_run(events: int, tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]
     short = ss.catalogue(problem, duration, tmp_path / "events.csv", max_events=events)
     same(short, ss.simulate(problem, duration, max_events=events).catalogue())
@@ -134,7 +134,7 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     assert capacities == {512}
 
 
-def test_an_event_that_does_not_end_fills_the_room_and_says_so() -> None:
+def test_an_event_that_does_not_end_fills_the_memory_and_says_so() -> None:
     """A contact that creeps for ever above the event rate is one event, and its history has to be kept."""
     problem = ss.Problem(ss.SpringBlock(1.0, 1.0, 10.0), ss.friction.SinusoidalSlip(0.5, 0.01, 1.0), 0.1, initial_excess=1e-3)
     table = ss.catalogue(problem, 1e6, event_rate=1e-9, max_pieces=20_000)
@@ -165,7 +165,7 @@ ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lam
 
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize(("suffix", "with_signal"), [("csv", "SIGKILL"), ("nc", "SIGKILL"), ("csv", "SIGINT"), ("nc", "SIGINT")])
-def test_killed_or_interrupted_it_ends_with_the_same_rows(suffix: str, with_signal: str, tmp_path: Path) -> None:
+def test_a_killed_or_interrupted_catalogue_ends_with_the_same_rows(suffix: str, with_signal: str, tmp_path: Path) -> None:
     done = killed(LONG.format(suffix=suffix), tmp_path, "events.checkpoint.nc", signal.Signals[with_signal], times=3)
     assert done.returncode == (0 if with_signal == "SIGINT" else -signal.SIGKILL)
     checkpoint = tmp_path / "events.checkpoint.nc"
@@ -207,7 +207,7 @@ def test_solution_and_checkpoint_are_not_taken_for_each_other(tmp_path: Path) ->
         ss.resume(tmp_path / "events.checkpoint.nc", checkpoint=tmp_path / "other.nc")
 
 
-def test_resume_looks_at_the_file(tmp_path: Path) -> None:
+def test_resume_recognises_catalogues_and_runs(tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]
     table = ss.catalogue(problem, duration, tmp_path / "events.csv")
     run = ss.simulate(problem, duration, checkpoint=tmp_path / "run.nc")
@@ -215,7 +215,7 @@ def test_resume_looks_at_the_file(tmp_path: Path) -> None:
     assert differences(ss.resume(tmp_path / "run.nc"), run) == []
 
 
-def test_bad_arguments(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bad_arguments_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     problem, duration = RUNS["slab that heals"]
     for arguments, message in (
         ({"path": tmp_path / "events.txt"}, r"events\.txt: the name must end in \.csv, \.parquet or \.nc"),

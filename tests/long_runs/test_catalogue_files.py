@@ -76,7 +76,7 @@ def test_two_runs_do_not_write_into_one_catalogue(tmp_path: Path, other: str) ->
 
 
 @pytest.mark.parametrize("left", ["", "start,end\n1.0,", "begun"])
-def test_a_kill_while_a_finished_table_is_lengthened(tmp_path: Path, left: str) -> None:
+def test_a_catalogue_killed_while_it_lengthens_a_table_continues(tmp_path: Path, left: str) -> None:
     """Whatever is in the growing file: its rows are made again from the table."""
     checkpoint = began(tmp_path, "nc")
     rows = Rows(tmp_path / "events.nc")
@@ -88,7 +88,7 @@ def test_a_kill_while_a_finished_table_is_lengthened(tmp_path: Path, left: str) 
     pd.testing.assert_frame_equal(ss.resume(checkpoint, DURATION), whole, check_exact=True)
 
 
-def test_rows_that_were_changed_are_noticed(tmp_path: Path) -> None:
+def test_changed_rows_are_refused(tmp_path: Path) -> None:
     checkpoint = began(tmp_path)
     text = (tmp_path / "events.csv").read_text()
     place = text.index("\n") + 3

@@ -27,9 +27,9 @@ from stickslip.solution.window import Window
 from stickslip.trajectory.history import Epoch
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
-from tests.engine.test_creep import SLAB
 from tests.long_runs.problems import differences as differences_of_runs
-from tests.long_runs.test_resume import killed
+from tests.long_runs.processes import killed
+from tests.problems import SLAB
 
 STABLE = ss.friction.ExponentialSlipWeakening(static=0.8, dynamic=0.3, distance=30.0)
 RUNS: dict[str, tuple[ss.Problem, float, float]] = {
@@ -87,7 +87,7 @@ def around_leaps(name: str) -> list[int]:
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_stopped_around_leaps_and_taken_up(name: str, tmp_path: Path) -> None:
+def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     whole, path, duration = whole_run(name), tmp_path / "run.nc", RUNS[name][1]
     assert len(whole.creep) > 0
     for stop in around_leaps(name):
@@ -99,7 +99,7 @@ def test_stopped_around_leaps_and_taken_up(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_an_end_within_a_leap_goes_on_as_if_it_had_not_been(name: str, tmp_path: Path) -> None:
+def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tmp_path: Path) -> None:
     """The end of the first run cuts a leap, or allows none: a longer one takes it whole."""
     problem, duration, rtol = RUNS[name]
     whole, path = whole_run(name), tmp_path / "run.nc"
@@ -123,7 +123,7 @@ def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("events", [1, 2])
-def test_events_stop_it(events: int, tmp_path: Path) -> None:
+def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) -> None:
     """However often the run is looked at; and it says that it creeps."""
     problem, duration, rtol = RUNS["up to a pulse"]
     path, seen = tmp_path / "run.nc", list[Report]()
@@ -164,7 +164,7 @@ ss.simulate(problem, 20 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpo
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
-def test_killed_it_goes_on(tmp_path: Path) -> None:
+def test_a_killed_run_continues_bit_for_bit(tmp_path: Path) -> None:
     killed(CREEPING, tmp_path, "run.nc", signal.SIGKILL, times=2)
     stopped = ss.open_solution(tmp_path / "run.nc")
     assert stopped.status.name == "under way"
@@ -173,7 +173,7 @@ def test_killed_it_goes_on(tmp_path: Path) -> None:
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(stopped.problem, end, creep_rtol=1e-5)) == []
 
 
-def test_window_on_the_pulse_behind_creep() -> None:
+def test_the_pulse_after_creep_is_that_of_the_run_without_leaps() -> None:
     """Around its peak the slip history in local time is that of the run with every round trip, to the tolerance of the leap."""
     problem, duration, rtol = RUNS["up to a pulse"]
     exact, leaped = ss.simulate(problem, duration, creep_rtol=0.0), whole_run("up to a pulse")
@@ -189,9 +189,15 @@ def _around_peak(window: Window) -> np.ndarray:
     return window.event_slip(peak + np.linspace(-6.0, 2.0, 300)) - float(window.event_slip(peak))
 
 
-def test_time_behind_years_of_creep_is_sharp() -> None:
-    """The second pulse of the printed slab, after 332 days: local times count from a whole number of round trips."""
-    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+@pytest.fixture(scope="module")
+def years_of_creep() -> ss.Solution:
+    """Run the printed slab up to its second pulse, after 332 days."""
+    return ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+
+
+def test_time_after_years_of_creep_is_sharp(years_of_creep: ss.Solution) -> None:
+    """At the second pulse, local times count from a whole number of round trips."""
+    run = years_of_creep
     window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
     assert window.epoch.trip > 5_000_000
     assert 0.0 <= window.epoch.offset < ROUND
@@ -201,8 +207,8 @@ def test_time_behind_years_of_creep_is_sharp() -> None:
     np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
 
 
-def test_no_gap_at_the_borders_of_a_leap_seen_from_anywhere() -> None:
-    run = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
+def test_slip_has_no_gap_at_the_borders_of_a_leap(years_of_creep: ss.Solution) -> None:
+    run = years_of_creep
     for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
         history = run.history.seen_from(epoch)
         for leap in run.creep.itertuples():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 import stickslip as ss
-from tests.engine.test_verified_numbers import CRITICAL, SLAB, rate_law_slab, slip_law_slab
+from tests.problems import CRITICAL, SLAB, rate_law_slab, slip_law_slab
 
 F = ss.friction
 HEAVY = replace(SLAB, contact_mass=1e6)

@@ -12,9 +12,8 @@ import stickslip as ss
 from stickslip.observables.energy.energetics import ENERGETICS_COLUMNS
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.trajectory.history import History
-from tests.engine.test_verified_numbers import IMPEDANCE, MODULUS, SLAB, THICKNESS, slip_law_slab
 from tests.observables.runs import LOSSY, RUNS
-from tests.problems import scaled_rate
+from tests.problems import IMPEDANCE, MODULUS, SLAB, THICKNESS, scaled_rate, slip_law_slab
 
 F = ss.friction
 COULOMB = F.Coulomb(0.8, 0.3)
@@ -81,7 +80,7 @@ def test_what_damping_takes_is_a_blocks_radiation() -> None:
     assert event.radiation_efficiency == 1.0
 
 
-def test_a_slab_under_coulomb_friction() -> None:
+def test_a_slab_under_coulomb_friction_overshoots_fully_and_keeps_no_waves() -> None:
     """Rigid driver: a round trip of sliding, an overshoot of 100 %, and no waves left."""
     event = ss.simulate(ss.Problem(SLAB, COULOMB, initial_load=LOAD), 20.0, rtol=1e-12).energetics().iloc[0]
     drop = LOAD - SLIDING
@@ -93,7 +92,7 @@ def test_a_slab_under_coulomb_friction() -> None:
     assert event.fracture == 0.0
 
 
-def test_radiation_into_a_matched_driver() -> None:
+def test_a_matched_driver_takes_the_radiation_of_the_closed_form() -> None:
     """Behind the driver goes Z v^2: of the far stress' unloading wave first, then of the slip. No drop beyond the sliding one."""
     run = ss.simulate(ONE_EVENT, 20.0, rtol=1e-12)
     event = run.energetics().iloc[0]
@@ -111,7 +110,7 @@ def test_radiation_into_a_matched_driver() -> None:
     assert at == pytest.approx([radiated / 2, radiated, later, later], rel=1e-12, abs=0.0)
 
 
-def test_waves_of_an_event_are_those_that_bounce_behind_it() -> None:
+def test_waves_of_an_event_are_those_that_bounce_after_it() -> None:
     run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
     event, row = run.energetics().iloc[0], run.events.iloc[0]
     before, after = run.energy([row.start, row.end]).trapped.values
@@ -120,7 +119,7 @@ def test_waves_of_an_event_are_those_that_bounce_behind_it() -> None:
     assert event.radiated == 0.0
 
 
-def test_waves_of_an_event_before_are_not_its_own() -> None:
+def test_waves_of_an_event_exclude_those_of_earlier_events() -> None:
     run = ss.simulate(*RUNS["slab, just above critical"], rtol=1e-12)
     table, rows = run.energetics(), run.events
     assert len(table) > 1
@@ -142,7 +141,7 @@ WEAKENED = {
 
 
 @pytest.mark.parametrize("name", WEAKENED)
-def test_fracture_energy_of_linear_slip_weakening(name: str) -> None:
+def test_linear_slip_weakening_has_the_fracture_energy_of_its_triangle(name: str) -> None:
     """S (mu_s - mu_d) D / 2 where it slips further than D."""
     problem, duration, expected = WEAKENED[name]
     run = ss.simulate(problem, duration, rtol=1e-12)
@@ -155,7 +154,7 @@ def test_fracture_energy_of_linear_slip_weakening(name: str) -> None:
     assert run.energetics(0.0).fracture[0] == pytest.approx(run.pulses(0.0).query("event == 0").fracture.sum(), rel=1e-14, abs=0.0)
 
 
-def test_fracture_energy_of_pulses_that_walk_over_a_wave_of_friction() -> None:
+def test_pulses_over_a_wave_of_friction_have_its_fracture_energy() -> None:
     """From a maximum of friction, where slip is slowest, down to the next minimum: S a pi / omega, over a slip of pi / omega."""
     run = ss.simulate(slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0, rtol=1e-12)
     pulses = run.pulses()
@@ -175,7 +174,7 @@ def test_pulses_are_those_that_the_catalogue_counts(name: str) -> None:
     assert counted.tolist() == run.events.pulses.tolist()
 
 
-def test_radiation_against_the_velocity_at_the_driver() -> None:
+def test_radiation_is_the_integral_of_the_velocity_at_the_driver() -> None:
     """Across rests that were leaped over, too; the driver moves."""
     problem = ss.Problem(LOSSY, COULOMB, 0.01, initial_excess=1e5, far_stress=7e7, far_stress_rate=1e3)
     run = ss.simulate(problem, 400.0, rtol=1e-12)
@@ -198,7 +197,7 @@ def test_a_block_that_swings_back_drops_from_its_load() -> None:
     assert table.overshoot[:2].to_numpy() == pytest.approx([1.0, 1.0], rel=1e-11, abs=0.0)
 
 
-def test_no_overshoot_where_friction_does_not_fall() -> None:
+def test_friction_that_does_not_fall_has_no_overshoot() -> None:
     problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), F.Coulomb(0.4, 0.4), pull_rate=0.1, initial_excess=0.0)
     event = ss.simulate(problem, 0.5).energetics(0.0).iloc[0]
     assert event.slip > 0.0
@@ -206,7 +205,7 @@ def test_no_overshoot_where_friction_does_not_fall() -> None:
     assert math.isnan(event.overshoot)
 
 
-def test_a_run_without_events() -> None:
+def test_a_run_without_events_has_empty_tables() -> None:
     run = ss.simulate(ss.Problem(SLAB, COULOMB, initial_load=1e7), 20.0)
     assert run.energetics().empty
     assert list(run.energetics()) == list(ENERGETICS_COLUMNS)
@@ -233,7 +232,7 @@ def wave_kinetic(run: ss.Solution, times: np.ndarray) -> np.ndarray:
     return np.array([0.5 * SLAB.density * np.mean(run.field(x, time).velocity ** 2) * THICKNESS for time in times])
 
 
-def test_trapped_energy_is_told_in_joules_and_as_a_share_of_what_the_slab_holds() -> None:
+def test_trapped_energy_is_given_in_joules_and_as_a_share() -> None:
     """It is that of the energies at the end; strength^2 / (2 K) is what a slab at its static strength holds."""
     problem, duration = RUNS["slab, slip law"]
     run = ss.simulate(problem, float(ss.simulate(problem, duration).events["peak_time"][0]))  # ends while it slips

@@ -10,8 +10,9 @@ import pytest
 import stickslip as ss
 from stickslip.trajectory.history import History
 from tests.engine import problems
-from tests.engine.test_against_method_of_steps import KINDS
-from tests.engine.test_verified_numbers import (
+from tests.engine.problems import KINDS
+from tests.observables.runs import worst_imbalance
+from tests.problems import (
     IMPEDANCE,
     MODULUS,
     RATE_LAW,
@@ -19,11 +20,10 @@ from tests.engine.test_verified_numbers import (
     SLAB,
     THICKNESS,
     rate_law_slab,
+    scaled_rate,
     slip_law_block,
     slip_law_slab,
 )
-from tests.observables.runs import worst_imbalance
-from tests.problems import scaled_rate
 
 RUNS = {
     "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
@@ -39,13 +39,13 @@ RUNS = {
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_balance_closes(name: str) -> None:
+def test_energy_balances(name: str) -> None:
     assert worst_imbalance(ss.simulate(*RUNS[name], rtol=1e-12)) < 1e-9
 
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("kind", KINDS)
-def test_balance_closes_on_random_problems(kind: str, seed: int) -> None:
+def test_energy_balances_on_random_problems(kind: str, seed: int) -> None:
     rng = np.random.default_rng([seed, 77, *kind.encode()])
     body, law = KINDS[kind](rng)
     run = ss.simulate(problems.problem(rng, body, law), problems.duration(body, 3.3), rtol=1e-12)
@@ -61,7 +61,7 @@ def test_balance_notices_a_wrong_slip_rate(name: str) -> None:
     assert worst_imbalance(replace(run, history=history)) > 1e-6
 
 
-def test_energy_against_its_definition() -> None:
+def test_stored_energy_agrees_with_its_definition() -> None:
     """At rest and uniformly stressed, a slab stores tau^2 h / (2 G); the first slip of the rate law sheds what the table says."""
     run = ss.simulate(rate_law_slab(), 20.0)
     # Coulomb-like round trip: after arrest the stress is uniform again but for the law's curvature
@@ -110,7 +110,7 @@ SPLIT = {
 
 
 @pytest.mark.parametrize("name", SPLIT)
-def test_elastic_and_kinetic_energy_against_the_field(name: str) -> None:
+def test_elastic_and_kinetic_energy_agree_with_the_field(name: str) -> None:
     """Stress and velocity inside the slab, squared and added up on a fine grid."""
     problem, duration, times = SPLIT[name]
     run = ss.simulate(problem, duration, rtol=1e-12)
@@ -134,7 +134,7 @@ def test_elastic_and_kinetic_energy_against_the_field(name: str) -> None:
         )
 
 
-def test_split_of_a_slab_that_slides_as_a_whole() -> None:
+def test_energy_of_a_slab_that_slides_as_a_whole_splits_as_the_closed_form() -> None:
     """Coulomb friction: the front of the slip is at the driver after h/c; behind it all moves at v under the sliding stress."""
     load, sliding, travel = 8.5e7, 3e7, THICKNESS / SLAB.wave_speed
     run = ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=load), 20.0)
@@ -147,7 +147,7 @@ def test_split_of_a_slab_that_slides_as_a_whole() -> None:
     assert shares[1] == pytest.approx([released / 2, released, (released + rest) / 2, rest], rel=1e-12, abs=0.0)
 
 
-def test_split_of_a_block() -> None:
+def test_energy_of_a_block_splits_into_spring_and_motion() -> None:
     """A block without friction to speak of swings: K (D^2 - (D - u)^2) / 2 out of the spring, m v^2 / 2 in the block."""
     problem = ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0), ss.friction.Coulomb(0.4, 0.3), initial_load=4.5)
     run = ss.simulate(problem, 0.5)
@@ -157,7 +157,7 @@ def test_split_of_a_block() -> None:
     assert float(energy.elastic[0]) == pytest.approx(((4.5 - 50.0 * slip) ** 2 - 4.5**2) / 100.0, rel=1e-12, abs=0.0)
 
 
-def test_split_is_as_sharp_late_as_early() -> None:
+def test_energy_splits_as_sharply_late_as_early() -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
     local = np.array([0.5, 2.0, 3.5, 5.0])
     early, late = (run.window(n).energy(local) for n in (0, 1))
@@ -165,7 +165,7 @@ def test_split_is_as_sharp_late_as_early() -> None:
     assert (early.kinetic > 1e7).all()
 
 
-def test_note_on_the_energy_trapped_in_the_slab() -> None:
+def test_the_note_on_trapped_energy_agrees_with_the_field() -> None:
     """Against the field: what moves, and stress about its mean, which is what a slab at rest would have; 1e-3 for the sums."""
     problem = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.6, 0.3, 5.0), initial_excess=1e6)
     run = ss.simulate(problem, 21.0)

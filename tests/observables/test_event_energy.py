@@ -9,9 +9,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.trajectory.history import History
-from tests.engine.test_verified_numbers import IMPEDANCE, ROUND, SLAB, rate_law_slab
 from tests.observables.runs import LOSSY, RUNS, F
-from tests.problems import scaled_rate
+from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab, scaled_rate
 
 
 @pytest.mark.parametrize("name", RUNS)
@@ -45,7 +44,7 @@ def test_energies_of_events_are_those_of_the_run() -> None:
     assert table.trapped.to_numpy() == pytest.approx(ends.trapped.values, rel=1e-6, abs=0.0)
 
 
-def test_balance_late_in_a_run_in_seconds_and_in_local_time() -> None:
+def test_energy_balances_late_in_a_run_in_seconds_and_in_local_time() -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
     window, event = run.window(1), run.events.iloc[1]
     local = np.linspace(-1.0, 7.0, 33)
@@ -57,7 +56,7 @@ def test_balance_late_in_a_run_in_seconds_and_in_local_time() -> None:
     assert float(np.abs(run.energy(event.start + local).balance).max()) < 1e-12 * released
 
 
-def test_trapped_energy_against_the_load_that_comes_back() -> None:
+def test_trapped_energy_agrees_with_the_load_that_comes_back() -> None:
     """At rest the waves inside are the load that is still to come and what went before: read from the contact, added up by hand."""
     run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
     now, half = 7.0, ROUND / 2

@@ -18,8 +18,8 @@ import stickslip as ss
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.observables.field import Field
 from tests.engine import problems
-from tests.engine.test_properties import few, ran
-from tests.engine.test_properties import problems as random_problems
+from tests.engine.drawn import few, ran
+from tests.engine.drawn import problems as random_problems
 from tests.observables.runs import slab_of
 from tests.problems import scaled_rate
 
@@ -108,7 +108,7 @@ def parallelogram(run: ss.Solution, speed: float = 1.0) -> Field:
     return Field(*sums)
 
 
-def test_the_wave_equation(run: ss.Solution) -> None:
+def test_the_field_obeys_the_wave_equation(run: ss.Solution) -> None:
     """d'Alembert: f(x, t + a) + f(x, t - a) = f(x + ca, t) + f(x - ca, t), for displacement, velocity and stress."""
     assert max(float(error.max()) for error in parallelogram(run)) < ROUNDING
     assert min(float(error.max()) for error in parallelogram(run, speed=1.01)) > 1e-6
@@ -122,7 +122,7 @@ def contact_errors(run: ss.Solution) -> Field:
     return Field(*(np.abs(error) / share for error, share in zip(errors, size, strict=True)))
 
 
-def test_the_contact(run: ss.Solution) -> None:
+def test_the_field_meets_the_contact(run: ss.Solution) -> None:
     """Slip and slip rate are the contact's; the slab pulls it with beta - Z v, which without contact mass is the friction."""
     slab, time = slab_of(run), moments(run)
     size = scales(slab)
@@ -134,7 +134,7 @@ def test_the_contact(run: ss.Solution) -> None:
     assert np.abs(run.slip_rate(time)).max() > 1e-3 * size.velocity
 
 
-def test_the_contact_notices_a_wrong_history(run: ss.Solution) -> None:
+def test_the_contact_errors_show_a_wrong_history(run: ss.Solution) -> None:
     """A slip rate that is a thousandth too large everywhere sends back another load than the contact received."""
     store = run.history.store
     history = replace(run.history, store=scaled_rate(store, 1.001))
@@ -156,7 +156,7 @@ def driver_error(run: ss.Solution, wrong: float = 1.0) -> float:
     return float(np.abs(at.stress - by_driver).max() / size.stress)
 
 
-def test_the_driver(run: ss.Solution) -> None:
+def test_the_field_meets_the_driver(run: ss.Solution) -> None:
     """It does so, and its stress (rigid) or rate (else) is not just what it was at the start."""
     assert driver_error(run) < ROUNDING
     at, size = run.field(slab_of(run).thickness, moments(run)), scales(slab_of(run))
@@ -169,7 +169,7 @@ def test_the_driver(run: ss.Solution) -> None:
 @pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "sinusoidal-slip", "rate-and-state", "lagged"])
 @given(data=st.data())
 @few
-def test_whatever_the_law(kind: str, data: st.DataObject) -> None:
+def test_the_field_obeys_its_equations_under_random_laws(kind: str, data: st.DataObject) -> None:
     """Laws, drivers, loads and rules at random, at a loose rtol: the wave equation and both boundaries still hold to rounding."""
     problem = data.draw(random_problems(kind))
     assume(isinstance(problem.body, ss.ElasticSlab))
@@ -179,7 +179,7 @@ def test_whatever_the_law(kind: str, data: st.DataObject) -> None:
     assert driver_error(run) < ROUNDING
 
 
-def test_the_start(run: ss.Solution) -> None:
+def test_the_field_starts_from_uniform_shear(run: ss.Solution) -> None:
     """Before anything has moved: uniform stress, displacement and velocity linear in x; the driver may start to pull at once."""
     slab, problem = slab_of(run), run.problem
     x = np.linspace(0.0, slab.thickness, 33)

@@ -11,7 +11,8 @@ import pytest
 import stickslip as ss
 from stickslip.observables.field import Field
 from stickslip.trajectory.history import Floats
-from tests.engine.test_verified_numbers import (
+from tests.observables.runs import slab_of
+from tests.problems import (
     IMPEDANCE,
     MODULUS,
     ROUND,
@@ -21,7 +22,6 @@ from tests.engine.test_verified_numbers import (
     slip_law_block,
     slip_law_slab,
 )
-from tests.observables.runs import slab_of
 
 F = ss.friction
 
@@ -84,7 +84,7 @@ def test_velocity_is_the_rate_of_displacement(name: str, x: float) -> None:
 
 @pytest.mark.parametrize("name", SMOOTH)
 @pytest.mark.parametrize("time", [1.3, 4.9, 7.0, 11.9])
-def test_its_energy_is_the_stored_one(name: str, time: float) -> None:
+def test_the_energy_of_the_field_is_the_stored_one(name: str, time: float) -> None:
     """rho v^2 / 2 + sigma^2 / 2G over the thickness, and the contact mass's: 1e-12 of the energy; 1e-3 more stress shows."""
     run = ss.simulate(SMOOTH[name], 12.0)
     slab = slab_of(run)
@@ -155,7 +155,7 @@ def test_fronts_have_two_sides(place: float) -> None:
     assert near[1] == pytest.approx(AFTER, rel=1e-9, abs=0.0)
 
 
-def test_stress_after_all_is_uniform_and_far_below() -> None:
+def test_final_stress_is_uniform_and_far_below() -> None:
     """S (2 muD - muS) all through the slab, and u = D0 x / h on top of the slip 2 (muS - muD) S h / G: relative 1e-12."""
     x = np.linspace(0.0, THICKNESS, 11)
     at = coulomb().field(x, 7.0)
@@ -168,7 +168,7 @@ def test_stress_after_all_is_uniform_and_far_below() -> None:
 
 
 @pytest.mark.parametrize("mass", [0.0, 1e6])
-def test_the_same_field_after_ten_seconds_and_after_nine_hundred_years(mass: float) -> None:
+def test_the_field_is_as_sharp_after_900_years_as_after_ten_seconds(mass: float) -> None:
     """In local time, before, in and behind an event: 1e-12 of the largest. Seconds of the run, 4e-6 apart, would show."""
     pull, windows = 1e-3 / ss.YEAR, []
     for wait in (10.0, 900 * ss.YEAR):
@@ -187,7 +187,7 @@ def test_the_same_field_after_ten_seconds_and_after_nine_hundred_years(mass: flo
     assert contact.displacement == pytest.approx(windows[1].event_slip(t[:, 0]), rel=0.0, abs=0.0)
 
 
-def test_between_events_of_a_rigid_driver_the_waves_go_on() -> None:
+def test_between_events_of_a_rigid_driver_waves_keep_travelling() -> None:
     """Hours after its event, at rest, the slab still rings: its field is that of the round trip before, and one ramp more."""
     run = ss.simulate(SMOOTH["slip law"], 20_000.0)
     window = run.window(0)
@@ -215,7 +215,7 @@ def test_arrays_are_broadcast() -> None:
     assert np.array_equal(many[4, 1], outer.velocity[:, 4])
 
 
-def test_a_dataset_with_places() -> None:
+def test_a_dataset_with_places_holds_the_field() -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
     x, t = np.linspace(0.0, THICKNESS, 5), np.linspace(0.0, 8.0, 7)
     for readings in (run, run.window(1)):
@@ -247,6 +247,6 @@ def test_a_block_has_no_inside() -> None:
         (0.0, 0.0, "before", "side must be 'left' or 'right', got 'before'"),
     ],
 )
-def test_places_and_times_outside(x: float, t: float, side: str, text: str) -> None:
+def test_places_and_times_outside_are_refused(x: float, t: float, side: str, text: str) -> None:
     with pytest.raises(ss.InputError, match=text):
         coulomb().field(x, t, side)  # type: ignore[arg-type]

@@ -28,7 +28,7 @@ def amplification_at(solution: ss.Solution, time: float) -> float:
     return float(found.amplification[np.searchsorted(found.time, time, side="right") - 1])
 
 
-def test_one_echo_in_closed_form() -> None:
+def test_one_echo_amplifies_by_the_closed_form() -> None:
     """|1 - 2 Z / g'(v_B)| with g'(v_B) = Z (1 - 1/q^2) at the jump up, q^2 = alpha / alpha_c: 1.4876; relative 1e-9."""
     run = ss.simulate(ss.Problem(SLAB, WEAKENING, initial_excess=1e-6), 1.5 * TRIP)
     q2 = 1.0 / 0.196
@@ -37,7 +37,7 @@ def test_one_echo_in_closed_form() -> None:
 
 
 @pytest.mark.parametrize("driver", [math.inf, 3e8, 1e6])
-def test_against_a_disturbed_run(driver: float) -> None:
+def test_the_amplification_is_that_of_a_disturbed_run(driver: float) -> None:
     """Loads of two runs that start 1e-4 Pa apart, after 3 to 60 round trips with several events: 1 % of their difference."""
     push, trips = 1e-4, (0.4, 1.4, 3.4, 20.4, 50.4)
     run, pushed = (run_of(excess, 60.0, driver) for excess in (1.0, 1.0 + push))
@@ -48,7 +48,7 @@ def test_against_a_disturbed_run(driver: float) -> None:
     assert predictability(run_of(1.0, 60.0)).largest > 2.0
 
 
-def test_the_horizon() -> None:
+def test_the_horizon_is_where_50_digits_lose_the_sequence() -> None:
     """Where 50 digits (`tests/truth`) say that the sequence is lost, at the default tolerance.
 
     Just above alpha_c an echo multiplies by 4e5: the second generation of micro-events, from row 24 645 on, is the first whose
@@ -82,7 +82,7 @@ def test_other_problems_are_refused_in_one_line() -> None:
             predictability(run)
 
 
-def test_files_say_it(tmp_path: Path) -> None:
+def test_files_hold_the_predictability(tmp_path: Path) -> None:
     run = run_of(1.0, 60.0)
     run.to_netcdf(tmp_path / "run.nc")
     ss.catalogue(run.problem, run.duration, tmp_path / "events.nc", rtol=1e-12)

@@ -15,7 +15,7 @@ FIG6 = ss.load_scenario("fig6-slab").problem
 LOOP = ss.load_scenario("fig4-loop")
 
 
-def test_the_first_event_rests_on_no_choice_and_every_rule_agrees() -> None:
+def test_the_first_event_depends_on_no_choice_and_every_rule_agrees() -> None:
     runs = {rule: ss.simulate(replace(FIG6, selection=rule), 12.0) for rule in SELECTION_RULES}
     for solution in runs.values():
         found = solution.rule_influence
@@ -25,7 +25,7 @@ def test_the_first_event_rests_on_no_choice_and_every_rule_agrees() -> None:
 
 
 @pytest.mark.parametrize("rule", SELECTION_RULES)
-def test_the_loop_rests_on_the_rule(rule: str) -> None:
+def test_the_loop_depends_on_the_rule(rule: str) -> None:
     """The load grows from 60 MPa by G V/h: it is between the folds once it has passed 64.47 MPa."""
     solution = ss.simulate(replace(LOOP.problem, selection=rule), LOOP.duration)
     found = solution.rule_influence
@@ -35,7 +35,7 @@ def test_the_loop_rests_on_the_rule(rule: str) -> None:
     assert found.since == pytest.approx((64_471_887.242 - 60e6) / growth, rel=1e-9, abs=0)
 
 
-def test_the_first_time_with_a_choice_in_a_leap_of_centuries() -> None:
+def test_the_first_choice_is_found_within_a_leap_of_centuries() -> None:
     """maximal leaves stick as soon as it may: that is when the load first is between the folds."""
     runs = {rule: ss.simulate(replace(FIG6, selection=rule), 480 * ss.YEAR) for rule in ("perfect-delay", "maximal")}
     second = float(runs["maximal"].events.start[1])
@@ -57,7 +57,7 @@ def test_a_window_of_a_third_of_a_millipascal_is_not_overlooked() -> None:
     assert not np.any((before > low + 3e-8) & (before < high - 3e-8))
 
 
-def test_no_choice_where_the_rate_is_unique() -> None:
+def test_a_unique_rate_leaves_no_choice() -> None:
     for problem in (
         replace(FIG6, body=replace(SLAB, contact_mass=1e6)),
         replace(FIG6, friction=replace(FIG6.friction, alpha=0.1)),

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from tests.engine.test_verified_numbers import SLAB, rate_law_slab
+from tests.problems import SLAB, rate_law_slab
 
 TABLE = pd.DataFrame(
     {
@@ -18,7 +18,7 @@ TABLE = pd.DataFrame(
 )
 
 
-def test_by_hand() -> None:
+def test_statistics_agree_with_those_worked_out_by_hand() -> None:
     found = ss.studies.catalogue_statistics(TABLE)
     assert list(found.index) == ["recurrence", "slip"]
     recurrence, slip = found.loc["recurrence"], found.loc["slip"]
@@ -38,7 +38,7 @@ def test_equal_values_follow_each_other_without_correlation() -> None:
     assert np.isnan(found.next["recurrence"])
 
 
-def test_too_few_events() -> None:
+def test_too_few_events_give_missing_values() -> None:
     one = ss.studies.catalogue_statistics(ss.simulate(rate_law_slab(), 12.0).events)
     assert one.loc["recurrence", "count"] == 0
     assert one.loc["slip", "mean"] == pytest.approx(23.4402332474, rel=1e-10, abs=0.0)

@@ -90,7 +90,7 @@ def test_every_claim_has_a_measurement() -> None:
 
 
 @pytest.mark.parametrize("number", CLAIMS)
-def test_outcome(number: int, verdicts: dict[int, Verdict]) -> None:
+def test_every_claim_has_its_expected_outcome(number: int, verdicts: dict[int, Verdict]) -> None:
     found = verdicts[number]
     assert found.outcome == OUTCOMES[number]
     assert found.number == number
@@ -101,7 +101,9 @@ def test_outcome(number: int, verdicts: dict[int, Verdict]) -> None:
 
 
 @pytest.mark.parametrize(("number", "label", "expected", "rtol"), NUMBERS)
-def test_number(number: int, label: str, expected: float, rtol: float, verdicts: dict[int, Verdict]) -> None:
+def test_every_measured_number_is_the_expected_one(
+    number: int, label: str, expected: float, rtol: float, verdicts: dict[int, Verdict]
+) -> None:
     assert verdicts[number].value(label) == pytest.approx(expected, rel=rtol, abs=0)
 
 

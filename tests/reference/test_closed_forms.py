@@ -55,7 +55,7 @@ def test_coulomb_block_satisfies_its_equation(pull):
     assert np.all(block.slip_rate(np.linspace(1e-3, 0.999, 500) * block.duration) > 0)
 
 
-def test_coulomb_block_without_pull():
+def test_coulomb_block_without_pull_swings_half_a_period():
     block = CoulombBlock(BLOCK, 0.8, 0.3)
     assert block.duration == pytest.approx(math.pi * math.sqrt(2.8e12 / 3.43e13), rel=1e-15, abs=0)
     assert block.total_slip == pytest.approx(1e14 / 3.43e13, rel=1e-15, abs=0)
@@ -76,7 +76,7 @@ def test_pulse_train_satisfies_its_equation(load, start):
 
 
 @pytest.mark.parametrize("load", [1.51e8, 3e8])
-def test_pulse_period_by_quadrature(load):
+def test_pulse_period_agrees_with_quadrature(load):
     train = PulseTrain(9.8e6, load, 1e8, 1.0, 0.5, 5.0)
     period = quad(
         lambda u: 9.8e6 / (load - 1e8 * (1 + 0.5 * math.sin(5 * u))), 0, 2 * math.pi / 5, epsrel=1e-12, epsabs=0, limit=200
@@ -84,7 +84,7 @@ def test_pulse_period_by_quadrature(load):
     assert train.period == pytest.approx(period[0], rel=1e-10, abs=0)
 
 
-def test_no_pulses_below_the_largest_strength():
+def test_pulses_below_the_largest_strength_are_refused():
     with pytest.raises(ss.InputError, match="strength"):
         PulseTrain(9.8e6, 1.5e8, 1e8, 1.0, 0.5, 5.0)
 
@@ -128,13 +128,13 @@ def test_growth_rate_solves_its_equation(strength):
     assert rate * 1e4 / 3500.0 == pytest.approx(float(exact), rel=1e-8 if strength < 1.001 else 1e-12, abs=0)
 
 
-def test_no_growth_at_or_below_the_threshold():
+def test_growth_rate_is_zero_up_to_the_threshold():
     for strength in (-2.0, 0.0, 0.999, 1.0):
         assert growth_rate(SLAB, strength * 3.43e10 / 1e12) == 0.0
 
 
 @pytest.mark.parametrize("alpha", [0.197, 0.25, 1.0, 40.0, 1e6])
-def test_hyperbolic_folds_by_substitution(alpha):
+def test_hyperbolic_folds_solve_their_equations(alpha):
     folds = HyperbolicFolds(9.8e6, 1e8, 0.8, 0.3, alpha)
     with mpmath.workdps(40):
         a, drop, low = mpmath.mpf(alpha), mpmath.mpf(folds.drop), mpmath.mpf(0.3) * 10**8
@@ -153,7 +153,7 @@ def test_hyperbolic_folds_by_substitution(alpha):
     assert folds.maxwell_load == pytest.approx(float(resistance(v_m)), rel=1e-13, abs=0)
 
 
-def test_hyperbolic_numbers_of_the_paper_s_constants():
+def test_hyperbolic_folds_have_the_numbers_of_the_paper():
     folds = HyperbolicFolds(9.8e6, 1e8, 0.8, 0.3, 1.0)
     assert folds.fold_load == pytest.approx(64_471_887.242, rel=0, abs=5e-4)
     assert folds.maxwell_load == pytest.approx(67_215_203.566, rel=0, abs=5e-4)
@@ -164,7 +164,7 @@ def test_hyperbolic_numbers_of_the_paper_s_constants():
 
 
 @pytest.mark.parametrize(("pull", "excess"), [(1e-9, 0.0), (0.0, 1e8), (0.2, 1e11), (6.0, 0.0)])
-def test_linear_block_against_quadrature_of_its_equation(pull, excess):
+def test_linear_block_agrees_with_quadrature_of_its_equation(pull, excess):
     block = LinearBlock(BLOCK, 0.8, 0.3, 0.4, pull, excess)
 
     def motion(t, y):
@@ -184,7 +184,7 @@ def test_linear_block_against_quadrature_of_its_equation(pull, excess):
     assert block.total_slip == pytest.approx(float(late.y[0, -1]), rel=1e-9, abs=0)
 
 
-def test_linear_block_that_has_no_event():
+def test_linear_block_without_an_event_is_refused():
     with pytest.raises(ss.InputError, match="stiffness"):
         LinearBlock(BLOCK, 0.8, 0.3, 4.0, 1e-9)
     with pytest.raises(ss.InputError, match="excess"):

@@ -39,7 +39,7 @@ def stop_of(solution):
 
 
 @pytest.mark.parametrize("pull", [1e-9, 0.4])
-def test_coulomb_slab(pull):
+def test_a_coulomb_slab_has_its_closed_form(pull):
     exact = CoulombSlab(SLAB, 0.8, 0.3, pull)
     found = method_of_steps(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), pull_rate=pull, initial_excess=0.0), 9.0)
     t = np.array([0.0, 0.5, 3.0, 5.7, 5.8, 9.0])
@@ -48,7 +48,7 @@ def test_coulomb_slab(pull):
     assert float(found.load(ROUND_TRIP + 1e-9)) == pytest.approx(exact.end_load, rel=1e-8, abs=0)
 
 
-def test_coulomb_block():
+def test_a_coulomb_block_has_its_closed_form():
     exact = CoulombBlock(SOFT_BLOCK, 0.8, 0.3, 0.3)
     found = method_of_steps(ss.Problem(SOFT_BLOCK, ss.friction.Coulomb(0.8, 0.3), pull_rate=0.3, initial_excess=0.0), 1.2)
     t = np.linspace(0.0, 1.2, 13)
@@ -66,7 +66,7 @@ def test_linear_slip_weakening_block_meets_its_knot():
     np.testing.assert_allclose(found.slip(t), exact.slip(t), rtol=1e-8, atol=0)
 
 
-def test_slip_law_under_constant_load():
+def test_pulses_under_constant_load_have_their_closed_form():
     """A matched half-space sends nothing back: the load is constant, and slip comes in pulses."""
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=9.8e6)
     law = ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)
@@ -78,7 +78,7 @@ def test_slip_law_under_constant_load():
 
 
 @pytest.mark.parametrize("driver", [0.0, 3e6, 9.8e6, 1e8, math.inf])
-def test_stuck_slab(driver):
+def test_the_load_of_a_stuck_slab_has_its_closed_form(driver):
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=driver)
     far = {} if math.isinf(driver) else {"far_stress": 5e7, "far_stress_rate": 1e4}
     problem = ss.Problem(slab, ss.friction.Coulomb(0.8, 0.3), pull_rate=0.01, initial_load=6e7, **far)
@@ -89,7 +89,7 @@ def test_stuck_slab(driver):
     assert np.all(found.slip_rate(t) == 0.0)
 
 
-def test_slip_law_slab_as_printed():
+def test_the_printed_slip_law_slab_has_its_verified_numbers():
     law = ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)
     problem = ss.Problem(SLAB, law, pull_rate=V, initial_slip=math.pi / 10 + 1e-3, initial_load=1.5e8)
     found = method_of_steps(problem, 9.0)
@@ -106,7 +106,7 @@ def test_slip_law_slab_as_printed():
         (V, (0.1539863, 2.2567043, 4.3594187), 0.376105283),  # 5 cm/yr hastens the pulses by microseconds: the excess is 3430 Pa
     ],
 )
-def test_slip_law_slab_reconstructed(pull, peaks, slip):
+def test_the_reconstructed_slip_law_slab_has_its_verified_numbers(pull, peaks, slip):
     law = ss.friction.SinusoidalSlip(1.0, 0.5, 50.0)
     problem = ss.Problem(SLAB, law, pull_rate=pull, initial_slip=math.pi / 100 + 1e-3, initial_load=150_003_430.0)
     found = method_of_steps(problem, 8.0)
@@ -119,7 +119,7 @@ def test_slip_law_slab_reconstructed(pull, peaks, slip):
         assert peak(found, peaks[2])[0] - peak(found, peaks[1])[0] == pytest.approx(period, rel=1e-8, abs=0)
 
 
-def test_slip_law_slab_with_one_pulse():
+def test_the_slip_law_slab_with_one_pulse_has_its_verified_numbers():
     law = ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)
     problem = ss.Problem(SLAB, law, pull_rate=V, initial_slip=math.pi / 10 + 1e-2, initial_load=1.5e8)
     found = method_of_steps(problem, 9.0)
@@ -134,7 +134,7 @@ def test_slip_law_slab_with_one_pulse():
         (0.196 + 1e-6, 2.60306876818e-5, 1.40832223e-4, 79_999_489.83, 5.65875644e-4),
     ],
 )
-def test_rate_law_slab(alpha, start, end, load, slip):
+def test_the_rate_law_slab_has_its_verified_numbers(alpha, start, end, load, slip):
     problem = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, alpha), pull_rate=V, initial_excess=0.0)
     found = method_of_steps(problem, 9.0)
     assert float(found.slip_rate(0.0)) == pytest.approx(start, rel=1e-8, abs=0)
@@ -160,7 +160,7 @@ def test_rate_law_walks_the_loop_of_figure_4():
         (SOFT_BLOCK, ss.friction.HyperbolicRate(0.8, 0.3, 1.0), None, 3.511221, 1.839772, 2.226453818, 2.061159848),
     ],
 )
-def test_blocks(block, law, u0, rate, peak_time, stop, slip):
+def test_blocks_have_their_verified_numbers(block, law, u0, rate, peak_time, stop, slip):
     start, excess = 0.0, 0.0
     if u0 is not None:  # S mu'(u0) + K = 0, and D0 is 1e-3 m further than equilibrium asks
         start = math.acos(-block.stiffness / (block.normal_force * law.amplitude * law.wavenumber)) / law.wavenumber
@@ -197,13 +197,13 @@ def test_backward_slip_mirrors_forward_slip():
     np.testing.assert_allclose(back.load(t), -forth.load(t), rtol=1e-8, atol=1e-2)
 
 
-def test_what_it_does_not_know():
+def test_other_selection_rules_are_refused():
     law = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
     with pytest.raises(ss.InputError, match="perfect-delay"):
         method_of_steps(ss.Problem(SLAB, law, initial_load=0.0, selection="maxwell"), 1.0)
 
 
-def test_without_scipy(monkeypatch):
+def test_without_scipy_it_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "scipy.integrate", None)
     with pytest.raises(ss.InputError, match="pip install scipy"):
         method_of_steps(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=0.0), 1.0)

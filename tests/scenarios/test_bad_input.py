@@ -6,27 +6,7 @@ import pytest
 
 from stickslip import InputError
 from stickslip.scenarios.scenario import load_scenario, read_scenario
-
-GOOD = """\
-title = "good"
-[body]
-kind = "elastic-slab"
-density = 2800
-wave_speed = 3500.0
-thickness = "10 km"
-normal_stress = "100 MPa"
-[friction]
-kind = "hyperbolic-rate"
-static = 0.8
-dynamic = 0.3
-alpha = 1.0
-[loading]
-pull_rate = "0.05 m/year"
-[initial]
-excess = 0.0
-[run]
-duration = "12 s"
-"""
+from tests.scenarios.texts import GOOD
 
 LENGTH = 'must be a number in m or a text with a unit such as "10 m"'
 DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'
@@ -106,7 +86,7 @@ def test_one_line_says_what_is_wrong_and_what_is_allowed(old: str, new: str, mes
     assert message is None or text == f"my.toml: {message}"
 
 
-def test_the_good_one_is_good() -> None:
+def test_the_text_without_mistakes_is_read() -> None:
     scenario = read_scenario(GOOD, "my.toml")
     assert scenario.problem.body.thickness == 1e4
     assert scenario.rtol == 1e-10
@@ -125,7 +105,7 @@ def test_a_driver_may_be_rigid_by_number_or_by_word(rigid: str) -> None:
 
 
 @pytest.mark.parametrize("bad", ["nan", "-inf", '"stiff"', "-1.0"])
-def test_but_not_anything_else(bad: str) -> None:
+def test_a_driver_may_not_be_anything_else(bad: str) -> None:
     with pytest.raises(InputError, match=r"^my.toml: \[body\] driver_impedance must be "):
         read_scenario(GOOD.replace("density = 2800", f"density = 2800\ndriver_impedance = {bad}"), "my.toml")
 
@@ -139,7 +119,7 @@ def test_loads_of_a_block_are_forces() -> None:
         read_scenario(text.replace("excess = 0.0", 'load = "1 Pa"'), "b")
 
 
-def test_files(tmp_path: Path) -> None:
+def test_bad_files_are_refused_in_one_line(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"fig6-slap: no such file, and no bundled .*; did you mean 'fig6-slab'\?$"):
         load_scenario("fig6-slap")
     with pytest.raises(InputError, match=r"lost.toml: no such file, .*; `stickslip new --list` lists them$"):

@@ -34,7 +34,7 @@ def first_event(name: str) -> pd.Series:
         ("fig6-block-reconstructed", 2.226453818, 2.061159848, 3.511221, 1.839772, None),
     ],
 )
-def test_the_first_event(
+def test_the_first_event_has_its_verified_numbers(
     name: str, end: float, slip: float, peak_rate: float | None, peak_time: float | None, pulses: int | None
 ) -> None:
     """Each number to the digits that are given: half a unit of its last place."""
@@ -46,7 +46,7 @@ def test_the_first_event(
     assert pulses is None or event.pulses == pulses
 
 
-def test_the_pulse_of_the_unstable_printed_slab_under_constant_load() -> None:
+def test_the_printed_slab_under_constant_load_peaks_at_the_closed_form() -> None:
     """Without pulling, the peak is at cot(omega 5e-3 m) Z / (amplitude omega S) exactly."""
     scenario = load_scenario("fig5-slab-u0-1e-2")
     still = replace(scenario, problem=replace(scenario.problem, pull_rate=0.0))
@@ -54,7 +54,7 @@ def test_the_pulse_of_the_unstable_printed_slab_under_constant_load() -> None:
     assert still.run().events.peak_time[0] == pytest.approx(expected, rel=1e-9, abs=0)
 
 
-def test_the_shocks_of_figure_6() -> None:
+def test_the_shocks_of_figure_6_have_their_closed_form() -> None:
     start, end = load_scenario("fig6-slab").run().shocks.itertuples()
     assert start.rate_after == pytest.approx(0.402 / 0.098, rel=1e-9, abs=0)  # (alpha / alpha_c - 1) / alpha, pulled a little
     assert start.traction_after == pytest.approx(39_800_000, rel=1e-9, abs=0)
@@ -62,7 +62,7 @@ def test_the_shocks_of_figure_6() -> None:
     assert end.traction_after == pytest.approx(-399_999.969, rel=0, abs=6e-4)
 
 
-def test_the_cycles_of_the_block() -> None:
+def test_the_cycles_of_the_block_are_all_alike() -> None:
     scenario = load_scenario("cycles-block")
     run = scenario.run()
     events = run.events
@@ -76,7 +76,7 @@ def test_the_cycles_of_the_block() -> None:
     assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-8
 
 
-def test_the_cycles_of_the_slab() -> None:
+def test_the_cycles_of_the_slab_do_not_depend_on_the_tolerance() -> None:
     """Small slips lead in each main one; main slips do not depend on the tolerance, so they are not chaos of rounding."""
     scenario = load_scenario("cycles-slab")
     runs = [replace(scenario, rtol=rtol).run() for rtol in (1e-10, 1e-13)]
@@ -99,7 +99,7 @@ def peaks(solution: ss.Solution, low: float, high: float) -> float:
     return float(traction[(time >= low) & (time <= high)].max() / solution.problem.normal)
 
 
-def test_velocity_steps() -> None:
+def test_velocity_steps_end_in_steady_sliding() -> None:
     """Friction before each step is that of steady sliding, (a - b) ln 10 less a decade; the peaks are those of the description."""
     run = load_scenario("velocity-steps-block").run()
     law, pull = run.problem.friction, run.problem.pull_rate
@@ -162,13 +162,13 @@ def _last_place(value: float) -> int:
 
 
 @pytest.mark.parametrize("name", ["fig5-block-printed", "fig6-block-printed", "fig7-block-critical"])
-def test_no_macroscopic_event(name: str) -> None:
+def test_printed_and_critical_blocks_have_no_macroscopic_event(name: str) -> None:
     solution = load_scenario(name).run()
     assert solution.status.ok
     assert solution.catalogue(event_rate=0.0).slip.max() < 8e-3
 
 
-def test_the_loop_of_figure_4() -> None:
+def test_the_loop_of_figure_4_jumps_at_its_folds() -> None:
     solution = load_scenario("fig4-loop").run()
     assert solution.shocks.cause.tolist() == ["fold", "fold"]
     assert solution.load(R / 2) == pytest.approx(85.48e6, rel=1e-12, abs=0)

@@ -30,7 +30,7 @@ def test_every_bundled_scenario_can_be_examined(name: str) -> None:
     assert found.uniqueness.summary
 
 
-def test_the_numbers_of_the_paper() -> None:
+def test_examine_derives_the_numbers_of_the_paper() -> None:
     derived = {fact.name: fact.value for fact in examine(load_scenario("fig6-slab")).derived}
     assert derived["Z"] == 9.8e6
     assert derived["G"] == 3.43e10
@@ -89,7 +89,7 @@ def test_the_growth_of_the_block_solves_its_characteristic_equation() -> None:
         ("fig5-slab-reconstructed", "statically unstable"),
     ],
 )
-def test_the_readings_of_the_paper(name: str, word: str) -> None:
+def test_examine_says_whether_the_start_is_stable(name: str, word: str) -> None:
     assert examine(load_scenario(name)).stability.startswith(word)
 
 
@@ -103,11 +103,11 @@ def test_the_readings_of_the_paper(name: str, word: str) -> None:
         (-3.1e8, 0.0, "slips backwards at once"),
     ],
 )
-def test_the_start(excess: float, pull: float, words: str) -> None:
+def test_examine_says_what_happens_at_the_start(excess: float, pull: float, words: str) -> None:
     assert words in examine(Scenario(Problem(SLAB, LAW, pull, initial_excess=excess), 10.0)).start
 
 
-def test_the_jump_at_the_start() -> None:
+def test_examine_names_the_jump_at_the_start() -> None:
     """v(0+) of the slip law is excess / Z; of the rate law the landing of the rule, which may leave stick below the strength."""
     assert "jumps to 6.37753773e-05 m/s" in examine(load_scenario("fig5-slab-printed")).start
     problem = load_scenario("fig6-slab").problem
@@ -127,7 +127,7 @@ def test_the_jump_at_the_start() -> None:
     assert "jumps" not in examine(Scenario(heavy, 10.0)).start
 
 
-def test_critical_values_of_every_rate_law() -> None:
+def test_every_law_that_weakens_with_rate_has_critical_values() -> None:
     for kind in LAWS:
         problem = read_scenario(template("slab", kind), "new").problem
         found = examine(Scenario(problem, 10.0))
@@ -143,7 +143,7 @@ def warnings(scenario: Scenario) -> str:
     return "\n".join(examine(scenario).warnings)
 
 
-def test_warnings() -> None:
+def test_examine_warns_of_what_is_doubtful() -> None:
     slab = load_scenario("fig6-slab")
     assert "multiplies a disturbance by up to 1.49" in warnings(slab)
     assert "up to 3.92e+05" in warnings(load_scenario("fig7-slab-critical"))
@@ -166,7 +166,7 @@ def test_healing_at_once_on_a_slab_without_mass_is_warned_of() -> None:
     assert "creeps in tiny slips" not in warnings(replace(scenario, problem=worn))
 
 
-def test_rate_and_state_is_told_by_its_stiffness() -> None:
+def test_rate_and_state_is_judged_by_its_stiffness() -> None:
     """0.4 of the critical stiffness S (b - a)/Dc = 5e7 N/m; the slab's G/h = 3.43e7 against 5e8 Pa/m."""
     block, slab = (examine(load_scenario(f"rate-and-state-{body}")) for body in ("block", "slab"))
     assert "unstable: stiffness K = 2e+07 against the critical 5e+07 N/m" in block.stability

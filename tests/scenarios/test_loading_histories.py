@@ -11,7 +11,7 @@ from stickslip.loading import HISTORIES, PiecewiseLinear, Steps
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import load_scenario, read_scenario
 from stickslip.scenarios.templates import template
-from tests.scenarios.test_bad_input import GOOD
+from tests.scenarios.texts import GOOD
 
 RATE = 'a number in m/s or a text with a unit such as "10 m/s"'
 TABLE = "what varies in time is a table [loading.pull_rate] of a kind: piecewise-linear, sinusoidal, steps, hold-and-slide"
@@ -41,7 +41,7 @@ def test_every_kind_is_read_and_written(kind: str, body: str) -> None:
 
 
 @pytest.mark.parametrize("kind", HISTORIES)
-def test_every_kind_as_a_far_stress(kind: str) -> None:
+def test_every_kind_can_be_a_far_stress(kind: str) -> None:
     plain = read_scenario(template("slab", pull=kind), "starter").to_toml()
     text = plain.replace("loading.pull_rate", "loading.far_stress").replace("driver_impedance = inf", "driver_impedance = 1e6")
     scenario = read_scenario(text.replace("pull_rate = 0.0", ""), "far")
@@ -119,7 +119,7 @@ def test_every_kind_as_a_far_stress(kind: str) -> None:
         (document(LINEAR + 'file = "pull.csv"\n'), None),
     ],
 )
-def test_mistakes_in_a_table(text: str, message: str | None) -> None:
+def test_mistakes_in_a_table_are_refused_in_one_line(text: str, message: str | None) -> None:
     with pytest.raises(InputError) as caught:
         read_scenario(text, "my.toml")
     said = "[loading.pull_rate] file 'pull.csv': only a scenario in a file can name another file; write the points as lists"
@@ -139,7 +139,7 @@ def read_csv(folder: Path, csv: str, loading: str = LINEAR, **more: str) -> obje
     return load_scenario(folder / "my.toml").problem
 
 
-def test_a_data_file(tmp_path: Path) -> None:
+def test_a_data_file_is_read(tmp_path: Path) -> None:
     csv = "# measured\ntime, ignored,pull_rate\n0,9,-1e-6\n\n2,9,3e-6\n"
     problem = read_csv(tmp_path, csv.replace(", ", ","))
     assert problem.pull_rate == PiecewiseLinear((0.0, 2.0), (-1e-6, 3e-6))  # type: ignore[attr-defined]
@@ -175,7 +175,9 @@ def test_a_data_file(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_mistakes_in_a_data_file(csv: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mistakes_in_a_data_file_are_refused_in_one_line(
+    csv: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError) as caught:
         read_csv(Path(), csv)
@@ -197,7 +199,9 @@ def test_mistakes_in_a_data_file(csv: str, message: str, tmp_path: Path, monkeyp
         (HOLDS + 'file = "pull.csv"\n', "file is unknown; allowed: hold, hold_times, kind, slide, slide_time"),
     ],
 )
-def test_mistakes_in_naming_a_data_file(loading: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mistakes_in_naming_a_data_file_are_refused_in_one_line(
+    loading: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     Path("pull.csv").write_text("time,pull_rate\n0,1\n1,2\n", encoding="utf-8")
     Path("my.toml").write_text(document(loading), encoding="utf-8")

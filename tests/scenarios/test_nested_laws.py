@@ -76,7 +76,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("kind", "old", "new", "message"), CASES)
-def test_one_line_says_where(kind: str, old: str, new: str, message: str) -> None:
+def test_mistakes_in_nested_laws_are_refused_with_their_place(kind: str, old: str, new: str, message: str) -> None:
     text = template("slab", kind)
     assert old in text
     with pytest.raises(InputError) as caught:

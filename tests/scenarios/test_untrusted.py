@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ import pytest
 import stickslip as ss
 from stickslip.cli.main import main
 from stickslip.scenarios.scenario import load_scenario, read_scenario
+from tests.limits import processor_time
 
 SLAB = """
 [body]
@@ -46,10 +46,8 @@ POINTS = "slip,friction\n0,0.7\n1,0.5\n"
 
 def refusal(text: str) -> str:
     """What is said about a scenario, in one line and at once."""
-    begin = time.monotonic()
-    with pytest.raises(ss.InputError) as caught:
+    with processor_time(5.0), pytest.raises(ss.InputError) as caught:
         read_scenario(text, "my.toml")
-    assert time.monotonic() - begin < 5.0
     assert "\n" not in str(caught.value)
     assert str(caught.value).startswith("my.toml: ")
     return str(caught.value)
@@ -93,12 +91,11 @@ def test_a_scenario_beyond_all_measure_is_refused_at_once(old: str, new: str, me
 
 def test_a_long_text_without_dots_is_no_long_key() -> None:
     text = f'description = """{"word " * 50_000}{"a" * 300_000} ..... """\n{SLAB}'
-    begin = time.monotonic()
-    read_scenario(text, "my.toml")
-    assert time.monotonic() - begin < 5.0
+    with processor_time(5.0):
+        read_scenario(text, "my.toml")
 
 
-def test_a_whole_number_beyond_all_floats() -> None:
+def test_a_whole_number_beyond_all_floats_is_refused() -> None:
     problem = read_scenario(SLAB, "my.toml").problem
     with pytest.raises(ss.InputError, match="thickness must be finite, got inf"):
         ss.ElasticSlab(2800, 3500, 10**400, 1e8)
@@ -213,5 +210,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
         ),
     ],
 )
-def test_a_command_line_beyond_all_measure(capsys: pytest.CaptureFixture[str], arguments: list[str], message: str) -> None:
+def test_a_command_line_beyond_all_measure_is_refused(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
+) -> None:
     assert said(capsys, *arguments).startswith(f"stickslip: {message}")

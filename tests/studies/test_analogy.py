@@ -43,7 +43,7 @@ def test_a_point_is_a_run_of_each(found: Analogy) -> None:
     assert row.slip_ratio == row.slip_slab / row.slip_block
 
 
-def test_it_stands_in_the_slow_corner_only(found: Analogy) -> None:
+def test_the_block_stands_for_the_slab_in_the_slow_corner_only(found: Analogy) -> None:
     """At a wavelength of 41.6 m (weakening 1.10 of the stiffness) and alpha_c / 100; the slab slips a tenth of the block at the
     opposite corner."""
     assert found.grid("stands").tolist() == [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]
@@ -59,7 +59,7 @@ def test_the_same_numbers_in_other_pulses_are_not_the_same() -> None:
     assert list(_stands(table, 0.1)) == [True, False, True, False]
 
 
-def test_how_near_is_near_is_the_users_choice() -> None:
+def test_the_user_chooses_how_near_is_near() -> None:
     axes = Axis(WAVELENGTH, 20.0, 41.6, 2, log=True), Axis(ALPHA, 0.00392, 0.0392, 2, log=True)
     assert analogy(CASE.problem, CASE.duration, *axes, within=0.3).table.stands.all()
     assert not analogy(CASE.problem, CASE.duration, *axes, within=1e-3).table.stands.any()
@@ -91,7 +91,7 @@ def test_refused_points_are_named() -> None:
         (ss.load_scenario("fig6-slab").problem, {"within": 0.0}, "within must lie between 0 and 1"),
     ],
 )
-def test_what_is_refused(problem: ss.Problem, options: dict[str, float], message: str) -> None:
+def test_bad_axes_and_options_are_refused(problem: ss.Problem, options: dict[str, float], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         analogy(problem, 1.0, Axis("alpha", 1.0, 2.0, 2), Axis("static", 0.5, 0.8, 2), **options)
 

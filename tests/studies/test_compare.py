@@ -77,7 +77,7 @@ def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> 
     assert [one.name for one in tmp_path.iterdir()] == ["both.csv"]
 
 
-def test_files_scenarios_and_solutions_are_taken(tmp_path: Path) -> None:
+def test_compare_accepts_files_scenarios_and_solutions(tmp_path: Path) -> None:
     scenario = ss.load_scenario("fig6-slab")
     saved = scenario.run().to_netcdf(tmp_path / "saved.nc")
     found = compare(saved, "fig6-slab", scenario, ss.open_solution(saved))
@@ -93,11 +93,11 @@ def test_progress_names_each_run() -> None:
     assert told == ["fig6-slab", "fig6-slab (2)"]
 
 
-def test_distinct_names() -> None:
+def test_equal_names_are_numbered() -> None:
     assert distinct(["a", "b", "a", "a"]) == ["a", "b", "a (2)", "a (3)"]
 
 
-def test_what_is_refused(fig6: Comparison) -> None:
+def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
     done = fig6.runs["fig6-slab"]
     for arguments, options, message in (
         (("fig6-slab",), {}, "needs two"),
@@ -132,7 +132,7 @@ def test_runs_of_very_different_lengths_share_no_seconds() -> None:
     assert "share of each run's own" in Comparison(runs).plot().axes[-1].get_xlabel()
 
 
-def test_one_event_of_each_in_local_time() -> None:
+def test_one_event_of_each_run_is_shown_in_local_time() -> None:
     runs = {rule: ss.load_scenario(f"second-event-{rule}").run() for rule in ("maxwell", "maximal")}
     dataset = data(Comparison(runs, 1))
     assert (dataset.attrs["shares"], dataset.attrs["local"]) == (0, 1)

@@ -105,7 +105,7 @@ def test_at_the_real_pull_rate_the_storm_is_lost() -> None:
     assert (found.table.members.iloc[: found.first_lost] == 3).all()
 
 
-def test_from_rest_all_is_the_same_but_earlier_or_later() -> None:
+def test_from_rest_a_disturbance_only_shifts_the_time() -> None:
     """The problem knows no clock: starts are apart by push / (rate of loading), to 1e-3 (rounding of loads), however loads grow."""
     rest = replace(SLOW, initial_excess=-1e6)
     found = ensemble(rest, 1e13, members=3, max_events=20)
@@ -120,7 +120,9 @@ def test_from_rest_all_is_the_same_but_earlier_or_later() -> None:
 
 
 @pytest.mark.parametrize(
-    ("excess", "size", "signs"), [(0.0, 1e-12, {1.0}), (-0.0, 1e-12, {1.0}), (1.0, 1e-12, {-1.0, 1.0}), (-1.0, 1e-6, {-1.0, 1.0})]
+    ("excess", "size", "signs"),
+    [(0.0, 1e-12, {1.0}), (-0.0, 1e-12, {1.0}), (1.0, 1e-12, {-1.0, 1.0}), (-1.0, 1e-6, {-1.0, 1.0})],
+    ids=["at the strength", "at the strength, minus zero", "beyond the strength", "below the strength"],
 )
 def test_a_start_beyond_the_strength_is_not_held_back(excess: float, size: float, signs: set) -> None:
     forward = replace(FAST, initial_excess=excess)
@@ -205,7 +207,7 @@ OWN = events(0.0, 100.0, 110.0, 200.0)
         (events(), 0),
     ],
 )
-def test_which_events_are_the_same(member: pd.DataFrame, shared: int) -> None:
+def test_events_are_shared_within_a_tenth_of_the_nearer_interval(member: pd.DataFrame, shared: int) -> None:
     """A tenth of the time to the nearer neighbour: 10, 1, 1 and 9 s; once lost is lost."""
     table, has = shared_events(OWN, [member, OWN], 10.0, until=300.0)
     assert has.sum(axis=1).tolist() == [shared, 4]
@@ -227,14 +229,14 @@ def test_events_that_the_end_cuts_off_are_not_called_lost() -> None:
     assert len(shared_events(OWN, [lacking], 10.0, until=209.0)[0]) == 4
 
 
-def test_slope() -> None:
+def test_slope_is_that_of_the_exponential() -> None:
     time = np.array([1.0, 2.0, 4.0, 8.0])
     assert slope(time, 5.0 * np.exp(0.25 * time)) == pytest.approx(0.25, rel=1e-13, abs=0.0)
     assert slope(time, np.full(4, 0.3)) == 0.0
     assert math.isnan(slope(time[:2], time[:2]))
 
 
-def test_statistics_by_hand() -> None:
+def test_statistics_agree_with_those_worked_out_by_hand() -> None:
     own, members = events(0.0, 100.0, 220.0), [events(0.0, 90.0, 180.0, slip=2.0), events(0.0, 130.0, 240.0, slip=4.0)]
     found = statistics_spread(own, members)
     recurrence = found.loc["recurrence"]

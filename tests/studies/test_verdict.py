@@ -79,7 +79,7 @@ def coulomb(dynamic: float) -> ss.Solution:
     return ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, dynamic), initial_load=80e6 * (1 + 1e-15 * 8)), 8.0)
 
 
-def test_difference_of_two_slips_that_grow_evenly() -> None:
+def test_the_difference_of_two_coulomb_runs_has_its_closed_form() -> None:
     """Both slide at (beta - muD S)/Z for one round trip R, then rest: |difference| = dv t up to R, then dv R."""
     one, other = coulomb(0.3), coulomb(0.5)
     found = difference(one, other, 8.0)
@@ -90,7 +90,7 @@ def test_difference_of_two_slips_that_grow_evenly() -> None:
     assert difference(other, one, 8.0).end == -found.end
 
 
-def test_passage_is_the_root() -> None:
+def test_passage_has_its_closed_form() -> None:
     """v = v0 (1 - exp(-Z t / m)) under Coulomb friction on a contact with mass."""
     slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8, contact_mass=9.8e6)
     run = ss.simulate(ss.Problem(slab, ss.friction.Coulomb(0.8, 0.3), initial_load=81e6), 5.0)

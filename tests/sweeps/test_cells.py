@@ -34,7 +34,7 @@ def disc(x: float, y: float, radius: float) -> Callable[[Floats], Floats]:
     return lambda at: np.hypot(at[:, 0] - x, at[:, 1] - y) < radius
 
 
-def test_a_circle_to_a_ten_thousandth() -> None:
+def test_a_circle_is_found_to_a_ten_thousandth() -> None:
     lattice = Lattice((21, 21), 9)
     found = search(lattice, disc(0.5, 0.47, 0.3))
     off = np.hypot(found.boundary[:, 0] - 0.5, found.boundary[:, 1] - 0.47) - 0.3
@@ -43,7 +43,7 @@ def test_a_circle_to_a_ten_thousandth() -> None:
     assert len(found.points) < 2e-3 * np.prod(lattice.shape)
 
 
-def test_a_slanted_line_to_a_ten_thousandth() -> None:
+def test_a_slanted_line_is_found_to_a_ten_thousandth() -> None:
     found = search(Lattice((11, 11), 10), lambda at: at[:, 1] > 0.2 + 0.5 * at[:, 0])
     off = (found.boundary[:, 1] - 0.2 - 0.5 * found.boundary[:, 0]) / np.hypot(1.0, 0.5)
     assert np.abs(off).max() < 1e-4
@@ -56,7 +56,7 @@ def test_one_axis_is_a_bisection() -> None:
     assert len(found.points) == 5 + 20
 
 
-def test_three_axes() -> None:
+def test_a_sphere_over_three_axes_is_found() -> None:
     lattice = Lattice((7, 7, 7), 3)
     found = search(lattice, lambda at: np.linalg.norm(at - 0.5, axis=1) < 0.3)
     off = np.abs(np.linalg.norm(found.boundary - 0.5, axis=1) - 0.3)
@@ -133,7 +133,7 @@ def test_a_jump_by_a_factor_is_a_boundary_a_slope_is_not() -> None:
     assert len(smooth.points) == 81
 
 
-def test_it_ends_where_answers_change_everywhere() -> None:
+def test_the_search_ends_where_answers_change_everywhere() -> None:
     lattice = Lattice((5, 5), 12)
     found = search(lattice, lambda at: np.sin(1e5 * at.sum(axis=1)) > 0.0, most=2000)
     assert not found.complete
@@ -148,6 +148,6 @@ def test_levels_say_when_a_point_came_in() -> None:
 
 
 @pytest.mark.parametrize(("coarse", "depth"), [((1, 5), 2), ((5, 5), -1), ((5, 5), 40)])
-def test_grids_that_cannot_be(coarse: tuple[int, ...], depth: int) -> None:
+def test_impossible_grids_are_refused(coarse: tuple[int, ...], depth: int) -> None:
     with pytest.raises(ss.InputError, match="refinement"):
         Lattice(coarse, depth)

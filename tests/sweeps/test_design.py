@@ -178,7 +178,7 @@ def test_keys_reach_parts_and_series_of_a_law() -> None:
     assert member.problem.friction.slip.coefficients == (0.5, 0.3)  # type: ignore[attr-defined]
 
 
-def test_an_ambiguous_name_asks_which() -> None:
+def test_an_ambiguous_name_is_refused_with_its_candidates() -> None:
     text = sum_of_laws().to_toml().replace('kind = "piecewise-linear-slip"', 'kind = "linear-slip-weakening"')
     text = text.replace(
         "slips = [\n    0.0,\n    1.0,\n]\ncoefficients = [\n    0.5,\n    0.2,\n]", "static = 0.4\ndynamic = 0.2\ndistance = 1.0"
@@ -213,7 +213,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("text", BAD)
-def test_bad_axes_are_one_line(text: str) -> None:
+def test_bad_axes_are_refused_in_one_line(text: str) -> None:
     with pytest.raises(ss.InputError, match=r"^--vary") as told:
         read_design(SLAB, typed(text), where="--vary")
     assert BAD[text] in str(told.value)
@@ -282,14 +282,14 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("asked", "said"), BAD_DESIGNS, ids=lambda one: str(one)[:40])
-def test_bad_designs_are_one_line(asked: dict[str, Any], said: str) -> None:
+def test_bad_designs_are_refused_in_one_line(asked: dict[str, Any], said: str) -> None:
     with pytest.raises(ss.InputError) as told:
         read_design(SLAB, **asked)
     assert said in str(told.value)
     assert "\n" not in str(told.value)
 
 
-def test_a_file_that_is_no_table_is_one_line(tmp_path: Path) -> None:
+def test_a_file_that_is_no_table_is_refused_in_one_line(tmp_path: Path) -> None:
     path = tmp_path / "members.csv"
     for content in (b"", b"\xff\xfe\x00", b"alpha\n1,2,3\n1\n", b"alpha,alpha\n1,2\n"):
         path.write_bytes(content)

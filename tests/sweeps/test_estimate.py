@@ -21,13 +21,14 @@ def test_cost_is_about_what_it_turns_out_to_be(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.2)
     vary = {"thickness": np.linspace(5e3, 20e3, 10), "density": np.linspace(2e3, 3e3, 9)}
     plan = make_plan("fig5-slab-reconstructed", vary, series=series, samples=1000)
+    monkeypatch.setattr("stickslip.sweeps.estimate.time", SimpleNamespace(perf_counter=time.process_time))  # others share the cores
     found, run = estimate(plan, on_threads(1)), on_threads(1)
-    start = time.perf_counter()
+    start = time.process_time()
     carry_out(plan, tmp_path / "map.zarr", run)
-    took = time.perf_counter() - start
+    took = time.process_time() - start
     assert (found.members, found.chunks) == (90, 10)
     assert 1 < found.sampled <= 90
-    assert found.seconds / 5 < took < found.seconds * 5  # tests share their cores with others
+    assert found.seconds / 5 < took < found.seconds * 5
     size = sum(path.stat().st_size for path in (tmp_path / "map.zarr").rglob("*") if path.is_file())
     blocks = sum(-(-path.stat().st_size // 4096) for path in (tmp_path / "map.zarr").rglob("*"))
     assert size < found.bytes < 2 * 4096 * blocks
@@ -41,17 +42,16 @@ def test_a_sample_counts_its_failures() -> None:
 
 def test_what_has_been_compiled_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first member takes a second, the others nothing."""
-    plan, seen = make_plan("fig6-slab", {"friction.alpha": np.linspace(0.1, 2.0, 30)}), []
+    plan, clock = make_plan("fig6-slab", {"friction.alpha": np.linspace(0.1, 2.0, 30)}), [0.0]
     run = on_threads(1)
 
     def slow_at_first(work, chunks):  # type: ignore[no-untyped-def]
-        if not seen:
-            time.sleep(1.0)
-        seen.append(1)
+        clock[0] = 1.0
         return run(work, chunks)
 
     monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.0)
-    assert estimate(plan, slow_at_first).seconds < 25.0
+    monkeypatch.setattr("stickslip.sweeps.estimate.time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    assert estimate(plan, slow_at_first).seconds == 0.0
 
 
 def test_workers_share_the_sample_as_they_share_the_sweep(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,7 +67,6 @@ def test_workers_share_the_sample_as_they_share_the_sweep(monkeypatch: pytest.Mo
         return iter(())
 
     monkeypatch.setattr("stickslip.sweeps.estimate.LONG_ENOUGH", 0.04)
-    monkeypatch.setattr("stickslip.sweeps.estimate._writing", lambda plan: 0.0)
     monkeypatch.setattr("stickslip.sweeps.estimate.time", SimpleNamespace(perf_counter=lambda: clock[0]))
     assert estimate(plan, four_at_a_time, 4).seconds == pytest.approx(0.1, rel=0.05, abs=0)
     assert max(map(len, seen)) == 4

@@ -60,7 +60,7 @@ def rule(branches: object) -> object:
         (replace(RATE.problem, selection=rule), 5.0, "problem: [run] selection"),
     ],
 )
-def test_what_has_no_duration_or_no_scenario_is_one_line(scenario: Any, duration: float | None, said: str) -> None:
+def test_a_sweep_without_duration_or_scenario_is_refused_in_one_line(scenario: Any, duration: float | None, said: str) -> None:
     with pytest.raises(ss.InputError) as told:
         ss.sweep(scenario, {"friction.alpha": [0.1, 1.0]}, duration=duration)
     assert str(told.value).startswith(said)
@@ -139,7 +139,7 @@ def pieces(solution: ss.Solution) -> int:
     return len(solution.history)
 
 
-def test_a_quantity_of_my_own() -> None:
+def test_users_may_define_a_quantity() -> None:
     dataset = ss.sweep(PULSES, {"thickness": ["5 km", "10 km"]}, quantities=["slip", ("pieces", "1", pieces)])
     assert dataset.pieces.values.tolist() == [
         pieces(make_plan(PULSES, {"thickness": [1]}).work.member({"body.thickness": h}).run()) for h in (5e3, 10e3)
@@ -165,7 +165,7 @@ def failing(solution: ss.Solution) -> float:
     return 1.0 / math.floor(float(solution.problem.body.thickness) / 8e3)  # type: ignore[union-attr]
 
 
-def test_failures_are_recorded_and_stop_nobody() -> None:
+def test_failures_are_recorded_and_do_not_stop_others() -> None:
     """A far stress that grows needs another driver, though the number is fine by itself; the quantity of a thin slab fails."""
     vary = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": [5e3, 10e3]}
     dataset = ss.sweep(RATE, vary, quantities=["events", ("mine", "1", failing)])
@@ -218,7 +218,7 @@ def test_a_quantity_may_fail_in_any_way(error: Exception) -> None:
         ([("mine", "1", 5)], "must be a name, or"),
     ],
 )
-def test_bad_quantities_are_one_line(wanted: Any, said: str) -> None:
+def test_bad_quantities_are_refused_in_one_line(wanted: Any, said: str) -> None:
     with pytest.raises(ss.InputError) as told:
         quantities_named(wanted)
     assert said in str(told.value)
@@ -240,7 +240,7 @@ def test_bad_quantities_are_one_line(wanted: Any, said: str) -> None:
         ({"quantities": [("a/b", "m", pieces)]}, "quantity 'a/b': choose another name"),
     ],
 )
-def test_bad_arguments_are_one_line(asked: dict[str, Any], said: str) -> None:
+def test_bad_arguments_are_refused_in_one_line(asked: dict[str, Any], said: str) -> None:
     with pytest.raises(ss.InputError) as told:
         ss.sweep(RATE, {"alpha": [0.1, 1]}, **asked)
     assert said in str(told.value)

@@ -35,7 +35,7 @@ def refine(out: Path | None = None, **options: Any) -> xr.Dataset:
     return ss.refine("fig6-slab", FEW, "several", out=out, **settings | options)
 
 
-def test_the_critical_curve_to_a_ten_thousandth() -> None:
+def test_the_critical_curve_is_found_to_a_ten_thousandth() -> None:
     """alpha_c = Z/(S (muS - muD)), eq. (15), over alpha and S, where it crosses a corner: 5120 x 5120 cells were it a grid."""
     low, high = np.array([0.05, 50e6]), np.array([0.0985, 200e6])
     vary = {ALPHA: np.linspace(0.05, 0.0985, 6), STRESS: np.linspace(50e6, 200e6, 6)}
@@ -79,7 +79,7 @@ def test_cells_tile_the_map() -> None:
 
 
 @pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
-def test_a_search_that_was_stopped_goes_on(error: type[BaseException], tmp_path: Path) -> None:
+def test_a_search_that_was_stopped_continues(error: type[BaseException], tmp_path: Path) -> None:
     """By Ctrl-C, or by whatever else in the middle of a round: what is done is not done again, and the store is the same."""
     whole = refine(tmp_path / "whole.zarr")
     out, told = tmp_path / "map.zarr", []
@@ -118,7 +118,7 @@ def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
         refine(tmp_path / "map.zarr", depth=4)
 
 
-def test_it_ends_at_the_most_members_and_says_so() -> None:
+def test_the_search_ends_at_the_most_members_and_says_so() -> None:
     assert refine().attrs["refinement_complete"] == 1
     found = refine(most=40)
     assert found.attrs["refinement_complete"] == 0
@@ -129,7 +129,7 @@ def test_it_ends_at_the_most_members_and_says_so() -> None:
         refine(most=8)
 
 
-def test_what_has_no_answer_says_nothing() -> None:
+def test_members_without_an_answer_mark_no_boundary() -> None:
     """Members that are refused are kept with their reason, and nothing is refined towards them."""
     vary = {"loading.far_stress_rate": [0.0, 1.0, 2.0], ALPHA: np.linspace(0.05, 2.0, 5)}
     found = ss.refine("fig6-slab", vary, "several", depth=2, quantities=[("several", "1", irregular)])
@@ -139,7 +139,7 @@ def test_what_has_no_answer_says_nothing() -> None:
     assert np.isfinite(found.several.values[~refused]).all()
 
 
-def test_a_jump_by_a_factor() -> None:
+def test_a_jump_by_a_factor_is_refined_by_bisection() -> None:
     """A number that grows slowly, but tenfold at alpha_c: one axis is a bisection."""
 
     def jumping(solution: ss.Solution) -> float:
@@ -171,11 +171,11 @@ def test_a_jump_by_a_factor() -> None:
         ({ALPHA: [1, 2]}, {"quantities": ["pulse"]}, "did you mean 'pulses'"),
     ],
 )
-def test_what_cannot_be_refined(vary: dict[str, Any], options: dict[str, Any], message: str) -> None:
+def test_impossible_refinements_are_refused(vary: dict[str, Any], options: dict[str, Any], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
         ss.refine("fig6-slab", vary, "pulses", **options)
 
 
-def test_cells_of_a_plain_sweep() -> None:
+def test_a_plain_sweep_has_no_cells() -> None:
     with pytest.raises(ss.InputError, match=r"not made by stickslip\.refine"):
         cells_of(ss.sweep("fig6-slab", {ALPHA: [1.0]}, quantities=["slip"]))

@@ -22,19 +22,7 @@ from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
-
-VARY = {"loading.far_stress_rate": [0.0, 1.0], "body.thickness": np.linspace(5e3, 20e3, 6)}
-"""The second half fails: a rigid driver has no far stress."""
-SAVED = {"quantities": ["slip", "pulses", "arrested"], "series": ["slip"], "samples": 5, "chunk": 2}
-MEMBERS, FINE = 12, 6
-
-
-def sweep(out: Path | None, **asked: Any) -> xr.Dataset:
-    return ss.sweep("fig6-slab", asked.pop("vary", VARY), out=out, **(SAVED | asked))
-
-
-def files(store: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+from tests.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +76,7 @@ class Stop:
 
 
 @pytest.mark.parametrize("after", [2, 6, 10])
-def test_stopped_and_taken_up(tmp_path: Path, whole: dict[str, bytes], after: int) -> None:
+def test_a_stopped_sweep_continues_to_the_same_files(tmp_path: Path, whole: dict[str, bytes], after: int) -> None:
     path = tmp_path / "map.zarr"
     stopped = sweep(path, progress=Stop(after))
     assert int((stopped.status != NOT_RUN).sum()) == after
@@ -99,7 +87,7 @@ def test_stopped_and_taken_up(tmp_path: Path, whole: dict[str, bytes], after: in
     assert files(path) == whole
 
 
-def test_ctrl_c_without_a_store_keeps_what_is_there() -> None:
+def test_ctrl_c_without_a_store_returns_the_finished_members() -> None:
     stopped = sweep(None, progress=Stop(4))
     assert int((stopped.status != NOT_RUN).sum()) == 4
 
@@ -139,7 +127,7 @@ def test_a_chunk_of_another_size_gives_the_same_numbers(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-import tests.sweeps.test_store as test
+from tests.sweeps.stores import sweep
 
 rename, left = Path.replace, [int(sys.argv[2])]
 def replace(self, target):
@@ -148,13 +136,13 @@ def replace(self, target):
         os.kill(os.getpid(), signal.SIGKILL)
     return rename(self, target)
 Path.replace = replace
-test.sweep(Path(sys.argv[1]))
+sweep(Path(sys.argv[1]))
 """
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize("writes", [7, 14, 16])
-def test_killed_while_it_writes_and_taken_up(tmp_path: Path, whole: dict[str, bytes], writes: int) -> None:
+def test_a_sweep_killed_while_it_writes_continues_to_the_same_files(tmp_path: Path, whole: dict[str, bytes], writes: int) -> None:
     """With a file half written: in the middle of a chunk (five files, two where members fail), and before its status (14, 16)."""
     path = tmp_path / "map.zarr"
     done = subprocess.run([sys.executable, "-c", KILLED, str(path), str(writes)], capture_output=True, text=True, check=False)
@@ -180,7 +168,7 @@ main(sys.argv[1:])
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
-def test_the_command_is_stopped_at_any_moment_and_goes_on(tmp_path: Path, sent: signal.Signals) -> None:
+def test_a_command_stopped_at_any_moment_continues(tmp_path: Path, sent: signal.Signals) -> None:
     arguments = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.2..2:150", "-q", "heat", "--chunk", "5", "--out", "map.zarr"]
     command, path = [sys.executable, "-c", COMMAND, *arguments], tmp_path / "map.zarr"
     running = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -201,7 +189,7 @@ def test_the_command_is_stopped_at_any_moment_and_goes_on(tmp_path: Path, sent: 
     assert again.reports[0].done in (there, there - 5)  # stopped behind a status, before its checksums: run again
 
 
-def test_a_full_disk_is_one_line_and_leaves_a_store_that_goes_on(
+def test_a_full_disk_gives_one_line_and_leaves_a_store_that_continues(
     tmp_path: Path, whole: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, rename, left = tmp_path / "map.zarr", Path.replace, [13]
@@ -287,9 +275,12 @@ def test_two_sweeps_do_not_write_into_one_store(tmp_path: Path) -> None:
     assert (sweep(path).status.values != NOT_RUN).all()
 
 
-def test_the_command_goes_on_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_continues_a_stopped_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     command = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..2:4", "--out", "map.zarr", "--chunk", "1"]
+    ss.sweep("fig6-slab", {"friction.alpha": [1.0]})  # compiles what batches need, which would be announced on standard error
     stop = Stop(2)
     monkeypatch.setattr("stickslip.cli.commands.sweep.so_far", lambda report: stop(report) or "")
     with pytest.raises(SystemExit) as ended:
@@ -306,7 +297,7 @@ def test_the_command_goes_on_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert "4 finished" in capsys.readouterr().out
 
 
-def test_a_file_that_is_not_as_it_was_written_is_one_line(tmp_path: Path, whole: dict[str, bytes]) -> None:
+def test_a_changed_file_is_refused_in_one_line(tmp_path: Path, whole: dict[str, bytes]) -> None:
     """Each file of a store: with a bit flipped, cut off, gone, or exchanged for another chunk's."""
     path = tmp_path / "map.zarr"
     sweep(path)

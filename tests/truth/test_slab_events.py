@@ -58,7 +58,7 @@ def load(contact: Contact, piece: Piece, row: int, theta: mpf) -> mpf:
     return e + (row - now) * contact.ramp
 
 
-def test_phases_that_know_only_the_one_before_slip_in_the_same_round_trips() -> None:
+def test_independent_phases_slip_in_the_same_round_trips() -> None:
     """2 000 phases one after the other, in double precision: at each the contact slips iff an event says so.
 
     Until an event is so short that it falls between two of these phases: the first one in row 279.

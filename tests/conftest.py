@@ -1,0 +1,39 @@
+"""Readable names for the cases of parametrised tests."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+import stickslip as ss
+
+LONGEST = 60
+"""Characters of a name."""
+
+
+def pytest_make_parametrize_id(val: object) -> str | None:
+    """Name laws and bodies by their kind, and lists and tables by what is in them; leave numbers and short texts to pytest."""
+    name = val if isinstance(val, str) and len(val) > LONGEST else _name(val)
+    return None if name is None else name[:LONGEST].encode("unicode_escape").decode()
+
+
+def _name(value: object) -> str | None:
+    if isinstance(value, ss.friction.FrictionLaw | ss.ElasticSlab | ss.SpringBlock | ss.loading.LoadingHistory):
+        return value.kind
+    if isinstance(value, ss.Problem):
+        return f"{value.body.kind} under {value.friction.kind}"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{_part(key)}={_part(one)}" for key, one in value.items()) or "nothing"
+    if isinstance(value, np.ndarray):
+        value = value.ravel().tolist()
+    if isinstance(value, list | tuple):
+        return " ".join(map(_part, value)) or "nothing"
+    return type(value).__name__ if isinstance(value, Exception) else None
+
+
+def _part(value: object) -> str:
+    """Name something within a list or table, never by its address in memory."""
+    if value is None or isinstance(value, str | int | float):
+        return str(value)
+    return _name(value) or getattr(value, "__name__", type(value).__name__)
