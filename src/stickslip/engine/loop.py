@@ -79,6 +79,9 @@ def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -
     run = borrow(table)
     run.k.impedance, run.k.normal = run.params.impedance, run.params.normal
     run.k.inertia, run.k.stiffness = run.params.inertia, run.params.stiffness
+    run.missing = missing_part(run)
+    if run.missing != Part.NONE:
+        return Stop.NEED_PART
     for _ in range(passes):
         code = make_pass(run, last_trip, last_phase)
         if code != Stop.NONE:
@@ -95,11 +98,14 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
     if run.counts.branch_ended == 1:
         leave_moving_branch(run)
     if run.counts.ready == Incoming.NONE:
-        return bring_load(run, last_trip)
+        code = bring_load(run, last_trip)
+        if run.counts.ready == Incoming.NONE or run.counts.folds_move == 1:
+            return code  # where folds move, the answer to the piece of load may need branches first
     if run.counts.ready == Incoming.BROUGHT:
         arrive(run)
         run.counts.ready = Incoming.MET
-        return Stop.NONE
+        if run.counts.folds_move == 1:
+            return Stop.NONE  # the caller may take back the step to come: make it in a pass of its own
     return walk_along_load(run, last_trip, last_phase)
 
 
@@ -110,17 +116,12 @@ def obstacle(run: Run) -> int:
         return Stop.FULL
     if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
         return Stop.STORM
-    run.missing = missing_part(run)
-    if run.missing != Part.NONE:
-        return Stop.NEED_PART
     return Stop.NEED_BRANCHES if run.counts.folds_move == 1 and needs_branches(run) else Stop.NONE
 
 
 @kernel
 def missing_part(run: Run) -> int:
-    """Return the part of the engine that the run needs and that has not been lent yet, or Part.NONE."""
-    if run.implicit_steps == 0 and is_implicit(run):
-        return Part.IMPLICIT_STEPS
+    """Return a part that the run needs now, as its problem or its checkpoint says, and that has not been lent; or Part.NONE."""
     if run.loading_history == 0 and run.counts.varies == 1:
         return Part.LOADING_HISTORY
     if run.moving_folds == 0 and run.counts.folds_move == 1:
@@ -162,6 +163,9 @@ def walk_along_load(run: Run, last_trip: int, last_phase: float) -> int:
 def take_step(run: Run, xi_to: float) -> int:
     """Stick or slip for one step, up to the place xi_to at most. A step that must not be kept is taken back and ends the run."""
     length, xi = run.counts.length, run.state.xi
+    if run.implicit_steps == 0 and is_implicit(run):
+        run.missing = Part.IMPLICIT_STEPS
+        return Stop.NEED_PART
     if run.counts.mode == 0:
         stick(run, xi_to)
     elif is_implicit(run):
