@@ -173,7 +173,7 @@ class Ring:
 
     def loads(self, piece: Piece, row: int) -> tuple[mpf, mpf]:
         """Loads at the ends of a piece in a row."""
-        raised = (row - piece.trip) * self.contact.ramp
+        raised = (row - piece.row) * self.contact.ramp
         return piece.first + raised, piece.last + raised
 
     def phase(self, piece: Piece, row: int, load: mpf) -> mpf:
@@ -184,15 +184,15 @@ class Ring:
         """Offset of a load, and the growth of a disturbance there: back through all slips to the first round trip."""
         contact, growth = self.contact, mpf(1)
         while slips is not None:
-            rate = contact.rate_before(load - (row - slips.trip - 1) * contact.ramp)
+            rate = contact.rate_before(load - (row - slips.row - 1) * contact.ramp)
             growth *= contact.growth(rate)
-            load, row, slips = contact.resistance(rate), slips.trip, slips.before
+            load, row, slips = contact.resistance(rate), slips.row, slips.before
         return (load - self.excess - row * contact.ramp) * contact.round_trip / contact.ramp, growth
 
     def _wait(self, piece: Piece) -> None:
         """Note when rest ends in a piece."""
         top = max(piece.first, piece.last)
-        piece.onset = piece.trip + max(int(floor(-top / self.contact.ramp)) + 1, 0)
+        piece.onset = piece.row + max(int(floor(-top / self.contact.ramp)) + 1, 0)
         heapq.heappush(self.waiting, (piece.onset, piece.start, id(piece), piece))
 
     def _cut(self, piece: Piece, where: mpf, row: int, load: mpf) -> Piece:
@@ -200,7 +200,7 @@ class Ring:
         first, last = self.loads(piece, row)
         later = Piece(where, piece.end, load, last, row, piece.slips)
         later.next, piece.next = piece.next, later
-        piece.end, piece.first, piece.last, piece.trip = where, first, load, row
+        piece.end, piece.first, piece.last, piece.row = where, first, load, row
         return later
 
     def _event(self, piece: Piece, row: int) -> Event:
@@ -229,7 +229,7 @@ class Ring:
     def _pass(self, piece: Piece, row: int, first: mpf, last: mpf) -> None:
         """A whole piece has slipped in a row."""
         piece.first, piece.last = self.contact.echo(first), self.contact.echo(last)
-        piece.trip, piece.slips = row + 1, Slips(row, piece.slips, piece.slips.count + 1 if piece.slips else 1)
+        piece.row, piece.slips = row + 1, Slips(row, piece.slips, piece.slips.count + 1 if piece.slips else 1)
         self._wait(piece)
 
     def _slip(self, piece: Piece, row: int, first: mpf, last: mpf) -> mpf:

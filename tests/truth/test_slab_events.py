@@ -30,7 +30,7 @@ def test_slip_sheds_load_as_impulse_says() -> None:
         contact = FAST.contact()
         ring = Ring(contact)
         shed = 2 * contact.impedance * sum(event.slip for event in islice(ring.events(), 60))
-        row = max(piece.trip for piece in pieces(ring))
+        row = max(piece.row for piece in pieces(ring))
         left = sum(quad(lambda theta, p=piece: load(contact, p, row, theta), [piece.start, piece.end]) for piece in pieces(ring))
         brought = (row + mpf(1) / 2) * contact.ramp * contact.round_trip
         assert abs(left - (brought - shed)) < mpf("1e-18") * shed
@@ -50,7 +50,7 @@ def load(contact: Contact, piece: Piece, row: int, theta: mpf) -> mpf:
     rows: list[int] = []
     slips: Slips | None = piece.slips
     while slips is not None:
-        rows.append(slips.trip)
+        rows.append(slips.row)
         slips = slips.before
     e, now = contact.ramp * theta / contact.round_trip, 0
     for slipped in reversed(rows):
@@ -113,9 +113,9 @@ def test_growth_is_the_slope_of_the_load() -> None:
         list(islice(ring.events(), 20))
         piece = max(pieces(ring), key=lambda piece: piece.end - piece.start)
         theta, step = (piece.start + piece.end) / 2, mpf("1e-12")
-        here = load(contact, piece, piece.trip, theta)
-        found, growth = ring.back(piece.slips, piece.trip, here)
+        here = load(contact, piece, piece.row, theta)
+        found, growth = ring.back(piece.slips, piece.row, here)
         assert abs(found - theta) < mpf("1e-40")
-        slope = (load(contact, piece, piece.trip, theta + step) - here) / step * contact.round_trip / contact.ramp
+        slope = (load(contact, piece, piece.row, theta + step) - here) / step * contact.round_trip / contact.ramp
         assert growth < inf
         assert abs(abs(slope) / growth - 1) < mpf("1e-6")

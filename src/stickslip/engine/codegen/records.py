@@ -119,7 +119,7 @@ class Record:
 
         The arrays share the table's memory. A row of floats in the record becomes the last axis of its array.
         """
-        return cls(np.moveaxis(table, -1, 0))
+        return cls(last_axis_first(table))
 
     def __getitem__(self, n: int) -> Self:
         """Return the record that lies n records after this one, in plain Python as in compiled code."""
@@ -128,6 +128,11 @@ class Record:
     def copy(self) -> Self:
         """Return a copy with its own memory."""
         return type(self)(self.numbers.copy())
+
+
+def last_axis_first(table: NDArray[Any]) -> NDArray[Any]:
+    """Return a table with its last axis moved to the front, as a view."""
+    return table.T if table.ndim == 2 else np.moveaxis(table, -1, 0)
 
 
 class _Number:
@@ -167,7 +172,8 @@ class _Inside:
         if self.place.kind is FLOATS and isinstance(record.numbers, Pointer):
             found = record.numbers.ahead(begin).as_floats()
         elif self.place.kind is FLOATS and record.numbers.ndim > 1:
-            found = np.moveaxis(record.numbers[begin:end], 0, -1).view(np.float64)
+            rows = record.numbers[begin:end]
+            found = (rows.T if rows.ndim == 2 else np.moveaxis(rows, 0, -1)).view(np.float64)
         elif self.place.kind is FLOATS:  # up to the end of the record: some functions write beyond a row into the next one
             found = Pointer(record.numbers.view(np.float64), begin)
         else:
