@@ -22,14 +22,15 @@ bench: $(VENV)/.installed-test
 	$(PIP) install -e ".[bench]"
 	$(BIN)/python -m benchmarks.speed
 
-# Pinned installs, checked against hashes; the package itself last, without looking for anything newer.
+# Pinned installs, checked against hashes; the package itself last, without looking for anything newer. Python makes bytecode of
+# a module when it is first imported: to make it of all modules now would take longer than the rest of the installation.
 $(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
-	$(PIP) install --requirement requirements/run.txt
+	$(PIP) install --no-compile --requirement requirements/run.txt
 	$(PIP) install --no-deps --no-build-isolation --editable .
 	touch $@
 
 $(VENV)/.installed-test: requirements/test.txt $(VENV)/.installed
-	$(PIP) install --requirement requirements/test.txt
+	$(PIP) install --no-compile --requirement requirements/test.txt
 	touch $@
 
 $(BIN)/python:
