@@ -30,7 +30,7 @@ def implicit_steps(memory: int, task: int, xi_to: float) -> float:
 
 @kernel
 def loading_history(memory: int, task: int, limit: float) -> float:
-    """Add a loading that varies to the piece of load, or return the number of rows at rest below a limit (Pa or N)."""
+    """Add a loading that varies to the piece of load, or return the number of round trips at rest below a limit (Pa or N)."""
     if task == Task.TAKE_LOADING:
         take_loading(borrow(memory))
         return 0.0

@@ -14,14 +14,14 @@ RESOLVED = 1e-12
 
 @kernel
 def phase_at(run: Run, xi: float) -> float:
-    """Return the phase theta (s) in the round trip at the place xi of the present piece of load."""
+    """Return the phase (s) in the round trip at the place xi of the present piece of load."""
     return run.state.phase_to if xi >= 1.0 else run.state.phase_from + xi * (run.state.speed + xi * run.state.bend)
 
 
 @kernel
-def xi_at(run: Run, theta: float) -> float:
-    """Return the place xi in the present piece of load at which the phase is theta (s)."""
-    rest = theta - run.state.phase_from
+def xi_at(run: Run, phase: float) -> float:
+    """Return the place xi in the present piece of load at which the phase (s) is the given one."""
+    rest = phase - run.state.phase_from
     root = math.sqrt(max(run.state.speed * run.state.speed + 4.0 * run.state.bend * rest, 0.0))
     pace = run.state.speed + root
     return 2.0 * rest / pace if pace > 0.0 else 0.0
@@ -42,7 +42,7 @@ def note_degree(run: Run) -> None:
 def record(run: Run, xi_to: float) -> None:
     """Append the step from the present place to xi_to, and move xi there.
 
-    Its load and slip rate are already in the next free row of the history. A step that takes no time is not kept, but counted as
+    Its load and slip rate are already in the next free piece of the history. A step that takes no time is not kept, but counted as
     stalled.
     """
     xi = run.state.xi
@@ -68,16 +68,16 @@ def record(run: Run, xi_to: float) -> None:
 
 
 @kernel
-def note_slip(run: Run, n: int, theta: float) -> None:
+def note_slip(run: Run, n: int, phase: float) -> None:
     """Note where slip begins, and count the slips that were too short to be resolved, less the others (at least 0).
 
-    n is the row of the history that is being written, and theta (s) the phase at which it starts.
+    n is the piece of the history that is being written, and `phase` (s) that at which it starts.
     """
     slips, slipped = run.counts.mode != 0, n > 0 and run.history[n - 1].mode != 0
     if slips and not slipped:
-        run.counts.slip_trip, run.state.slip_since = run.counts.trip, theta
+        run.counts.slip_trip, run.state.slip_since = run.counts.trip, phase
     elif slipped and not slips:
-        lasted = (run.counts.trip - run.counts.slip_trip) * run.params.round_trip_time + (theta - run.state.slip_since)
+        lasted = (run.counts.trip - run.counts.slip_trip) * run.params.round_trip_time + (phase - run.state.slip_since)
         tiny = lasted < RESOLVED * run.params.round_trip_time
         run.counts.unresolved_slips = run.counts.unresolved_slips + 1 if tiny else max(run.counts.unresolved_slips - 1, 0)
 

@@ -7,6 +7,18 @@ from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.state.workspace import Run
 
+STIFF, NOT_STIFF = 4.0, 1.5
+"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
+step so short; and in an implicit step, below which the contact is no longer stiff."""
+
+
+CHECKED = 16
+"""Number of explicit steps (1) between two checks of the stiffness."""
+
+
+FORGOTTEN = 1e-18
+"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
+
 
 @kernel
 def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
@@ -25,19 +37,6 @@ def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
         run.value.by_state = run.value.change = 0.0
         run.value.change_by_rate = run.value.change_by_slip = run.value.change_by_state = 0.0
     run.value.mu += run.law[piece].offset
-
-
-STIFF, NOT_STIFF = 4.0, 1.5
-"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
-step so short; and in an implicit step, below which the contact is no longer stiff."""
-
-
-CHECKED = 16
-"""Number of explicit steps (1) between two checks of the stiffness."""
-
-
-FORGOTTEN = 1e-18
-"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
 
 
 @kernel

@@ -25,7 +25,7 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
 def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> None:
     """Record the step and move the state to its end, at xi = to.
 
-    Load and rate (m/s, as a magnitude) are in the next free row of the history. `grown` is the slip (m) in the step and
+    Load and rate (m/s, as a magnitude) are in the next free piece of the history. `grown` is the slip (m) in the step and
     `rate_end` the rate at its end (m/s), both unsigned.
     """
     direction = run.counts.mode
@@ -63,7 +63,7 @@ def note_gain(run: Run, rate: Floats) -> None:
 def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> None:
     """Take stiffness times slip from the outer load, in place, because a block unloads its spring as it slips.
 
-    `straight` and `bent` are the stiffness times A and times B of dtheta = (A + B eta) d eta (N s/m, signed).
+    `straight` and `bent` are the stiffness times A and times B of dphase = (A + B eta) d eta (N s/m, signed).
     """
     for k in range(1, at.TERMS):
         load[k] -= straight * RECIPROCAL[k] * rate[k - 1]

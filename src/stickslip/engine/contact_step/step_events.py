@@ -1,4 +1,4 @@
-"""Find what ends a step of slip early (arrest, a knot of the law, the end of the branch), and do what that event requires."""
+"""Find what ends a step of slip early, an arrest or a knot of the law, and do what that event requires."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def stretch(run: Run, length: float, rate: Floats) -> None:
 def growth(run: Run, rate: Floats, length: float, end: float) -> float:
     """Return the slip (m, unsigned) in a step of the given length (in guesses) up to the place `end` on [0, 1].
 
-    It is the integral of the rate over dtheta = (A + B eta) d eta.
+    It is the integral of the rate over dphase = (A + B eta) d eta.
     """
     straight = run.k.speed * length * integral(rate, end, 1)
     if run.k.bend == 0.0:

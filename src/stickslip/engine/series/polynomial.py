@@ -177,7 +177,7 @@ def integral(c: Floats, end: float, shift: int) -> float:
 
 @inlined
 def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
-    """Return the mean in time of a polynomial on a piece of length `width`, with theta - phase_from = speed x + bend x^2 (s)."""
+    """Return the mean in time of a polynomial on a piece of length `width`, with phase - phase_from = speed x + bend x^2 (s)."""
     return (speed * moment(c, 1) + 2.0 * bend * moment(c, 2)) / width
 
 

@@ -2,8 +2,8 @@
 
 The inflow F (slab: Pa, block: N/s) is linear in time between breaks, plus a tone. A piece of load is cut where a new segment of F
 arrives; from then on the break is an edge between pieces, and so are its echoes. The load at rest grows by F from one round trip
-to the next on a slab, and by the integral of F on a block. Over rows in which nothing but the tone changes, both sums are closed
-forms in F at the mean time of these rows.
+to the next on a slab, and by the integral of F on a block. Over round trips in which nothing but the tone changes, both sums are
+closed forms in F at their mean time.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from stickslip.engine.state.layout import TERMS, Cause
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
-"""Distance, as a share of a row (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
+"""Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 
 
 @kernel
@@ -27,25 +27,25 @@ def take_loading(run: Run) -> None:
     begin = run.state.taken
     if begin > 0.0:
         run.counts.arriving = Cause.NO_CAUSE
-    theta = run.state.taken_to_phase if begin > 0.0 else run.state.phase_from
-    if enter_segment(run, theta):
+    phase = run.state.taken_to_phase if begin > 0.0 else run.state.phase_from
+    if enter_segment(run, phase):
         run.counts.arriving = Cause.LOADING
     end, phase_to = 1.0, run.state.phase_to
     change = next_change(run)
     if change < phase_to - TIE * run.params.round_trip_time:
         end, phase_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
-        cut(run, begin, end, theta, phase_to)
+        cut(run, begin, end, phase, phase_to)
     add_loading(run)
     run.state.taken, run.state.taken_to_phase = (end, phase_to) if end < 1.0 else (0.0, 0.0)
     run.counts.source += 1 if end == 1.0 else 0
 
 
 @kernel
-def enter_segment(run: Run, theta: float) -> bool:
-    """Enter the segment of the loading that has arrived at a phase (s) of the present row; return True if the loading jumps."""
+def enter_segment(run: Run, phase: float) -> bool:
+    """Enter the segment of the loading that has arrived at a phase (s) of this round trip; return True if the loading jumps."""
     jumps, tie = False, TIE * run.params.round_trip_time
-    while next_change(run) <= theta + tie:
+    while next_change(run) <= phase + tie:
         run.counts.segment += 1
         run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
@@ -54,7 +54,7 @@ def enter_segment(run: Run, theta: float) -> bool:
 
 @kernel
 def next_change(run: Run) -> float:
-    """Return the phase (s) in the present row at which the next segment arrives; inf for a later row, -inf for an earlier one."""
+    """Return the phase (s) at which the next segment arrives; inf if in a later round trip, -inf if in an earlier one."""
     following = run.counts.segment + 1
     if following >= run.segments or run.loading[following].trip > run.counts.trip:
         return math.inf
@@ -62,14 +62,14 @@ def next_change(run: Run) -> float:
 
 
 @kernel
-def cut(run: Run, begin: float, end: float, theta: float, phase_to: float) -> None:
-    """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `theta` and `phase_to`."""
+def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> None:
+    """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `phase` and `phase_to`."""
     width = end - begin
     restrict(run.load, begin, width, run.spare)
     copy(run.spare, run.load, TERMS)
     run.state.speed = (run.state.speed + 2.0 * run.state.bend * begin) * width
     run.state.bend *= width * width
-    run.state.phase_from, run.state.phase_to = theta, phase_to
+    run.state.phase_from, run.state.phase_to = phase, phase_to
 
 
 @kernel
@@ -117,7 +117,7 @@ def dirichlet(count: float, step: float) -> float:
 def tone_series(run: Run, amplitude: float, time: float) -> None:
     """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s).
 
-    They follow from s' = frequency theta' c and c' = -frequency theta' s for the sine s and the cosine c.
+    They follow from s' = frequency t' c and c' = -frequency t' s for the sine s and the cosine c.
     """
     frequency = run.params.tone_frequency
     turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
@@ -154,7 +154,7 @@ def pull_block(run: Run) -> None:
 
 @kernel
 def pulled_in_rows(run: Run, rows: float) -> float:
-    """Return the force (N) that the pull adds to a block's spring in the given number of rows at rest before the present one."""
+    """Return the force (N) that the pull adds to a block's spring in a number of round trips at rest before this one."""
     segment, lasting = run.counts.trip_segment, rows * run.params.round_trip_time
     middle = (run.counts.trip - 0.5 * rows) * run.params.round_trip_time
     since = (run.counts.trip - 0.5 * rows - run.loading[segment].trip) * run.params.round_trip_time - run.loading[segment].offset
@@ -171,7 +171,7 @@ def pulled_in_rows(run: Run, rows: float) -> float:
 
 @kernel
 def trips_withstood(run: Run, limit: float) -> int:
-    """Return the number of whole rows, up to the next break of the loading, for which a contact at rest is certain to stay so.
+    """Return the number of whole round trips, up to the next break of the loading, in which a contact at rest stays so.
 
     `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it
     never ends.
@@ -209,7 +209,7 @@ def has_faded(run: Run) -> bool:
 
 @kernel
 def tops(run: Run, sign: float) -> float:
-    """Return the largest value of sign * load (Pa or N, minus the reference strength) in the row just past."""
+    """Return the largest value of sign * load (Pa or N, minus the reference strength) in the round trip just past."""
     top = -math.inf
     for n in range(run.counts.trip_from, run.counts.length):
         top = max(top, maximum(run.history[n].load, sign))
