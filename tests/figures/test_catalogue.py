@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.figures.runs import catalogue
-from stickslip.figures.runs.run import plot_run
+from stickslip.figures.runs.run import draw
 from stickslip.figures.style import time_unit
 from tests.problems import SLAB, rate_law_slab
 
@@ -87,7 +87,7 @@ def test_wide_ranges_are_logarithmic() -> None:
 
 
 def test_a_window_is_drawn_in_local_time() -> None:
-    figure = plot_run(ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1))
+    figure = draw(ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1))
     assert figure.axes[-1].get_xlabel() == "time since the event began (s)"
     assert figure.axes[0].get_ylabel() == "slip in the event (m)"
     time, slip = figure.axes[0].lines[0].get_xydata().T

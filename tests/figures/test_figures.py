@@ -17,7 +17,7 @@ import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
 from stickslip.figures.contact import admissible, hysteresis, laws, regimes, resistance, systems
 from stickslip.figures.runs import comparison
-from stickslip.figures.runs.run import plot_run
+from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import ensemble, regularise
 from stickslip.figures.style import STYLE, image
 from tests.figures.labels import has_unit, labels
@@ -210,7 +210,7 @@ def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
 
 def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
     before = dict(mpl.rcParams)
-    figure = plot_run(ss.simulate(SLAB_PROBLEM, 7.0))
+    figure = draw(ss.simulate(SLAB_PROBLEM, 7.0))
     assert dict(mpl.rcParams) == before
     assert len(figure.axes) == 3
     assert all(has_unit(text) for text in labels(figure))
@@ -219,7 +219,7 @@ def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
 
 
 def test_years_are_shown_as_years() -> None:
-    figure = plot_run(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
+    figure = draw(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
     assert figure.axes[2].get_xlabel().endswith("(year)")
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
     pyplot.close(figure)

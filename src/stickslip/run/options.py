@@ -46,12 +46,13 @@ class RunOptions:
     checkpoint: Path | None = None
     checkpoint_every: float = CHECKPOINT_EVERY
     max_pieces: int | None = None
+    title: str = ""
 
     @classmethod
     def of(cls, scenario: Scenario, **others: Any) -> Self:
         """Return the options of a scenario, and `others` beside them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
-        return cls(**{name: getattr(scenario, name) for name in names}, **others)
+        return cls(**{name: getattr(scenario, name) for name in names}, title=scenario.heading, **others)
 
     @classmethod
     def to_continue(cls, stopped: Solution, duration: float | None, max_events: int | None, **others: Any) -> Self:
@@ -66,6 +67,7 @@ class RunOptions:
             stopped.creep_rtol,
             stopped.shortest_event,
             max_events if max_events is not None or had_them else stopped.max_events,
+            title=stopped.title,
             **others,
         )
 
@@ -86,6 +88,8 @@ class RunOptions:
             raise InputError(f"{who}: progress must be a function, got {shown(self.progress)}")
         if not (is_number(self.checkpoint_every) and self.checkpoint_every >= 0):
             raise InputError(f"{who}: checkpoint_every must be a time in s, got {shown(self.checkpoint_every)}")
+        if not isinstance(self.title, str):
+            raise InputError(f"{who}: title must be text, got {shown(self.title)}")
         return replace(
             self,
             max_events=None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),

@@ -27,6 +27,7 @@ def simulate(
     checkpoint: str | Path | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
+    title: str = "",
 ) -> Solution:
     """Run a problem from t = 0.
 
@@ -56,6 +57,8 @@ def simulate(
     max_pieces : int, optional
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
         million, some 0.4 GB in memory and in a file.
+    title : str
+        Title of the run, for figures.
 
     Returns
     -------
@@ -93,6 +96,7 @@ def simulate(
         checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
         checkpoint_every=checkpoint_every,
         max_pieces=max_pieces,
+        title=title,
     )
     options = given.check("simulate", problem)
     return run_to_end(Session.begin(problem, options), WholeHistory())

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 LARGEST = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
+UNNAMED = "scenario"
+"""Name of a scenario that has none of its own."""
 DEEPEST = 20
 """Largest number of parts in a dotted key: tomllib takes a time that grows with the square of this number."""
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
@@ -68,11 +70,16 @@ class Scenario:
     max_events: int | None = None
     creep_rtol: float | None = None
     shortest_event: float | None = None
-    name: str = field(default="scenario", compare=False)
+    name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
 
+    @property
+    def heading(self) -> str:
+        """The title of figures: that of the scenario, or its name; "" if it has neither."""
+        return self.title or (self.name if self.name != UNNAMED else "")
+
     @classmethod
-    def of(cls, solution: Solution, name: str = "scenario") -> Self:
+    def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
         """Return the scenario of which a solution is a run."""
         return cls(
             problem=solution.problem,
@@ -81,6 +88,7 @@ class Scenario:
             max_events=solution.max_events,
             creep_rtol=solution.creep_rtol,
             shortest_event=solution.shortest_event,
+            title=solution.title,
             name=name,
         )
 
@@ -101,7 +109,8 @@ class Scenario:
         """
         from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
-        how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "max_events": self.max_events}
+        names = ("creep_rtol", "shortest_event", "max_events")
+        how: dict[str, Any] = {"title": self.heading, **{name: getattr(self, name) for name in names}}
         return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
 
     def to_toml(self) -> str:

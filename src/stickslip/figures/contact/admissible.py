@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
 from stickslip.figures.contact.resistance import draw_branches
-from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled
+from stickslip.figures.panels import set_title
+from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled, title_of
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.solution import Solution
 
 Height = Callable[..., Any]
@@ -31,7 +33,7 @@ _TINY = 1e-3
 """If the loads span less than this share of the static strength, they are drawn as differences from it."""
 
 
-def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
+def data(problem: Problem, solution: Solution | None = None, *, title: str = "") -> xr.Dataset:
     """Return the set K for forward slip at the start of a problem, and the path of a run in it.
 
     Parameters
@@ -40,6 +42,8 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         A slab whose slip rate follows from the load alone.
     solution : Solution, optional
         A run of the problem; its path is drawn over the set.
+    title : str
+        Title of the figure; by default that of the run.
 
     Returns
     -------
@@ -77,9 +81,8 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         "strength": quantity((), g.strength, "static strength", r"S\mu_s", "Pa"),
         "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
     }
-    place = f" at a slip of {g.law_slip:.6g} m" if problem.friction.depends_on_slip else ""
     coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}
-    title = f"Set K: {type(problem.friction).kind} friction{place}, {contact.regime}"
+    title = title or ("" if solution is None else title_of(solution))
     attributes = {"title": title, "rule": contact.rule}
     return xr.Dataset(contents | path, coords=coordinates, attrs=attributes)
 
@@ -107,10 +110,9 @@ def _fastest(contact: Uniqueness, path: Floats) -> float:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards."""
-    figure, grid = panels(1, 1, (5.4, 4.2))
-    axes = grid[0, 0]
+    axes = one_panel((5.4, 4.2), **place)
     strength = float(dataset["strength"])
     low, high = _range(dataset)
     near = high - low < _TINY * strength
@@ -133,8 +135,9 @@ def draw(dataset: xr.Dataset) -> Figure:
         ylim=(float(height(low)), float(height(high))),
     )
     axes.legend(loc="best")
-    letter(axes, dataset.attrs["title"])
-    return figure
+    if "ax" not in place:
+        set_title(axes, dataset.attrs["title"])
+    return result(axes, **place)
 
 
 def _range(dataset: xr.Dataset) -> tuple[float, float]:

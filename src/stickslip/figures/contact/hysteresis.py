@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.panels import letter_panels, zero_line
+from stickslip.figures.sheet import Place, sheet
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.solution import Solution
 
 CASE = "loop"
@@ -36,15 +38,14 @@ def data(solution: Solution) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the loop in the plane of slip rate and load on the left, and the same run against time on the right."""
-    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    figure = sheet((7.2, 3.8), **place)
     axes: Any = figure.subplot_mosaic([["loop", "load"], ["loop", "rate"]], width_ratios=(1.25, 1))
     _draw_loop(axes["loop"], dataset)
     _draw_time(axes["load"], axes["rate"], dataset)
     figure.align_ylabels([axes["load"], axes["rate"]])
-    letter(axes["loop"], "a   Set K and the paths walked")
-    letter(axes["load"], "b   The run")
+    letter_panels((axes["loop"], axes["load"], axes["rate"]), ("Set K and the path of a run", "Load", "Slip rate"))
     return figure
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
-from stickslip.figures.panels import letter, panels
+from stickslip.figures.panels import letter_panels, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, Floats, curve_quantity, label, quantity, shown, styled
 from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
@@ -68,14 +71,14 @@ def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, flo
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a panel for each case, with stable branches solid and unstable ones dashed."""
     cases, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("cases", "case_titles"))
-    figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.3), sharey=True)
+    figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.5), place, sharey=True)
     for i, case in enumerate(cases):
         draw_set(axes[0, i], dataset, case)
         draw_points(axes[0, i], dataset, case)
-        letter(axes[0, i], f"{'abcdef'[i]}   {titles[i]}")
+    letter_panels(axes[0], titles)
     axes[0, 0].set_ylabel(label(dataset[f"{cases[0]}_resistance"]))
     axes[0, -1].legend(loc="lower right")
     return figure

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.panels import count_ticks, leave_empty, letter, set_scale, zero_line
 from stickslip.figures.runs.slab_panels import last_large_event
+from stickslip.figures.sheet import Place, sheet
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -26,12 +27,15 @@ from stickslip.figures.style import (
     quantity,
     spans_decades,
     styled,
-    system_title,
     time_unit,
+    title_of,
 )
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.solution import Solution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CLOSE = 1e-3
 """The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
@@ -84,13 +88,13 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
     count = f"{len(table)} slip event{'s' if len(table) > 1 else ''}"
-    return xr.Dataset(contents, attrs={"title": f"{system_title(solution.problem)}: {count}"})
+    return xr.Dataset(contents, attrs={"title": f"{title_of(solution)}: {count}".removeprefix(": ")})
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map."""
-    figure = Figure(figsize=(7.6, 7.2), layout="constrained")
+    figure = sheet((7.6, 7.2), **place)
     axes = figure.subplot_mosaic("AAA;BCD;EFG")
     _draw_time_line(axes["A"], dataset)
     _draw_zooms([axes[name] for name in "BCD"], dataset)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, panels, zero_line
+from stickslip.figures.panels import letter_panels, panels, zero_line
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.evaluation import Curve
     from stickslip.solution.solution import Solution
 
@@ -40,13 +42,13 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
-    figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), sharex="col")
-    for k, (name, title) in enumerate(zip(names, titles, strict=True)):
+    figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), place, sharex="col")
+    for k, name in enumerate(names):
         _draw_column(axes[:, k], dataset, name, LINE_COLOURS[k % 2])
-        letter(axes[0, k], f"{'abcdef'[k]}   {title}")
+    letter_panels(axes.T.flat, [text for title in titles for text in (title, "", "")])
     figure.align_ylabels()
     return figure
 

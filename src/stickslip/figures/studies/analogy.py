@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
 from stickslip.figures.panels import draw_map, draw_parameters, letter, panels, parameter_variables
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import GREEN, INK, LIGHT_ORANGE, shown, styled
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
@@ -40,16 +41,16 @@ def data(found: Analogy) -> xr.Dataset:
     for one in QUANTITIES:
         about = {"long_name": f"{one.replace('_', ' ')}, slab / block", "units": "1"}
         contents[f"{one}_ratio"] = xr.Variable(dims, found.ratio(one), about)
-    coordinates = parameter_variables(found.problem, short=True, x=found.x, y=found.y)
+    coordinates = parameter_variables(found.problem, x=found.x, y=found.y)
     return xr.Dataset(
         contents, coords=coordinates, attrs={"title": "Slab and equivalent block, first slip event", "within": found.within}
     )
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
-    figure, axes = panels(2, 2, (7.6, 6.4), sharex=True, sharey=True)
+    figure, axes = panels(2, 2, (7.6, 6.4), place, sharex=True, sharey=True)
     ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST, LARGEST)}
     for k, (panel, one) in enumerate(zip(axes.flat, QUANTITIES, strict=False)):
         ratio = dataset[f"{one}_ratio"]

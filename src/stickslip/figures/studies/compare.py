@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import letter, panels, zero_line
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, label, nearly_flat, quantity, shown, styled, time_unit
 from stickslip.solution.evaluation import Curve, Readings
 
@@ -90,9 +91,9 @@ def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, m
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
-    figure, grid = panels(len(ROWS), 1, (6.4, 6.4), sharex=True)
+    figure, grid = panels(len(ROWS), 1, (6.4, 6.4), place, sharex=True)
     names, spans = (np.atleast_1d(dataset.attrs[key]).astype(str).tolist() for key in ("runs", "spans"))
     shares = dataset.attrs["shares"]
     times = [dataset[f"run{k}_slip_time"].values for k in range(len(names))]

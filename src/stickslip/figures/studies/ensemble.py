@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.panels import count_ticks, leave_empty, letter, set_scale
+from stickslip.figures.sheet import Place, sheet
 from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, WIDE, curve_quantity, quantity, styled, time_unit
 
 if TYPE_CHECKING:
@@ -86,9 +87,9 @@ def _statistics(study: Ensemble) -> dict[str, xr.Variable]:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the members' time lines and below them the growth of the disturbance; beside them slips, and the spread of starts."""
-    figure = Figure(figsize=(7.6, 5.4), layout="constrained")
+    figure = sheet((7.6, 5.4), **place)
     axes: Any = figure.subplot_mosaic("AAC;BBD")
     unit, size = time_unit(float(dataset.attrs["until"]))
     _draw_time_lines(axes["A"], dataset, size)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from stickslip.figures.contact import resistance
 from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.sheet import Place, sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled
 from stickslip.studies.regularisations import kind_of
 
@@ -96,12 +97,12 @@ def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], win
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the errors on the left and the runs on the right.
 
     Around a jump, those on the right show slip rate against time and the path over the set K; else slip and slip rate throughout.
     """
-    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
+    figure = sheet((7.6, 4.6), **place)
     axes: Any = figure.subplot_mosaic([["errors", "upper"], ["errors", "lower"]], width_ratios=(1.2, 1))
     _draw_errors(axes["errors"], dataset)
     letter(axes["errors"], f"a   {dataset.attrs['title']}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import count_ticks, letter, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import GREY, LINE_COLOURS, Floats
 from stickslip.figures.sweeps.varied import Shown, scaled, shown, value_text
 
@@ -19,7 +20,7 @@ SEPARATE = 40
 """Members of a curve are marked by dots up to this number; more would run together."""
 
 
-def draw_curves(dataset: xr.Dataset) -> Figure:
+def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the quantity over the longer axis, with a curve for each value of the other, if there is one."""
     quantity = shown(dataset)
     along = str(quantity.values.dims[int(np.argmax(quantity.values.shape))])
@@ -28,7 +29,7 @@ def draw_curves(dataset: xr.Dataset) -> Figure:
     order = np.argsort(across.values)
     marker = "o" if len(order) <= SEPARATE else ""
     rows, states = (np.atleast_2d(part.transpose(*others, along).values) for part in (quantity.values, quantity.state))
-    figure, grid = panels(1, 1, (5.4, 3.8))
+    figure, grid = panels(1, 1, (5.4, 3.8), place)
     axes = grid[0, 0]
     for k, row in enumerate(rows):
         text = value_text(dataset[others[0]][k]) if others else ""

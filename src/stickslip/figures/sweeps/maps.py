@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from stickslip.figures.panels import letter, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.members import axes_of, draw_members
@@ -29,7 +30,7 @@ Draw = Callable[[Axes, int], None]
 """A function that draws a map; it receives its axes and the index of the value of the third key."""
 
 
-def draw_maps(dataset: xr.Dataset) -> Figure:
+def draw_maps(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the first key along x and the second along y; of three keys, the one with the fewest values gives the separate maps."""
     quantity = shown(dataset)
     colours, lengths = colours_of(quantity), quantity.values.sizes
@@ -39,10 +40,10 @@ def draw_maps(dataset: xr.Dataset) -> Figure:
         at = {} if third is None else {third.name: k}
         _draw_map(axes, dataset, replace(quantity, values=quantity.values.isel(at), state=quantity.state.isel(at)), colours)
 
-    return _draw_all(dataset, quantity, colours, third, draw_one)
+    return _draw_all(dataset, quantity, colours, third, draw_one, place=place)
 
 
-def draw_cells(dataset: xr.Dataset) -> Figure:
+def draw_cells(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the cells over two varied keys, or cuts through them at some coarse values of a third.
 
     For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
@@ -50,7 +51,7 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
     spec = RefinementSpec.read(dataset)
     names = list(spec.columns)
     if dataset.attrs["quantity"] != spec.quantity or len(names) not in (2, 3):
-        return draw_members(dataset)
+        return draw_members(dataset, **place)
     quantity, cells, places = shown(dataset), cells_of(dataset), axes_of(dataset)
     colours, third = colours_of(quantity, cells.answer), None
     if len(names) == 3:
@@ -61,39 +62,45 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
         _draw_cells(axes, quantity, colours, cut, places)
 
     boundary = [Patch(facecolor=INK, label="boundary")] if cells.changes.any() else []
-    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary)
+    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary, place=place)
 
 
 def _draw_all(
-    dataset: xr.Dataset, quantity: Shown, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *more: Artist
+    dataset: xr.Dataset,
+    quantity: Shown,
+    colours: Colours,
+    third: xr.DataArray | None,
+    draw_one: Draw,
+    *more: Artist,
+    place: Place,
 ) -> Figure:
     """Draw one map, or one for each of some values of a third key, and explain the colours; `more` entries end the key."""
     title = str(dataset.attrs.get("title", ""))
     if third is None:
-        figure, grid = panels(1, 1, (5.4, 4.4))
+        figure, grid = panels(1, 1, (5.4, 4.4), place)
         draw_one(grid[0, 0], 0)
         letter(grid[0, 0], title)
     else:
-        figure, grid = _side_by_side(third, draw_one)
+        figure, grid = _side_by_side(third, draw_one, place)
         figure.suptitle(title, fontsize=9.5, fontweight="bold")
     explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity), *more)
     return figure
 
 
-def _side_by_side(third: xr.DataArray, draw_one: Draw) -> tuple[Figure, NDArray[Any]]:
+def _side_by_side(third: xr.DataArray, draw_one: Draw, place: Place) -> tuple[Figure, NDArray[Any]]:
     """Return a figure with a panel for each value of a key, or for `PANELS` of them evenly chosen, and its axes."""
     chosen = np.unique(np.linspace(0, third.size - 1, min(third.size, PANELS)).round().astype(int))
     columns = min(len(chosen), 3)
     rows = -(-len(chosen) // columns)
-    figure, grid = panels(rows, columns, (2.4 * columns + 1.2, 2.1 * rows + 1.0), sharex=True, sharey=True)
-    for place, axes in enumerate(grid.flat):
-        if place >= len(chosen):
+    figure, grid = panels(rows, columns, (2.4 * columns + 1.2, 2.1 * rows + 1.0), place, sharex=True, sharey=True)
+    for number, axes in enumerate(grid.flat):
+        if number >= len(chosen):
             axes.set_axis_off()
             continue
-        draw_one(axes, int(chosen[place]))
-        letter(axes, value_text(third[chosen[place]]))
-        lowest = place + columns >= len(chosen)
-        axes.yaxis.label.set_visible(place % columns == 0)
+        draw_one(axes, int(chosen[number]))
+        letter(axes, value_text(third[chosen[number]]))
+        lowest = number + columns >= len(chosen)
+        axes.yaxis.label.set_visible(number % columns == 0)
         axes.xaxis.label.set_visible(lowest)
         axes.xaxis.set_tick_params(labelbottom=lowest)
     return figure, grid

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from typing import Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import letter, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import BLUE, GREY, PALE
 from stickslip.figures.sweeps.colours import colours_of, explain
 from stickslip.figures.sweeps.curves import mark_failed, show_ordinate
@@ -21,16 +23,16 @@ SIZE = 12.0
 """Area of a point (in square points, as `scatter` takes it)."""
 
 
-def draw_members(dataset: xr.Dataset) -> Figure:
+def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw coloured points over two varied keys; for any other number of keys, draw the quantity against each key in turn."""
     quantity, places = shown(dataset), list(axes_of(dataset).values())
     if len(places) == 2:
-        figure, grid = panels(1, 1, (5.4, 4.4))
+        figure, grid = panels(1, 1, (5.4, 4.4), place)
         _draw_points(grid[0, 0], quantity, *places)
     else:
         columns = min(len(places), 3)
         rows = -(-len(places) // columns)
-        figure, grid = panels(rows, columns, (max(2.6 * columns + 1.0, 5.4), max(2.6 * rows + 0.4, 3.8)), sharey=True)
+        figure, grid = panels(rows, columns, (max(2.6 * columns + 1.0, 5.4), max(2.6 * rows + 0.4, 3.8)), place, sharey=True)
         for axes, across in zip(grid.flat, places, strict=False):
             axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=3.0, rasterized=True)
             mark_failed(axes, across.values[quantity.state.values == 2])

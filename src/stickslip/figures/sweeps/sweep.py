@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from stickslip.figures.sheet import Place, known_to_pyplot
 from stickslip.figures.style import name_system, styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_cells, draw_maps
@@ -23,7 +25,7 @@ from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE
 
 
-def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None) -> Figure:
+def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None, **place: Unpack[Place]) -> Figure:
     """Draw a quantity of a sweep over the varied keys, and save the figure if a file is named.
 
     Parameters
@@ -34,6 +36,8 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         Name of the quantity; by default the first one of the sweep.
     path : str or Path, optional
         File to be written, either whole or not at all.
+    **place
+        Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot()`.
 
     Returns
     -------
@@ -48,7 +52,8 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
         the other keys first.
     """
-    figure = draw(data(dataset, quantity))
+    drawn = data(dataset, quantity)
+    figure = draw(drawn, **(known_to_pyplot(place) if path is None else place))
     if path is not None:
         write_atomically(Path(path), figure.savefig)
     return figure
@@ -91,10 +96,11 @@ def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the kind of figure that suits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
         whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()
-        return draw_cells(dataset) if whole else draw_members(dataset)
-    return draw_curves(dataset) if len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES) else draw_maps(dataset)
+        return draw_cells(dataset, **place) if whole else draw_members(dataset, **place)
+    curves = len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES)
+    return draw_curves(dataset, **place) if curves else draw_maps(dataset, **place)
