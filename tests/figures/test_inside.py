@@ -47,7 +47,9 @@ def _close_figures() -> Iterator[None]:
 def without_unit(figure: Figure) -> list[str]:
     """Labels that do not say their unit."""
     return [
-        text for text in labels(figure) if not any(f"({unit})" in text for unit in ("s", "µs", "m", "km", "mm", "m/s", "MPa", "Pa"))
+        text
+        for text in labels(figure)
+        if not any(f"({unit})" in text for unit in ("s", "µs", "m", "km", "mm", "m/s", "mm/s", "MPa", "Pa"))
     ]
 
 
@@ -161,7 +163,7 @@ def test_snapshots_of_an_event_show_displacement_since_it_began(run: ss.Solution
     assert dataset.displacement.attrs["long_name"] == "displacement since the event began"
     assert 0.0 < float(dataset.time[0]) < float(dataset.time[-1]) < ROUND
     figure = snapshots.draw(dataset)
-    assert figure.axes[0].get_xlabel() == "displacement (m)\nsince the event began"
+    assert figure.axes[0].get_xlabel() == "displacement $u$ (m)\nsince the event began"
 
 
 # ---- animations ----------------------------------------------------------------------------------------------------------------

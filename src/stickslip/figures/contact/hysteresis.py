@@ -9,9 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.contact import resistance
+from stickslip.figures.contact.resistance import load_unit
 from stickslip.figures.panels import letter_panels, zero_line
 from stickslip.figures.sheet import Place, sheet
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled, unit_shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +57,10 @@ def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
 
 def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     resistance.draw_set(axes, dataset, CASE, quiet=True)
-    rate, load = shown(dataset["run_slip_rate"]), shown(dataset["run_load"])
+    rate, load = (
+        dataset["run_slip_rate"].values / unit_shown(dataset["slip_rate"])[1],
+        shown(dataset["run_load"], load_unit(dataset)),
+    )
     shift = 0.012 * rate.max()  # both paths follow the same branches: draw them side by side, not on top of each other
     for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
         x, y = rate[part] + side * shift, load[part] - side * 0.35
@@ -65,7 +69,7 @@ def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     axes.set(ylim=(50, 90), xlim=(-0.04 * rate.max(), 1.04 * rate.max()))
     resistance.draw_points(axes, dataset, CASE, D=(8, 3))
     axes.annotate("to O", (0, 50), (6, 4), textcoords="offset points", fontsize=9, fontweight="bold")
-    axes.set_ylabel(label(dataset["run_load"]))
+    axes.set_ylabel(label(dataset["run_load"], load_unit(dataset)))
     axes.legend(loc="lower right")
 
 
@@ -81,14 +85,17 @@ def _arrows(axes: Axes, x: Floats, y: Floats, colour: str) -> None:
 
 def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
     time = shown(dataset["run_time"])
-    for axes, name in ((top, "run_load"), (bottom, "run_slip_rate")):
+    for axes, name, unit in ((top, "run_load", load_unit(dataset)), (bottom, "run_slip_rate", unit_shown(dataset["slip_rate"]))):
         for part, colour, _ in _parts(dataset):
-            axes.plot(time[part], shown(dataset[name])[part], color=colour)
-        axes.set(ylabel=label(dataset[name]), xlim=(0, time[-1]))
+            axes.plot(time[part], shown(dataset[name], unit)[part], color=colour)
+        axes.set(ylabel=label(dataset[name], unit), xlim=(0, time[-1]))
     for point, left in (("A", 0.0), ("C", 0.25 * time[-1])):
-        level = dataset[f"{CASE}_point_{point}"].values[1] / 1e6
+        unit, size = load_unit(dataset)
+        level = dataset[f"{CASE}_point_{point}"].values[1] / size
         top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-        top.annotate(f"fold {point}, {level:.2f} MPa", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
+        top.annotate(
+            f"fold {point}, {level:.2f} {unit}", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK
+        )
     zero_line(bottom)
     top.tick_params(labelbottom=False)
     bottom.set_xlabel(label(dataset["run_time"]))

@@ -39,7 +39,7 @@ COLOURS: dict[str, str] = {
 MANY = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
 BRIEF = 0.01
-"""The start from rest is left out of the limits of an axis if it takes less than this share of the time that is shown."""
+"""The start from rest is left out if it takes less than this share of the time that is shown."""
 Span = tuple[float, float]
 """First and last time that are drawn, s."""
 
@@ -61,18 +61,18 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
     log = name == "slip_rate" and not readings.problem.friction.sticks
     if log:
         # A contact that never sticks slips at widely different rates.
-        values = np.where(values != 0.0, np.abs(values), np.nan)
+        values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
     state = readings.problem.friction.state
     if name == "state" and state is not None:
         size, text = 1.0, axis_text("state", "", state.unit)
     else:
-        unit, size = unit_of(_unit(readings, name), values[settled], log=log)
+        unit, size = unit_of(_unit(readings, name), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)
     axes.plot(time / time_unit(span[1] - span[0])[1], values / size, color=COLOURS[name])
     axes.set_ylabel(text)
     if log:
         axes.set_yscale("log")
-        fit_height(axes, [values[settled] / size])
+        fit_height(axes, [values / size])
         set_log_ticks(axes, "y")
     elif name in ("slip", "event_slip", "slip_rate"):
         zero_line(axes)
@@ -84,7 +84,7 @@ def _unit(readings: Readings, name: Curve) -> str:
 
 
 def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
-    """Return True for the times after the start from rest, which must not set the limits of an axis.
+    """Return True for the times after the start from rest, which is not drawn where it would set the limits of an axis.
 
     A contact whose law never sticks starts at a slip rate of 0, far below all that follow, and a block accelerates from there
     within one period. If no more is shown than that, all times count.
@@ -126,7 +126,10 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     axes.plot(time / seconds, (traction - offset) / size, color=VERMILLION, label=rf"{names[0]} $\tau$")
     text = f"{names[0]}, {names[1]}".replace("force, ", "and\n")
     axes.set_ylabel(f"change of\n{text.replace(chr(10), ' ')} ({unit})" if change else f"{text} ({unit})")
-    zero_line(axes)
+    if change or min(load.min(), traction.min()) < 0.5 * max(load.max(), traction.max()):
+        zero_line(axes)
+    else:
+        fit_height(axes, [load / size, traction / size])
 
 
 def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: bool = False) -> None:
@@ -134,6 +137,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: b
     normal, slip = readings.problem.normal, readings.curves[0]
     (time, load), (_, traction) = (readings.curve(name, *span) for name in ("load", "traction"))
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
+    traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
     if against_slip:
         moved = getattr(readings, slip)(time)
         unit, size = unit_of("m", moved)
@@ -144,8 +148,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: b
         axes.plot(across, load / normal, color=INK, linewidth=1.0, linestyle="--", label=rf"{name} over normal load, $\beta/S$")
     axes.plot(across, traction / normal, color=VERMILLION, label=r"friction coefficient $\mu=\tau/S$")
     axes.set_ylabel(curve_label("friction"))
-    shown = [traction[settled] / normal] + ([] if against_slip else [load[settled] / normal])
-    fit_height(axes, shown)
+    fit_height(axes, [traction / normal] if against_slip else [traction / normal, load / normal])
 
 
 def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:

@@ -27,7 +27,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs to years, suits the interval. If the
     friction law never sticks, the slip rate has a logarithmic axis, friction is drawn as a coefficient in place of traction and
     load, and a further panel shows it against slip, as papers on laboratory friction do. The start from rest of such a contact is
-    drawn, but does not set the limits of the axes.
+    left out of these panels: its scale is far from all that follows.
     """
     span = interval(readings, start, end)
     figure, panels = _panels(readings, place)
@@ -46,6 +46,9 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     for panel in panels["slip"]:
         draw_friction(panel, readings, span, against_slip=True)
     handles, names = stress.get_legend_handles_labels()
+    for panel in panels["loading"]:
+        bands, texts = panel.get_legend_handles_labels()
+        handles, names = handles + bands, names + texts
     figure.legend(handles, names, loc="outside lower center", ncols=3)
     letter_panels([panel for group in panels.values() for panel in group])
     set_title(figure, title_of(readings))
