@@ -57,10 +57,8 @@ def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
 
 def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     resistance.draw_set(axes, dataset, CASE, quiet=True)
-    rate, load = (
-        dataset["run_slip_rate"].values / unit_shown(dataset["slip_rate"])[1],
-        shown(dataset["run_load"], load_unit(dataset)),
-    )
+    rate = shown(dataset["run_slip_rate"], unit_shown(dataset["slip_rate"]))
+    load = shown(dataset["run_load"], load_unit(dataset))
     shift = 0.012 * rate.max()  # both paths follow the same branches: draw them side by side, not on top of each other
     for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
         x, y = rate[part] + side * shift, load[part] - side * 0.35
@@ -90,12 +88,11 @@ def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
             axes.plot(time[part], shown(dataset[name], unit)[part], color=colour)
         axes.set(ylabel=label(dataset[name], unit), xlim=(0, time[-1]))
     for point, left in (("A", 0.0), ("C", 0.25 * time[-1])):
-        unit, size = load_unit(dataset)
+        stress, size = load_unit(dataset)
         level = dataset[f"{CASE}_point_{point}"].values[1] / size
         top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-        top.annotate(
-            f"fold {point}, {level:.2f} {unit}", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK
-        )
+        text = f"fold {point}, {level:.2f} {stress}"
+        top.annotate(text, (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
     zero_line(bottom)
     top.tick_params(labelbottom=False)
     bottom.set_xlabel(label(dataset["run_time"]))
