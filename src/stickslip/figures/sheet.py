@@ -1,8 +1,8 @@
 """Where a figure is drawn and how large it is: in a new figure, or in a figure or axes of the user.
 
 Every function of the package that draws takes the keywords of `Place`. Without them it makes a new figure, a `StickslipFigure`, in
-the size that suits its panels. Only the methods that users call (`solution.plot()`, `study.plot()`) make it known to pyplot, by
-`known_to_pyplot`; commands and the paper draw figures that pyplot never sees.
+the size that suits its panels. Methods that users call (`solution.plot()`, `study.plot()`) make the finished figure known to
+pyplot, by `known_to_pyplot`; commands and the paper draw figures that pyplot never sees.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack, cast
 
 import matplotlib as mpl
 from matplotlib.backends.registry import BackendFilter, backend_registry
@@ -22,6 +22,7 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+T = TypeVar("T")
 INCHES = {"mm": 1.0 / 25.4, "cm": 1.0 / 2.54, "in": 1.0, "inch": 1.0, "inches": 1.0}
 """Units in which a size can be written, and their length in inches."""
 COLUMNS = {"single column": 3.5, "double column": 7.2}
@@ -76,14 +77,16 @@ class StickslipFigure(Figure):
                 return
             pyplot.close(self)
         formatters = get_ipython().display_formatter.formatters
-        pictures = {kind: formatter(self) for kind, formatter in formatters.items() if kind != "text/plain"}
+        pictures = {
+            kind: formatter(self) for kind, formatter in formatters.items() if kind.startswith(("image/", "application/pdf"))
+        }
         found = {kind: picture for kind, picture in pictures.items() if picture}
         data = {kind: picture[0] if isinstance(picture, tuple) else picture for kind, picture in found.items()}
         metadata = {kind: picture[1] for kind, picture in found.items() if isinstance(picture, tuple)}
-        display({"text/plain": repr(self), **data}, metadata=metadata, raw=True)
+        display({"text/plain": repr(self), **(data or {"image/png": self._png()})}, metadata=metadata, raw=True)
 
-    def _repr_png_(self) -> bytes:
-        """Return the figure as PNG; a notebook asks for it if no backend has told it how to show figures."""
+    def _png(self) -> bytes:
+        """Return the figure as PNG, for a notebook whose backend does not say how figures are shown."""
         from stickslip.figures.style import image
 
         return image(self, "png", dpi=self.dpi)
@@ -96,16 +99,15 @@ def _has_windows() -> bool:
     return backend not in without and "inline" not in backend
 
 
-def known_to_pyplot(place: Place) -> Place:
-    """Return where to draw: as the user says, else in a new figure that pyplot knows and shows. Raises InputError."""
-    check_place(**place)
-    if "ax" in place or "figure" in place:
-        return place
-    from matplotlib import pyplot
+def known_to_pyplot(drawn: T, place: Place) -> T:
+    """Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on."""
+    if isinstance(drawn, StickslipFigure) and "figure" not in place:
+        from matplotlib import pyplot
 
-    # Outside `styled`: with the first figure a notebook's backend sets options of matplotlib that must stay.
-    figure = pyplot.figure(FigureClass=StickslipFigure, facecolor="white")
-    return {**place, "figure": figure}
+        # Only a finished figure is handed over: one that fails leaves nothing behind. This must not happen inside `styled`,
+        # because with the first figure the backend of a notebook sets options of matplotlib that have to stay.
+        pyplot.figure(FigureClass=lambda **_: drawn)  # type: ignore[arg-type]
+    return drawn
 
 
 def check_place(**place: Unpack[Place]) -> None:

@@ -8,7 +8,7 @@ Rules that all figures follow:
 1. **Place.** Every function that draws takes the keywords of `sheet.Place` (ax, figure, size, dpi) and begins with
    `sheet(usual size, **place)`, or with `one_panel(usual size, **place)` for a figure of one panel, which ends with
    `return result(axes, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls pyplot; a method
-   for users passes `**known_to_pyplot(place)` to it, after it has computed the data.
+   for users returns `known_to_pyplot(draw(dataset, **place), place)`.
 2. **Titles.** `panels.set_title(figure, title)` with the title of the scenario; problems from Python have none, and neither have
    axes of the user. No names of classes or of laws.
 3. **Letters.** Several panels have letters, `panels.letter_panels(axes, texts)`: "(a) text" above the panel, at its left end. A

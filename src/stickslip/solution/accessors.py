@@ -28,6 +28,7 @@ MOST_VALUES = 20_000_000
 """Largest number of times multiplied by places in one dataset; each value takes up to 0.5 kB of memory while it is computed."""
 
 Run = TypeVar("Run", bound=Readings)
+T = TypeVar("T")
 
 
 class Plots(Generic[Run]):
@@ -54,7 +55,7 @@ class Plots(Generic[Run]):
         """
         from stickslip.figures.runs import run
 
-        return run.draw(self._run, start, end, **known_to_pyplot(place))
+        return known_to_pyplot(run.draw(self._run, start, end, **place), place)
 
     def slip(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the slip against time; in a window, the slip since the event began."""
@@ -79,13 +80,13 @@ class Plots(Generic[Run]):
     def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
         from stickslip.figures.runs import one_curve
 
-        return one_curve.draw(self._run, name, start, end, **known_to_pyplot(place))
+        return known_to_pyplot(one_curve.draw(self._run, name, start, end, **place), place)
 
     def friction(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the friction coefficient against slip, as papers on laboratory friction do."""
         from stickslip.figures.runs import friction
 
-        return friction.draw(self._run, start, end, **known_to_pyplot(place))
+        return known_to_pyplot(friction.draw(self._run, start, end, **place), place)
 
     def field(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.
@@ -94,7 +95,7 @@ class Plots(Generic[Run]):
         """
         from stickslip.figures.runs import space_time
 
-        return space_time.draw(space_time.data(self._run, start, end), **known_to_pyplot(place))
+        return known_to_pyplot(space_time.draw(space_time.data(self._run, start, end), **place), place)
 
     def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
         """Draw displacement, velocity and stress across the slab at several times.
@@ -117,7 +118,7 @@ class Plots(Generic[Run]):
         """
         from stickslip.figures.runs import snapshots
 
-        return snapshots.draw(snapshots.data(self._run, t), **known_to_pyplot(place))
+        return known_to_pyplot(snapshots.draw(snapshots.data(self._run, t), **place), place)
 
     def energy(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.
@@ -126,7 +127,7 @@ class Plots(Generic[Run]):
         """
         from stickslip.figures.runs import energy
 
-        return energy.draw(energy.data(self._run, start, end), **known_to_pyplot(place))
+        return known_to_pyplot(energy.draw(energy.data(self._run, start, end), **place), place)
 
     def animation(
         self,
@@ -191,7 +192,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.runs import catalogue
 
-        return catalogue.draw(catalogue.data(self._run, event), **known_to_pyplot(place))
+        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
 
     def path(self, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the solutions of the contact equation (the set K) and the path of the run through them.
@@ -200,13 +201,7 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.contact import admissible
 
-        return admissible.draw(admissible.data(self._run.problem, self._run), **known_to_pyplot(place))
-
-
-def _known_to_pyplot(place: Place) -> Place:
-    from stickslip.figures.sheet import known_to_pyplot
-
-    return known_to_pyplot(place)
+        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
 
 
 class Exports(Readings):
@@ -301,11 +296,11 @@ def figure_of_study(study: object) -> Any:
     return figure_of(study)
 
 
-def known_to_pyplot(place: Place) -> Place:
-    """Return where to draw: as the user says, else in a new figure that pyplot knows. Raises InputError."""
+def known_to_pyplot(drawn: T, place: Place) -> T:
+    """Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on."""
     from stickslip.figures import sheet
 
-    return sheet.known_to_pyplot(place)
+    return sheet.known_to_pyplot(drawn, place)
 
 
 def check_size(t: ArrayLike, x: ArrayLike | None) -> None:

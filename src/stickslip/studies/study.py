@@ -67,7 +67,8 @@ class Study:
         -------
         matplotlib.figure.Figure
         """
-        return self._figure().draw(self.dataset(), **known_to_pyplot(place))  # type: ignore[no-any-return]
+        figure: Figure = self._figure().draw(self.dataset(), **place)
+        return known_to_pyplot(figure, place)
 
     def _figure(self) -> Any:
         return figure_of_study(self)

@@ -52,11 +52,10 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
         the other keys first.
     """
-    drawn = data(dataset, quantity)
-    figure = draw(drawn, **(known_to_pyplot(place) if path is None else place))
+    figure = draw(data(dataset, quantity), **place)
     if path is not None:
         write_atomically(Path(path), figure.savefig)
-    return figure
+    return known_to_pyplot(figure, place)
 
 
 def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
