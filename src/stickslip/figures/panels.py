@@ -17,8 +17,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFor
 from numpy.typing import NDArray
 
 from stickslip.contact.regime_map import Axis
+from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import Place, sheet
-from stickslip.figures.style import GREY, PALE, label, parameter_label, shown
+from stickslip.figures.style import GREY, PALE, label, shown
 from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 
@@ -103,7 +104,7 @@ def parameter_variables(problem: Problem, **axes: Axis) -> dict[str, xr.Variable
     found = {}
     for name, axis in axes.items():
         one = parameter(problem, axis.parameter)
-        text = parameter_label(one.name, "1")
+        text = parameter_name(one.name, one.declared.meaning)
         found[name] = xr.Variable(name, axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
     return found
 

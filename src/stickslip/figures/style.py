@@ -16,7 +16,7 @@ Rules that all figures follow:
 4. **Units.** `unit_of(units, *values)` alone chooses a readable unit, from all values that share an axis; the values are divided by
    its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and unit.
    Stress of a slab and force of a block have names of their own (`FORCES`).
-5. **Parameters** have the words of `parameter_label` and their unit, not the name in the scenario file.
+5. **Parameters** have the words and the symbol of their declared meaning (`names.parameter_name`) and their unit.
 6. **Legends.** Every line, band, marker and colour is explained in the figure, in a legend or by a text beside it.
 """
 
@@ -34,7 +34,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
-from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
@@ -51,6 +50,8 @@ INK, GREY, PALE = "#222222", "#7A7A7A", "#D9D9D9"
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
 # Colours of large areas.
 LIGHT_BLUE, LIGHT_ORANGE = "#D6E6F4", "#F8D9C4"
+# Colours of areas of two kinds: no and yes, regular and irregular.
+TWO = (LIGHT_BLUE, ORANGE)
 
 # Settings of matplotlib under which `styled` functions draw.
 STYLE: Any = {
@@ -110,25 +111,6 @@ CURVES = {
 """Name, symbol and unit of the curves of a run, as `Solution.curve` names them."""
 FORCES = {"traction": "friction force", "load": "spring force"}
 """Names of curves that are forces (N), not stresses, on a block."""
-PARAMETERS = {
-    "alpha": r"weakening parameter $\alpha$",
-    "wavenumber": r"wavenumber $\omega$",
-    "static": "static friction coefficient",
-    "dynamic": "dynamic friction coefficient",
-    "thickness": "thickness $h$",
-    "normal stress": "normal stress $S$",
-    "normal force": "normal force $S$",
-    "stiffness": "stiffness $K$",
-    "mass": "mass $m$",
-    "density": r"density $\rho$",
-    "wave speed": "wave speed $c$",
-    "distance": "characteristic slip $D_c$",
-    "pull rate": "pull rate $V$",
-    "slip": "initial slip $u_0$",
-    "excess": "initial excess load",
-    "load": "initial load",
-}
-"""Words and symbols of numbers of a problem that their own name does not explain."""
 FLAT = 0.02
 """Stresses whose range is less than this share of their largest magnitude are drawn as changes: else the line looks flat."""
 WIDE = 100.0
@@ -227,25 +209,9 @@ def curve_label(curve: str, unit: str = "", force_unit: str = "Pa") -> str:
     return axis_text(name, symbol, unit or own)
 
 
-def parameter_label(name: str, unit: str) -> str:
-    """Return the axis label of a number of a problem from its full name, as in "alpha (s/m)" or "normal stress (MPa)"."""
-    text = name.rpartition(".")[2].replace("_", " ")
-    return axis_text(PARAMETERS.get(text, text), "", SPELLED.get(unit, unit))
-
-
 def narrow(text: str) -> str:
     """Return a label in two lines, with the unit in the second, for narrow panels."""
     return text if "\n" in text else text.replace(" (", "\n(")
-
-
-def name_system(body: str, law: str) -> str:
-    """Return the title of a figure of one system, from the kinds of its body and its friction law."""
-    return f"{body.replace('-', ' ').capitalize()}, {law} friction"
-
-
-def system_title(problem: Problem) -> str:
-    """Return the title of a figure of one problem: its body and its friction law."""
-    return name_system(type(problem.body).kind, type(problem.friction).kind)
 
 
 def title_of(readings: Readings) -> str:

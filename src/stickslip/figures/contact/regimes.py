@@ -14,15 +14,15 @@ from matplotlib.patches import Patch
 from stickslip.contact.regime_map import RegimeMap
 from stickslip.figures.panels import draw_map, draw_parameters, parameter_variables, set_title
 from stickslip.figures.sheet import Place, one_panel, result
-from stickslip.figures.style import INK, LIGHT_BLUE, LIGHT_ORANGE, PALE, shown, styled, unit_shown
+from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-REGULAR, IRREGULAR = LIGHT_BLUE, LIGHT_ORANGE
-"""Colours of the two regimes."""
+REGULAR, IRREGULAR = TWO
+"""Colours of the two regimes, which are those of no and yes in maps of sweeps."""
 
 
 def data(problem: Problem, found: RegimeMap, title: str = "") -> xr.Dataset:
