@@ -114,6 +114,8 @@ def draw_parameters(axes: Axes, dataset: xr.Dataset) -> None:
     axes.set(xlabel=label(dataset["x"]), ylabel=label(dataset["y"]))
     for name in ("x", "y"):
         set_scale(axes, name, bool(dataset[name].attrs["log"]))
+        if dataset[name].attrs["log"]:
+            set_log_ticks(axes, name)
 
 
 def draw_map(axes: Axes, dataset: xr.Dataset, values: Any, **colours: Any) -> Any:

@@ -15,6 +15,7 @@ from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColor
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import set_log_ticks
 from stickslip.figures.style import GREY, PALE, TWO, Floats
 from stickslip.figures.sweeps.varied import ROOM, Shown, folded
@@ -32,8 +33,6 @@ stays. Their distances are twice those of matplotlib's "viridis".
 """
 FAILED, HATCH = "#EDEDED", "////"
 """Background of a map, and its hatch, where members failed."""
-LETTER = 0.07
-"""Width (inches) of a letter of a legend."""
 
 
 @dataclass(frozen=True)
@@ -122,22 +121,6 @@ def _add_scale(panels: Sequence[Axes], colours: Colours, title: str) -> None:
     elif isinstance(colours.norm, LogNorm):
         set_log_ticks(bar.ax, "y")
     bar.ax.tick_params(which="both", labelsize=mpl.rcParams["ytick.labelsize"])
-
-
-def add_legend(axes: Axes, marks: Sequence[Artist], heading: str = "", *, own: bool = False) -> None:
-    """Add a legend below the panels of a figure, in as many columns as fit; inside the axes if they are the user's `own`."""
-    if not marks:
-        return
-    figure: Any = axes.figure
-    widths = [LETTER * len(str(mark.get_label())) + 0.45 for mark in marks]
-    width = figure.bbox.width / figure.get_figure(root=True).dpi
-    fitting = len(marks) if sum(widths) < width else max(int(width / max(widths)), 1)
-    look: dict[str, Any] = {"handlelength": 1.3, "columnspacing": 1.2, "handletextpad": 0.5, "title_fontsize": 9.0}
-    look |= {"handles": marks, "title": heading or None, "ncols": fitting}
-    if own:
-        axes.legend(**look | {"ncols": 1})
-    else:
-        figure.legend(loc="outside lower center", **look)
 
 
 def failed_area(quantity: Shown) -> list[Artist]:

@@ -11,10 +11,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, set_log_ticks, set_title
 from stickslip.figures.sheet import Place, one_panel, result
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
-from stickslip.figures.sweeps.colours import add_legend
 from stickslip.figures.sweeps.jumps import jumps
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
 
@@ -23,7 +23,8 @@ MOST_CURVES = 4
 SEPARATE = 40
 """Members of a curve are marked by dots up to this number; more would run together, and only those beside jumps are marked."""
 MARKERS = ("o", "s", "^", "D")
-"""Marks of the members of each curve."""
+WIDTHS = (2.8, 2.0, 1.3, 0.8)
+"""Marks of the members of each curve, and the widths of the lines between them."""
 ALL, BESIDE = "members; no line where the result jumps", "members beside a jump, across which no line is drawn"
 """Explanations of dots and gaps of one curve: of few members, and of many."""
 ENDS = "; lines end where the result jumps"
@@ -45,11 +46,11 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     marks: list[Line2D] = []
     broken = False
     for k, (row, state) in enumerate(zip(rows, states, strict=True)):
-        look: dict[str, Any] = {"color": LINE_COLOURS[k], "marker": MARKERS[k], "markersize": 3.5}
+        # Later lines are thinner, so that curves that coincide all stay visible.
+        look: dict[str, Any] = {"color": LINE_COLOURS[k], "marker": MARKERS[k], "markersize": 3.5, "linewidth": WIDTHS[k]}
         broken |= _draw_curve(axes, across, row, quantity, look)
         if names is not None:
-            style = {"linestyle": "none"} if across.words else {} if len(row) <= SEPARATE else {"marker": ""}
-            marks.append(Line2D([], [], label=names.values[k], **look | style))
+            marks.append(Line2D([], [], label=names.values[k], linestyle="none" if across.words else "-", **look))
         mark_failed(axes, across.values[state == 2], LINE_COLOURS[k] if others else GREY)
     across.show(axes, "x")
     show_ordinate(axes, quantity)
@@ -75,7 +76,7 @@ def _draw_curve(axes: Axes, across: Scaled, row: Floats, quantity: Shown, look: 
         divided = jumps(np.log(values) if quantity.is_wide else values, whole=quantity.is_whole)
     points = np.stack([places, values], axis=1)
     segments = np.stack([points[:-1], points[1:]], axis=1)[~divided & np.isfinite(np.diff(values))]
-    axes.add_collection(LineCollection(list(segments), colors=look["color"], linewidths=1.5, capstyle="round"))
+    axes.add_collection(LineCollection(list(segments), colors=look["color"], linewidths=look["linewidth"]))
     axes.plot(places, values, linestyle="none", markevery=_marked(values, divided), **look)
     return bool(divided.any())
 
