@@ -12,6 +12,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 from stickslip.contact.regime_map import RegimeMap
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import draw_map, draw_parameters, parameter_variables, set_title
 from stickslip.figures.sheet import Place, one_panel, result
 from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
@@ -52,9 +53,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     marks.append(Patch(color=IRREGULAR, label="irregular: several at some loads"))
     marks += [curve] if len(dataset["boundary"]) else []
     marks += [Patch(color=PALE, label="problem not valid")] if np.isnan(margin).any() else []
-    if "ax" in place:
-        axes.legend(handles=[*marks, *star])
-    else:
-        axes.get_figure().legend(handles=[*marks, *star], loc="outside lower center", ncols=3)  # type: ignore[union-attr]
+    add_legend(axes, [*marks, *star], own="ax" in place)
+    if "ax" not in place:
         set_title(axes, dataset.attrs["title"])
     return result(axes, **place)

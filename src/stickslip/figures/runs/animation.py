@@ -15,6 +15,7 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import set_title, zero_line
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, places, snapshots
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
@@ -136,6 +137,7 @@ def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], No
     axes["B"].tick_params(labelleft=False)
     marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
     set_title(figure, dataset.attrs["title"])
+    add_legend(axes["A"], [*axes["A"].get_legend_handles_labels()[0], marks[0]])
     clock = axes["A"].set_title(" ")
 
     def move(n: int) -> None:
@@ -157,8 +159,8 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
     scales.set_places(panel, dataset)
-    panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False)
-    panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":")
+    panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False, label="contact")
+    panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":", label="first frame")
     (line,) = panel.plot(values[0], places, color=colour)
     return line
 
@@ -176,7 +178,7 @@ def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> lis
         panel.plot(time, values, color=colour)
         panel.set(ylabel=text, xlim=time[[0, -1]])
         panel.tick_params(labelbottom=panel is panels[-1])
-    marks = [panel.axvline(time[0], color=INK, linewidth=0.8) for panel in panels]
+    marks = [panel.axvline(time[0], color=INK, linewidth=0.8, label="time of the frame") for panel in panels]
     zero_line(panels[1])
     panels[-1].set_xlabel(scales.clock)
     return marks

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 import xarray as xr
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import set_title
 from stickslip.figures.runs.slab_panels import choose_interval
 from stickslip.figures.sheet import Place, one_panel, result
@@ -98,11 +99,8 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     dashed: Any = {"color": INK, "linewidth": 1.0, "linestyle": (0, (4, 2))}
     axes.plot(time, dataset.total.values / size, label=dataset.total.attrs["long_name"], **dashed)
     axes.set(xlabel=f"{dataset.attrs['clock']} ({time_name})", ylabel=f"energy ({unit})", xlim=time[[0, -1]], ylim=(0.0, None))
-    handles, names = axes.get_legend_handles_labels()
     # Reversed, the legend has the order of the stack.
-    if "ax" in place:
-        axes.legend(handles[::-1], names[::-1])
-    else:
-        axes.get_figure().legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)  # type: ignore[union-attr]
+    add_legend(axes, axes.get_legend_handles_labels()[0][::-1], own="ax" in place)
+    if "ax" not in place:
         set_title(axes, dataset.attrs["title"])
     return result(axes, **place)

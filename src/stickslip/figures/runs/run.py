@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Unpack
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.runs.curves import draw_curve, draw_friction, draw_stress, interval, mark_shocks, set_time
 from stickslip.figures.runs.loading import draw_loading
@@ -45,11 +46,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     set_time(last, readings, span)
     for panel in panels["slip"]:
         draw_friction(panel, readings, span, against_slip=True)
-    handles, names = stress.get_legend_handles_labels()
-    for panel in panels["loading"]:
-        bands, texts = panel.get_legend_handles_labels()
-        handles, names = handles + bands, names + texts
-    figure.legend(handles, names, loc="outside lower center", ncols=3)
+    add_legend(stress, [mark for panel in (stress, *panels["loading"]) for mark in panel.get_legend_handles_labels()[0]])
     letter_panels([panel for group in panels.values() for panel in group])
     set_title(figure, title_of(readings))
     figure.align_ylabels()

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib import colormaps
 from numpy.typing import ArrayLike
 
+from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, places, snapshots
 from stickslip.figures.sheet import Place, sheet
@@ -56,11 +57,10 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, dataset.sizes["time"]))
     for panel, (text, values) in zip(axes, drawn, strict=True):
         for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
-            panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.4g}")
+            panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.3g}")
         panel.set_xlabel(text)
         scales.set_places(panel, dataset, named=panel is axes[0])
     letter_panels(axes)
     set_title(figure, dataset.attrs["title"])
-    lines, names = axes[0].get_legend_handles_labels()
-    figure.legend(lines, names, title=scales.clock, loc="outside lower center", ncols=len(names))
+    add_legend(axes[0], axes[0].get_legend_handles_labels()[0], scales.clock)
     return figure
