@@ -52,7 +52,10 @@ def test_figures_have_the_size_and_the_dots_asked_for(command, tmp_path):
     assert command("check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10 cm", "--dpi", "300").code == 0
     assert command("run", "fig6-slab", "--energy", "b.png", "--friction", "c.png", "--size", "single column").code == 0
     assert command("run", "fig6-slab", "--figure", "d.pdf", "--size", "3.5x5in").code == 0
-    sizes = [Image.open(tmp_path / name).size for name in ("a.png", "b.png", "c.png")]
+    sizes = []
+    for name in ("a.png", "b.png", "c.png"):
+        with Image.open(tmp_path / name) as picture:
+            sizes.append(picture.size)
     assert sizes[0] == pytest.approx((16 / 2.54 * 300, 10 / 2.54 * 300), abs=1.0)
     assert [width for width, _ in sizes[1:]] == [700, 700]
     assert b"/MediaBox [ 0 0 252 360 ]" in (tmp_path / "d.pdf").read_bytes()
