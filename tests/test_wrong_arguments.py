@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import math
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -42,8 +45,6 @@ TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
     "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
     "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
     "analogy": lambda problem: ss.studies.analogy(problem, 1.0, None, None),  # type: ignore[arg-type] # refused before
-    "parameter": lambda problem: ss.parameters.parameter(problem, "alpha"),
-    "parameters": lambda problem: list(ss.parameters.parameters(problem)),
 }
 
 
@@ -113,15 +114,18 @@ def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
 
 
 NO_BODY = "Problem: body must be an ElasticSlab or a SpringBlock, got "
-NO_LAW = "Problem: friction must be a friction law, got "
+NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)", got '
 EXCESS = "Problem: initial_excess must be "
 PULL = "Problem: pull_rate must be a number in m/s or one of stickslip.loading"
 PROBLEMS: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
     ((LAW, SLAB), {}, "Problem: body comes first, then friction: got HyperbolicRate as body and ElasticSlab as friction"),
     ((ss.ElasticSlab, LAW), {}, NO_BODY + "the class ElasticSlab, not an instance of it: call it"),
     ((None, LAW), {}, NO_BODY + "None"),
-    ((SLAB, ss.friction.Coulomb), {}, NO_LAW + "the class Coulomb, not an instance of it: call it"),
-    ((SLAB, "coulomb"), {}, NO_LAW + "'coulomb'"),
+    ((SLAB, ss.friction.Coulomb), {}, NO_LAW + "the class Coulomb, not an instance of it: call it with its parameters, Coulomb("),
+    ((SLAB, None), {}, NO_LAW + "None"),
+    ((SLAB, 3), {}, NO_LAW + "3"),
+    ((SLAB, [0.6, 0.5]), {}, NO_LAW + "[0.6, 0.5]"),
+    ((SLAB, "coulomb"), {}, "Problem: friction: 'coulomb' is not a formula; the laws of the package are classes"),
     ((SLAB, LAW), {"initial_excess": "0"}, EXCESS + "a number in Pa or N, got '0'"),
     ((SLAB, LAW), {"initial_excess": True}, EXCESS + "a number in Pa or N, got True"),
     ((SLAB, LAW), {"initial_excess": math.nan}, EXCESS + "finite, got nan"),
@@ -136,6 +140,18 @@ PROBLEMS: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
 @pytest.mark.parametrize(("arguments", "named", "message"), PROBLEMS)
 def test_problems_are_checked(arguments: tuple[Any, ...], named: dict[str, Any], message: str) -> None:
     refused(lambda: ss.Problem(*arguments, **named), message)
+
+
+def test_type_checkers_see_the_arguments_that_problem_has() -> None:
+    """The signature for type checkers is written by hand, because `friction` accepts more than it keeps."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(ss.Problem)))
+    written = next(node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == "__init__").args
+    defaults = dict(zip(reversed([one.arg for one in written.args]), reversed(written.defaults), strict=False))
+    real = {name: one.default for name, one in inspect.signature(ss.Problem).parameters.items()}
+    assert [one.arg for one in written.args[1:]] == list(real)
+    assert {name: ast.literal_eval(node) for name, node in defaults.items()} == {
+        name: default for name, default in real.items() if default is not inspect.Parameter.empty
+    }
 
 
 @pytest.mark.parametrize(("given", "shown"), [("1", "'1'"), (None, "None"), (True, "True"), (float, "<class 'float'>")])

@@ -10,7 +10,7 @@ from .contact.uniqueness import uniqueness
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
 from .io.netcdf import open_solution
-from .problem import Problem, parameters, selection
+from .problem import Problem, selection
 from .run.catalogue import catalogue
 from .run.resume import resume
 from .run.simulate import simulate
@@ -34,7 +34,6 @@ __all__ = [
     "load_scenario",
     "loading",
     "open_solution",
-    "parameters",
     "refine",
     "resume",
     "selection",

@@ -54,7 +54,7 @@ def test_friction_falls_by_the_impedance_at_the_closed_form(name):
     """At the critical value the steepest fall of friction is Z/S."""
     place, value = CLOSED[name].critical_value(Z, S)
     problem = slab_problem(CLOSED[name])
-    at_critical = ss.parameters.parameter(problem, place).put(value).friction
+    at_critical = problem.parameters[place].put(value).friction
     assert -S * steepest_by_scan(at_critical) == pytest.approx(Z, rel=2e-5, abs=0)
 
 
@@ -62,7 +62,7 @@ def test_friction_falls_by_the_impedance_at_the_closed_form(name):
 @pytest.mark.parametrize("step", [-1e-6, 1e-6])
 def test_the_regime_changes_where_it_is_said_to(name, step):
     place, value = CLOSED[name].critical_value(Z, S)
-    changed = ss.parameters.parameter(slab_problem(CLOSED[name]), place).put(value * (1.0 + step))
+    changed = slab_problem(CLOSED[name]).parameters[place].put(value * (1.0 + step))
     found = ss.studies.critical_value(changed, place)
     side = found.regimes[0] if step < 0 else found.regimes[-1]
     assert ss.uniqueness(changed).regime == side

@@ -95,7 +95,7 @@ def test_closed_forms_agree_with_the_critical_normal_stress(law):
     problem = problem_of(law)
     found = ss.uniqueness(problem)
     assume(found.critical_parameter not in (None, "normal_stress"))
-    one = ss.parameters.parameter(problem, found.critical_parameter)
+    one = problem.parameters[found.critical_parameter]
     assume(1e-9 < found.critical_value < 1e9)
     critical = critical_normal_stress(resistance(one.put(found.critical_value)))
     assert critical == pytest.approx(S, rel=1e-11, abs=0)

@@ -20,7 +20,7 @@ from stickslip.contact.folds.certified import Verdict
 from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
 
 Regime = Literal["regular", "irregular"]
@@ -162,7 +162,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
     """
     check_problem("critical_value", problem)
-    found = parameter(problem, name)
+    found = problem.parameters[name]
     check_no_contact_mass(problem, "critical value")
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from stickslip.contact.critical import check_no_contact_mass, margin
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem
 
 Floats = NDArray[np.float64]
@@ -29,7 +29,7 @@ class Axis:
     Parameters
     ----------
     parameter : str
-        Name of the parameter (see `stickslip.parameters`).
+        Name of the parameter (a key of `problem.parameters`).
     low, high : float
         First and last value, in SI units.
     points : int
@@ -90,7 +90,7 @@ class RegimeMap:
 
 def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Parameter, Parameter]:
     """Return the parameters of two axes. Raises InputError, which begins with `where`, if both are the same."""
-    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
+    names = (problem.parameters[x.parameter], problem.parameters[y.parameter])
     if names[0].name == names[1].name:
         raise InputError(f"{where}: needs two different parameters, got {names[0].name} twice")
     return names
@@ -101,7 +101,7 @@ def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) ->
     pairs = list(zip(names, values, strict=True))
     for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be refused although both together are not
         try:
-            return parameter(first.put(one), second.name).put(other)
+            return first.put(one).parameters[second.name].put(other)
         except InputError:
             continue
     return None

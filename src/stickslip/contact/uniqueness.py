@@ -20,7 +20,6 @@ from stickslip.contact.folds.lowest import critical_stress_between
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem, check_problem
 
 
@@ -255,7 +254,7 @@ def _summary(
     law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
     bound = ""
     if critical:
-        found = parameter(problem, critical[0])
+        found = problem.parameters[critical[0]]
         unit = "" if found.unit == "1" else f" {found.unit}"
         bound = f" The critical value is {critical[0]} = {critical[1]:.9g}{unit}; here {critical[0]} = {found.value:.9g}{unit}."
     if not problem.friction.depends_on_rate:

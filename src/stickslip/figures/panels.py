@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from stickslip.contact.regime_map import Axis
 from stickslip.figures.style import GREY, PALE, label, shown
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 
 
@@ -63,7 +62,7 @@ def parameter_variables(problem: Problem, *, short: bool = False, **axes: Axis) 
     """Return the coordinates `x` and `y` of a map over two parameters of a problem; `short` names leave out the table."""
     found = {}
     for name, axis in axes.items():
-        one = parameter(problem, axis.parameter)
+        one = problem.parameters[axis.parameter]
         text = one.name.rpartition(".")[2].replace("_", " ") if short else one.name
         found[name] = xr.Variable(name, axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
     return found

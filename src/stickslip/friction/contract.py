@@ -116,7 +116,7 @@ class LawContract(ABC):
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
         """Return the parameter, and its value in SI, at which Z v + S mu(v) first has a falling part.
 
-        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `stickslip.parameters`. Return None without a
+        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `problem.parameters`. Return None without a
         closed form, or if Z v + S mu(v) never falls. On one side of the value several slip rates solve the contact equation
         (paper, section 3).
         """

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,8 +17,10 @@ from stickslip.foundation.arguments import check_type, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
+from stickslip.friction.custom.any_law import as_law
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT
+from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
@@ -37,7 +40,9 @@ class Problem:
     body
         An `ElasticSlab`, whose loads are stresses (Pa), or a `SpringBlock`, whose loads are forces (N).
     friction
-        The friction law of the contact.
+        The friction law of the contact. A Python function of slip `u` (m), of slip rate `v` (m/s) or of both is made a law by
+        `stickslip.friction.FromFunction`, and a text such as "0.3 + 0.5/(1 + v)" by `stickslip.friction.FromExpression`. Its
+        value at v = 0 is then the static strength, divided by the normal stress.
     pull_rate
         Rate V at which the driver is pulled (m/s), or a loading history of it.
     initial_slip
@@ -83,13 +88,29 @@ class Problem:
     far_stress_rate: float = quantity("Pa/s", "rate of change of the far stress", default=0.0)
     selection: str | SelectionRule = "perfect-delay"
 
+    if TYPE_CHECKING:  # the dataclass makes the same; for type checkers `friction` accepts more than the attribute keeps
+
+        def __init__(  # noqa: PLR0917 - the fields, in their order
+            self,
+            body: Body,
+            friction: FrictionLaw | Callable[..., Any] | str,
+            pull_rate: float | LoadingHistory = 0.0,
+            initial_slip: float = 0.0,
+            initial_load: float | None = None,
+            initial_excess: float | None = None,
+            initial_state: float | None = None,
+            far_stress: float | LoadingHistory | None = None,
+            far_stress_rate: float = 0.0,
+            selection: str | SelectionRule = "perfect-delay",
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         bodies = tuple(BODIES.values())
         if isinstance(self.body, FrictionLaw) and isinstance(self.friction, bodies):
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
         check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
-        check_type("Problem: friction", self.friction, FrictionLaw, "a friction law")
+        object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         self._check_varying()
         check_fields(self, but=self._varying)
         if (self.initial_load is None) == (self.initial_excess is None):
@@ -187,6 +208,11 @@ class Problem:
         tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
         swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
         return max(period, min(DAY, LONGEST_ROW * period, swing))
+
+    @property
+    def parameters(self) -> Parameters:
+        """The numbers of the problem by name: `problem.parameters["friction.alpha"].value`, in SI."""
+        return Parameters(self)
 
     @property
     def rule(self) -> str:

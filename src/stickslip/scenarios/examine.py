@@ -15,7 +15,6 @@ from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length,
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.loading import LoadingHistory
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
@@ -191,7 +190,7 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     facts = []
     for name, value in named.items():
         if name is not None and value is not None:
-            one = parameter(problem, name)
+            one = problem.parameters[name]
             side = "at" if one.value == value else "above" if one.value > value else "below"
             proof = _proof(contact) if one.name == "body.normal_stress" else ""
             facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {one.value:.9g}{proof}"))

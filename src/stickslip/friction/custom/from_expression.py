@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal, cast
 
 import numpy as np
 from typing_extensions import override
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Choice, NamedNumbers, Text, declare, quantity
+from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.custom.sampled import check_samples
 from stickslip.friction.families import RemembersSlip
@@ -32,6 +33,9 @@ class FromExpression(RemembersSlip):
     For example `FromExpression("mu_d + (mu_s - mu_d) / (1 + alpha*v)", {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"})`. `values` has
     the parameters by name, as numbers in SI or as texts with a unit. The text is never evaluated as Python.
 
+    The static friction coefficient is the value at v = 0, unless `static` gives a higher one: friction then drops by the difference
+    as soon as the contact slips.
+
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
     samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
     """
@@ -44,7 +48,7 @@ class FromExpression(RemembersSlip):
     }
 
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
-    values: Any = declare(NamedNumbers("values of the parameters", "parameters"), ())  # noqa: RUF009 - makes a field
+    values: Mapping[str, float | str] | Sequence[Named] = declare(NamedNumbers("values of the parameters", "parameters"), ())
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
@@ -52,7 +56,7 @@ class FromExpression(RemembersSlip):
     @override
     def check(self) -> None:
         self._check_names()
-        units = {value.name: value.unit for value in self.values}
+        units = {value.name: value.unit for value in self.named}
         try:
             if any(units.values()):
                 check_dimensions(self.tree, units)
@@ -64,7 +68,7 @@ class FromExpression(RemembersSlip):
             self._check_static(self.static)
 
     def _check_names(self) -> None:
-        names = [value.name for value in self.values]
+        names = [value.name for value in self.named]
         if len(names) > MOST_PARAMETERS:
             raise InputError(f"FromExpression: parameters: at most {MOST_PARAMETERS} parameters are allowed")
         for name in names:
@@ -94,10 +98,15 @@ class FromExpression(RemembersSlip):
             raise InputError(f"FromExpression: static must be at least the expression at v = 0, got {static:g} < {sliding:g}")
 
     @property
+    def named(self) -> tuple[Named, ...]:
+        """The parameters, each with name, value (SI) and unit: what `values` becomes."""
+        return cast("tuple[Named, ...]", self.values)
+
+    @property
     def tree(self) -> Expression:
         """The formula as an expression tree."""
         try:
-            return parse(self.expression, tuple(value.name for value in self.values))
+            return parse(self.expression, tuple(value.name for value in self.named))
         except InputError as error:
             raise InputError(f"FromExpression: expression: {error}") from None
 
@@ -109,11 +118,11 @@ class FromExpression(RemembersSlip):
 
     @override
     def parameters(self) -> tuple[str, ...]:
-        return tuple(value.name for value in self.values)
+        return tuple(value.name for value in self.named)
 
     @override
     def piece_values(self, i: int) -> tuple[float, ...]:
-        return tuple(value.value for value in self.values)
+        return tuple(value.value for value in self.named)
 
     @property
     @override
@@ -151,10 +160,10 @@ class FromExpression(RemembersSlip):
 
         If no value has a unit, any number of the expression may be a slip rate or the inverse of one: both are returned.
         """
-        units = {value.unit for value in self.values} - {""}
+        units = {value.unit for value in self.named} - {""}
         scales = [
             abs(value.value) ** (1 if value.unit == "m s^-1" else -1)
-            for value in self.values
+            for value in self.named
             if value.value and value.unit in _RATES
         ]
         if units:

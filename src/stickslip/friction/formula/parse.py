@@ -38,6 +38,8 @@ RESERVED = ("u", "v", "pi", *FUNCTIONS)
 """Names that a parameter cannot have because they mean something else in an expression."""
 ALLOWED = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
 """End of a message about a part that is not allowed."""
+UNDECLARED = "is neither u, v, pi nor a declared parameter"
+"""Part of the message about a name that an expression must not use."""
 
 _BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div", ast.Pow: "pow"}
 """Operations of nodes for the operators of Python's syntax tree."""
@@ -112,9 +114,7 @@ class _Reader:
             return {"u": SLIP, "v": RATE, "pi": as_expression(math.pi)}[node.id]
         if node.id in FUNCTIONS:
             raise InputError(f"{self.part(node)} is a function: write {node.id}(...)")
-        raise InputError(
-            f"{self.part(node)} is neither u, v, pi nor a declared parameter; {nearest(node.id, [*self.names, 'u', 'v'])}"
-        )
+        raise InputError(f"{self.part(node)} {UNDECLARED}; {nearest(node.id, [*self.names, 'u', 'v'])}")
 
     def signed(self, node: ast.UnaryOp, depth: int) -> Expression:
         inner = self.read(node.operand, depth + 1)

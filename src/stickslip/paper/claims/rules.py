@@ -13,7 +13,6 @@ from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.solution.solution import Solution
@@ -29,7 +28,7 @@ def critical_value(_: Runs) -> Verdict:
     law, body = typed(slab.friction, HyperbolicRate), as_slab(slab.body)
     found = uniqueness(slab).critical_value or math.nan
     formula = math.sqrt(body.density * body.shear_modulus) / (body.normal_stress * (law.static - law.dynamic))
-    below, above = (uniqueness(parameter(slab, "alpha").put(found * factor)) for factor in (1 - 1e-6, 1 + 1e-6))
+    below, above = (uniqueness(slab.parameters["alpha"].put(found * factor)) for factor in (1 - 1e-6, 1 + 1e-6))
     agree = abs(found / 0.196 - 1.0) < 1e-9 and abs(found / formula - 1.0) < 1e-9
     why = (
         "The contact equation has one solution as long as g(v) = Zv + Sμ(v) rises everywhere. Under law (15) it falls fastest "
@@ -85,7 +84,7 @@ def one_solution(_: Runs) -> Verdict:
     """Measure the number of solutions on a grid of loads, under a regular rate law and under the slip law."""
     slab = problem("fig6-slab")
     half = 0.5 * (uniqueness(slab).critical_value or math.nan)
-    cases = {f"α = {half:g} s/m": parameter(slab, "alpha").put(half), "slip law": problem("fig5-slab-printed")}
+    cases = {f"α = {half:g} s/m": slab.parameters["alpha"].put(half), "slip law": problem("fig5-slab-printed")}
     numbers: list[Number] = []
     good = True
     for name, case in cases.items():
