@@ -31,16 +31,20 @@ def refused(call: Callable[[], Any], message: str) -> None:
 
 
 NO_PROBLEM = [
-    ("x", "got 'x'; a scenario is read by load_scenario, and has a problem"),
     (SLAB, "got ElasticSlab"),
     (None, "got None"),
     (ss.Problem, "got the class Problem, not an instance of it: call it"),
+]
+NO_SCENARIO = [
+    ("x", "got 'x'; a scenario is read by load_scenario, and has a problem"),
     (ss.load_scenario("cycles-block"), "got Scenario; take its .problem"),
 ]
-TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
+TAKE_A_SCENARIO: dict[str, Callable[[Any], Any]] = {
     "simulate": lambda problem: ss.simulate(problem, 1.0),
     "catalogue": lambda problem: ss.catalogue(problem, 1.0),
     "uniqueness": lambda problem: ss.uniqueness(problem),
+}
+TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
     "critical_value": lambda problem: ss.studies.critical_value(problem, "alpha"),
     "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
     "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
@@ -48,16 +52,33 @@ TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", TAKE_A_PROBLEM)
+@pytest.mark.parametrize("name", [*TAKE_A_PROBLEM, *TAKE_A_SCENARIO])
 @pytest.mark.parametrize(("given", "shown"), NO_PROBLEM, ids=lambda one: getattr(one, "__name__", None))
 def test_other_types_than_problems_are_refused(name: str, given: Any, shown: str) -> None:
+    take = TAKE_A_PROBLEM | TAKE_A_SCENARIO
+    refused(lambda: take[name](given), f"{name}: problem must be a Problem, {shown}")
+
+
+@pytest.mark.parametrize("name", TAKE_A_PROBLEM)
+@pytest.mark.parametrize(("given", "shown"), NO_SCENARIO, ids=("name", "scenario"))
+def test_scenarios_are_refused_where_they_mean_nothing(name: str, given: Any, shown: str) -> None:
     refused(lambda: TAKE_A_PROBLEM[name](given), f"{name}: problem must be a Problem, {shown}")
 
 
-def test_a_duration_is_needed() -> None:
+@pytest.mark.parametrize("name", TAKE_A_SCENARIO)
+def test_names_of_no_scenario_are_refused_with_the_nearest(name: str) -> None:
+    refused(
+        lambda: TAKE_A_SCENARIO[name]("fig6-slap"), "fig6-slap: no such file, and no bundled scenario of that name; did you mean"
+    )
+    refused(
+        lambda: TAKE_A_SCENARIO[name](Path("lost.toml")), "lost.toml: no such file, and no bundled scenario of that name; `stick"
+    )
+
+
+def test_a_problem_needs_a_duration_and_a_scenario_has_one() -> None:
     for run in (ss.simulate, ss.catalogue):
-        with pytest.raises(TypeError, match="missing 1 required positional argument: 'duration'"):
-            run(PROBLEM)  # type: ignore[call-arg]
+        refused(lambda run=run: run(PROBLEM), f"{run.__name__}: duration must be a positive time in s up to 1e+50, got None")  # type: ignore[misc]
+    assert ss.simulate("cycles-block").duration == ss.scenarios["cycles-block"].duration
 
 
 NOT_POSITIVE = [
@@ -74,14 +95,14 @@ NO_NUMBER = [("0", "'0'"), (True, "True")]
 OR_AUTOMATIC = "must be a number, or None for automatic, got "
 OPTIONS: list[tuple[str, Any, str]] = [
     *(("duration", given, f"must be a positive time in s up to 1e+50, got {shown}") for given, shown in NOT_POSITIVE),
-    *(("rtol", given, f"must lie between 1e-15 and 0.01, got {shown}") for given, shown in NOT_POSITIVE),
+    *(("rtol", given, f"must lie between 1e-15 and 0.01, got {shown}") for given, shown in NOT_POSITIVE if given is not None),
     *(("creep_rtol", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
     ("creep_rtol", math.nan, "must be 0 (no leaps over creep, every round trip is run) or at most 0.01, got nan"),
     *(("shortest_event", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
     ("shortest_event", math.nan, "must be 0 or at most 0.0571429 s (1 % of the two-way travel time), got nan s"),
     *(("max_events", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, -1, 2.0, math.nan)),
     *(("max_pieces", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, 1e6)),
-    *(("checkpoint_every", given, f"must be a time in s, got {given!r}") for given in ("3", True, None, -1, math.nan)),
+    *(("checkpoint_every", given, f"must be a time in s, got {given!r}") for given in ("3", True, -1, math.nan)),
     ("progress", "loud", "must be a function, got 'loud'"),
 ]
 

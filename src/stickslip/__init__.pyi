@@ -6,7 +6,6 @@ from . import figures, friction, loading, studies
 from .bodies import ElasticSlab, SpringBlock
 
 # One run
-from .contact.uniqueness import uniqueness
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
 from .io.netcdf import open_solution
@@ -14,7 +13,9 @@ from .problem import Problem, selection
 from .run.catalogue import catalogue
 from .run.resume import resume
 from .run.simulate import simulate
-from .scenarios import load_scenario
+from .scenarios.library import scenarios
+from .scenarios.scenario import load_scenario
+from .scenarios.source import uniqueness
 from .solution.solution import Solution
 from .sweeps.refine import refine
 from .sweeps.sweep import sweep
@@ -36,6 +37,7 @@ __all__ = [
     "open_solution",
     "refine",
     "resume",
+    "scenarios",
     "selection",
     "simulate",
     "studies",

@@ -20,12 +20,12 @@ from stickslip.contact.folds.lowest import critical_stress_between
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem, check_problem
+from stickslip.problem.problem import Problem
 
 
 @dataclass(frozen=True)
 class Uniqueness:
-    """The result of `uniqueness`.
+    """The result of `stickslip.uniqueness`.
 
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
     """
@@ -154,32 +154,8 @@ class Uniqueness:
         return rates[order], kinds[order]
 
 
-def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
-    """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
-
-    Parameters
-    ----------
-    problem : Problem
-        Problem to examine. For a block, a contact with mass and a law with a state, the answer is "regular".
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
-
-    Returns
-    -------
-    Uniqueness
-        Regime, critical value, folds, jumps of the rule, and what is proven of the folds.
-
-    Raises
-    ------
-    InputError
-        If friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the selection
-        rule cannot be followed.
-
-    Notes
-    -----
-    Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
-    """
-    check_problem("uniqueness", problem)
+def uniqueness_of(problem: Problem, law_slip: float | None = None) -> Uniqueness:
+    """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`, where all is described."""
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))

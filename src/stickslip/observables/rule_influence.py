@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, branches
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.constants import YEAR
 from stickslip.trajectory.history import Floats, History, Side
 from stickslip.trajectory.tables import shocks_table
@@ -82,7 +82,7 @@ def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floa
     The search for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
     """
     problem = history.problem
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     if contact.resistance is None or not problem.friction.depends_on_rate:
         return RuleInfluence(problem.rule, contact.regime, np.zeros(0, bool))
     if problem.friction.depends_on_slip:

@@ -17,7 +17,7 @@ from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end, stream_of
-from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
+from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress
 from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream, Look
@@ -27,16 +27,18 @@ from stickslip.trajectory.tables import creep_note
 if TYPE_CHECKING:
     import pandas as pd
 
+    from stickslip.scenarios.scenario import Scenario
+
 CAPACITY = 16_384
 """Pieces of history for which a catalogue has room at first, about 7 MB; it grows only where what must be kept fills half of it."""
 
 
 def catalogue(
-    problem: Problem,
-    duration: float,
+    problem: Problem | Scenario | str | Path,
+    duration: float | None = None,
     path: str | Path | None = None,
     *,
-    rtol: float = RTOL,
+    rtol: float | None = None,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
     max_events: int | None = None,
@@ -46,16 +48,14 @@ def catalogue(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> pd.DataFrame:
-    """Run a problem in bounded memory and return the table of its slip events.
+    """Run a problem, or a scenario, in bounded memory and return the table of its slip events.
 
     History before the previous event is discarded, except waves that are still travelling in the slab.
 
     Parameters
     ----------
-    problem : Problem
-        The body, its friction law, its loading and its initial state.
-    duration : float
-        Latest end of the run, s.
+    problem, duration
+        See `stickslip.simulate`: a problem and its duration, or a scenario, which has one.
     path : str or Path, optional
         File for the table (.csv, .parquet or .nc). NAME.checkpoint.nc beside it is renewed while the run continues, and
         `stickslip.resume` resumes from it. Without a path the rows are kept in memory.
@@ -86,9 +86,11 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
-    given = RunOptions(
-        duration,
-        rtol,
+    given, options = problem_and_options(
+        "catalogue",
+        problem,
+        duration=duration,
+        rtol=rtol,
         creep_rtol=creep_rtol,
         shortest_event=shortest_event,
         max_events=max_events,
@@ -96,14 +98,13 @@ def catalogue(
         checkpoint_every=checkpoint_every,
         max_pieces=max_pieces,
     )
-    options = given.check("catalogue", problem)
     if event_rate is not None and not (is_number(event_rate) and event_rate >= 0.0):
         raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {shown(event_rate)}")
     file = None if path is None else as_path("catalogue: path", path)
     if file is not None:
         check_catalogue(file)
-    check_energies(creep_rtol, energies, "catalogue")
-    return catalogue_of(problem, options, file, event_rate, energies=energies).read()
+    check_energies(options.creep_rtol, energies, "catalogue")
+    return catalogue_of(given, options, file, event_rate, energies=energies).read()
 
 
 def catalogue_of(

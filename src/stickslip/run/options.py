@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -12,11 +13,12 @@ from stickslip.foundation.arguments import check_whole, is_number, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import LARGEST, as_float
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.scenarios.source import read_source
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES
 
 if TYPE_CHECKING:
     from stickslip.run.progress import Progress
-    from stickslip.scenarios import Scenario
+    from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 RTOL = 1e-10
@@ -48,10 +50,10 @@ class RunOptions:
     max_pieces: int | None = None
 
     @classmethod
-    def of(cls, scenario: Scenario, **others: Any) -> Self:
-        """Return the options of a scenario, and `others` beside them."""
+    def of(cls, scenario: Scenario, **given: Any) -> Self:
+        """Return the options of a scenario, those in `given` that are not None in their place or beside them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
-        return cls(**{name: getattr(scenario, name) for name in names}, **others)
+        return cls(**({name: getattr(scenario, name) for name in names} | _not_none(given)))
 
     @classmethod
     def to_continue(cls, stopped: Solution, duration: float | None, max_events: int | None, **others: Any) -> Self:
@@ -100,3 +102,19 @@ class RunOptions:
     def keeps(self, code: int) -> bool:
         """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
         return code != FULL_HISTORY or self.max_pieces is not None
+
+
+def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:
+    """Return the problem to run and the checked options of its run.
+
+    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Options in `given` that are None are
+    those of the scenario, or the defaults. Raises InputError, for a wrong option with a message that begins with `who`.
+    """
+    found = read_source(who, source)
+    if isinstance(found, Problem):
+        return found, RunOptions(**({"duration": None} | _not_none(given))).check(who, found)
+    return found.problem, RunOptions.of(found, **given).check(who, found.problem)
+
+
+def _not_none(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in given.items() if value is not None}

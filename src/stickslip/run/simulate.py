@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from stickslip.foundation.arguments import as_path
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
-from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
+from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
 from stickslip.run.progress import Progress
 from stickslip.run.session import Session
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY
 
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
 
 def simulate(
-    problem: Problem,
-    duration: float,
-    rtol: float = RTOL,
+    problem: Problem | Scenario | str | Path,
+    duration: float | None = None,
+    rtol: float | None = None,
     *,
     creep_rtol: float | None = None,
     shortest_event: float | None = None,
@@ -28,16 +32,17 @@ def simulate(
     checkpoint_every: float = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> Solution:
-    """Run a problem from t = 0.
+    """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
     Parameters
     ----------
-    problem : Problem
-        The body, its friction law, its loading and its initial state.
+    problem : Problem, Scenario, str or Path
+        The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
+        Options that are not given are those of the scenario.
     duration : float
-        Latest end of the run, s.
-    rtol : float
-        Relative tolerance of the run, between 1e-15 and 1e-2.
+        Latest end of the run, s. A scenario has one; a problem has none.
+    rtol : float, optional
+        Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
     creep_rtol : float, optional
         Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
         Automatic by default (see Notes).
@@ -65,8 +70,8 @@ def simulate(
     Raises
     ------
     InputError
-        If an argument is out of range, if the contact cannot even start, or if creep_rtol or shortest_event is positive for a
-        problem in which there are no such leaps or no lumping.
+        If a scenario cannot be read, an argument is out of range, the contact cannot even start, or creep_rtol or shortest_event is
+        positive for a problem in which there are no such leaps or no lumping.
 
     Notes
     -----
@@ -83,9 +88,11 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    given = RunOptions(
-        duration,
-        rtol,
+    given, options = problem_and_options(
+        "simulate",
+        problem,
+        duration=duration,
+        rtol=rtol,
         creep_rtol=creep_rtol,
         shortest_event=shortest_event,
         max_events=max_events,
@@ -94,8 +101,7 @@ def simulate(
         checkpoint_every=checkpoint_every,
         max_pieces=max_pieces,
     )
-    options = given.check("simulate", problem)
-    return run_to_end(Session.begin(problem, options), WholeHistory())
+    return run_to_end(Session.begin(given, options), WholeHistory())
 
 
 class WholeHistory:

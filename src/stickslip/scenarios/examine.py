@@ -9,7 +9,7 @@ from typing import Any
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
@@ -54,7 +54,7 @@ class Examination:
 def examine(scenario: Scenario) -> Examination:
     """Examine a scenario without running it. Raises InputError as `contact.uniqueness` does."""
     problem = scenario.problem
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     return Examination(
         given=_given(scenario),
         derived=_derived(problem),

@@ -101,8 +101,7 @@ class Scenario:
         """
         from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
-        how: dict[str, Any] = {"creep_rtol": self.creep_rtol, "shortest_event": self.shortest_event, "max_events": self.max_events}
-        return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
+        return simulate(self, progress=progress, **keep)
 
     def to_toml(self) -> str:
         """Return the scenario as TOML text, with every value in SI and to the last digit."""

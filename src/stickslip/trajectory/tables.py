@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.problem.problem import Problem
@@ -167,5 +167,5 @@ def rule_in_force(problem: Problem) -> str:
     """Return the selection rule if the contact equation has several solutions at some load (and slip), else an empty string."""
     if not is_algebraic(problem):
         return ""
-    several = folds_move(problem) or uniqueness(problem).regime != "regular"
+    several = folds_move(problem) or uniqueness_of(problem).regime != "regular"
     return problem.rule if several else ""

@@ -48,9 +48,9 @@ class Pictures:
         if inside and not problem.body.has_waves:
             raise InputError(f"run: {inside[0]} needs a slab: a block is rigid and has no interior field")
         if self.path is not None:
-            from stickslip.contact.uniqueness import uniqueness
+            from stickslip.contact.uniqueness import uniqueness_of
 
-            if uniqueness(problem).resistance is None:
+            if uniqueness_of(problem).resistance is None:
                 what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"run: --path needs {what}")
 

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import draw_branches
 from stickslip.figures.panels import letter, panels
 from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled
@@ -58,7 +58,7 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
     -----
     If friction depends on slip, the set moves as the contact slips, and the path of the run leaves the set of the start.
     """
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     g = contact.resistance
     if g is None:
         why = "the slip rate does not follow from the load alone (inertia or a state variable)"

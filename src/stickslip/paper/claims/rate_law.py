@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.bodies import as_slab
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
@@ -103,7 +103,7 @@ def shock_share(solution: Solution) -> float:
 
 
 def _critical(case: Problem) -> float:
-    return typed(uniqueness(case).critical_value, float)
+    return typed(uniqueness_of(case).critical_value, float)
 
 
 @claim(
