@@ -61,8 +61,9 @@ def test_new_prints_the_template(command, name):
     assert command("new", name).out == templates.template(name)
 
 
-def test_new_lists_every_name(command):
-    shown = command("new", "--list")
+@pytest.mark.parametrize("arguments", [(), ("--list",)])
+def test_new_lists_every_name(command, arguments: tuple[str, ...]):
+    shown = command("new", *arguments)
     assert shown.code == 0
     for name in templates.template_names():
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)

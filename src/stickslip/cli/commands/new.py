@@ -30,7 +30,7 @@ def new(
       stickslip new block --friction exponential-stribeck
       stickslip new slab --pull hold-and-slide
       stickslip new fig6-slab
-      stickslip new --list
+      stickslip new              (lists the names, as --list does)
     """
     if show_list or (name is None and friction is None and pull is None):
         _print_list()
