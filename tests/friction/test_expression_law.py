@@ -70,7 +70,7 @@ HOSTILE = [
     ("v if v else 1", "'v if v else 1' is not allowed"),
     ("v > 1", "'v > 1' is not allowed, because it is a branch; for a kink or a jump use a law such as piecewise-linear-rate"),
     ("0,5 + v", "'0,5 + v' is not allowed, because of its comma; a decimal point is written as in 0.5"),
-    ("mu = 0.5", "'mu = 0.5' has a sign =; write only what stands behind it"),
+    ("mu = 0.5", "'mu = 0.5' is not an expression, because of its sign =; write only what comes after it"),
     ("0.5 + np.exp(-v)", "'np.exp' is written exp, without the name of a library"),
     ("0.5 + min(v, 1)", "the function 'min' has a kink or a jump; for a kink or a jump use a law such as piecewise-linear-rate"),
     ("0.5 + abs(u)", "the function 'abs' has a kink or a jump"),
