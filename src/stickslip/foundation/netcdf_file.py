@@ -13,13 +13,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
 from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     import h5py
+    import xarray as xr
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file, and so of every netCDF file of this package."""
