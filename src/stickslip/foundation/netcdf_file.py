@@ -123,6 +123,8 @@ def digest_of(file: Any, size: int) -> str:
 
 def read(path: Path, what: str = "a file") -> xr.Dataset:
     """Read a file that `write` wrote. Raises InputError for any other file, and for one whose tables claim more than its size."""
+    import xarray as xr  # here, because it takes a quarter of a second to import
+
     check(path, what)
     try:
         _check_sizes(path)
@@ -136,6 +138,8 @@ def read(path: Path, what: str = "a file") -> xr.Dataset:
 
 def attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of a file that `write` wrote; return an empty dictionary for any other file."""
+    import xarray as xr
+
     try:
         check(path)
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:

@@ -69,9 +69,9 @@ def events_table(history: History, threshold: float, energies: bool = False) -> 
 
 def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
     """Return a table with one row per event, including the energies if they are wanted."""
-    from stickslip.observables.energy.balance import event_energies
-
     import pandas as pd
+
+    from stickslip.observables.energy.balance import event_energies
 
     table = pd.DataFrame(event_columns(history, events))
     return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
