@@ -73,9 +73,12 @@ def test_failures_are_counted_with_their_reasons(command):
         (["-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
         (["-v", "alpha=1,2", "--out", "no/map.zarr"], "--out no/map.zarr: there is no folder no"),
         (["-v", "alpha=1,2", "--threads", "0"], "sweep: threads must be a whole number above 0, got 0"),
-        (["-v", "alpha=1,2", "--chunk", "0"], "sweep: chunk must be a whole number of members above 0, got 0"),
+        (["-v", "alpha=1,2", "--chunk", "0"], "sweep: chunk must be a whole number above 0, got 0"),
         (["--list", "no.csv"], "--list no.csv: no such file"),
-        (["-v", "alpha=1..2", "--design", "lhs"], "sweep: members must be a whole number above 0 for the design lhs, got None"),
+        (
+            ["-v", "alpha=1..2", "--design", "lhs"],
+            "sweep: the design lhs: members must be a whole number from 1 to 10000000, got None",
+        ),
     ],
 )
 def test_bad_input_gives_one_line(command, tmp_path: Path, arguments, said):

@@ -19,7 +19,9 @@ from stickslip.contact.folds.certified import Certificate, Verdict, certificate
 from stickslip.contact.folds.lowest import critical_stress_between
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem, check_problem
 
@@ -155,15 +157,15 @@ class Uniqueness:
         return rates[order], kinds[order]
 
 
-def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
+def uniqueness(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
 
     Parameters
     ----------
     problem : Problem
         Problem to examine. For a block, a contact with mass and a law with a state, the answer is "regular".
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
+    law_slip : float or str, optional
+        Slip (m, or a text with a unit) as the law counts it; the initial one by default.
 
     Returns
     -------
@@ -181,12 +183,13 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
     Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
     """
     check_problem("uniqueness", problem)
+    slip = None if law_slip is None else quantities_of(Problem)["initial_slip"].check("uniqueness", "law_slip", law_slip)
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
     if problem.friction.state is not None:
         return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
-    g = resistance(problem, law_slip)
+    g = resistance(problem, slip)
     proof = certificate(g) if g.law.depends_on_rate else Certificate("proven")
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)

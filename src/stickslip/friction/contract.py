@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields, document_fields
+from stickslip.foundation.field_docs import document_fields
+from stickslip.foundation.quantities import check_fields
 
 Formula = Callable[..., Any]
 """A function that returns mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s).

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.foundation.arguments import as_path
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
 
 def resume(
     path: str | Path,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     *,
     max_events: int | None = None,
     progress: Progress | None = None,
     checkpoint: str | Path | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> Solution | pd.DataFrame:
     """Continue a run or a catalogue where its file left it.
@@ -45,8 +46,8 @@ def resume(
     path : str or Path
         File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
         catalogue's rows in the same folder.
-    duration : float, optional
-        New end of the run, s from its start; the previous one by default.
+    duration : float or str, optional
+        New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
     max_events : int, optional
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.

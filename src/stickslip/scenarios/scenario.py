@@ -15,12 +15,15 @@ from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import check_fields, declare
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import KINDS, check_rtol, read_document, read_part, read_table, without_owner
+from stickslip.scenarios.schema import KINDS, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
@@ -45,7 +48,7 @@ class Scenario:
     problem : Problem
         The body, its friction law, its loading and its initial state.
     duration : float
-        Latest end of the run, s.
+        Latest end of the run, s; a text with a unit is converted.
     rtol : float
         Relative tolerance.
     title, description : str
@@ -61,7 +64,7 @@ class Scenario:
     """
 
     problem: Problem
-    duration: float
+    duration: Number = declare(DURATION)
     rtol: float = 1e-10
     title: str = ""
     description: str = ""
@@ -70,6 +73,9 @@ class Scenario:
     shortest_event: float | None = None
     name: str = field(default="scenario", compare=False)
     source: str = field(default="", compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
     @classmethod
     def of(cls, solution: Solution, name: str = "scenario") -> Self:

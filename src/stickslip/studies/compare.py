@@ -11,13 +11,14 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.netcdf import PAPER, open_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
+from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.scenarios import Scenario, load_scenario
-from stickslip.scenarios.schema import check_rtol
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, say_nothing, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents
@@ -124,7 +125,7 @@ def compare(
     *sources: str | Path | Scenario | Solution,
     names: Sequence[str] | None = None,
     event: int | None = None,
-    until: float | None = None,
+    until: float | str | WithUnit | None = None,
     rtol: float | None = None,
     progress: TextProgress | None = None,
 ) -> Comparison:
@@ -139,8 +140,8 @@ def compare(
         Names of the runs, in the same order.
     event : int, optional
         Slip event of each run to show in the figure (0 the first, -1 the last), in time since its start.
-    until : float, optional
-        Duration of the runs (s), in place of that of the scenarios.
+    until : float or str, optional
+        Duration of the runs (s, or a text with a unit), in place of that of the scenarios.
     rtol : float, optional
         Relative tolerance, in place of that of the scenarios.
     progress : callable, optional
@@ -163,9 +164,8 @@ def compare(
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
     if rtol is not None:
         check_rtol(rtol, "compare", "rtol")
-    if until is not None and not until > 0.0:
-        raise InputError(f"compare: until must be a positive time in s, got {until!r}")
-    read = [read_source(source, until, rtol) for source in sources]
+    lasts = None if until is None else DURATION.check("compare", "until", until)
+    read = [read_source(source, lasts, rtol) for source in sources]
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.io.netcdf import origin
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
@@ -241,14 +244,14 @@ class Ensemble(RunsCompared):
 
 def ensemble(
     problem: Problem,
-    duration: float,
+    duration: float | str | WithUnit,
     members: int = 8,
     size: float = 1e-12,
     rtol: float = 1e-10,
     *,
     max_events: int | None = None,
     seed: int = 0,
-    event_rate: float | None = None,
+    event_rate: float | str | WithUnit | None = None,
     progress: TextProgress | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
@@ -258,8 +261,8 @@ def ensemble(
     ----------
     problem : Problem
         Problem to disturb.
-    duration : float
-        Duration of each run (s).
+    duration : float or str
+        Duration of each run (s, or a text with a unit).
     members : int
         Number n of disturbed runs.
     size : float
@@ -270,8 +273,8 @@ def ensemble(
         Number of slip events after which each run ends.
     seed : int
         Seed of the random numbers from which signs and sizes of the disturbances are drawn.
-    event_rate : float, optional
-        Slip rate (m/s) above which slip counts as an event, as in `Solution.catalogue`.
+    event_rate : float or str, optional
+        Slip rate (m/s, or a text with a unit) above which slip counts as an event, as in `Solution.catalogue`.
     progress : callable, optional
         Called with a line of text as each run begins.
     max_pieces : int, optional
@@ -297,30 +300,29 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
+    options = RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
     pushes = drawn(problem, members, size, seed)
-    if event_rate is not None and not event_rate >= 0.0:
-        raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
+    rate = check_event_rate(event_rate, "ensemble")
     tell = progress or say_nothing
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
+    options = replace(options, max_pieces=most)
     tell("undisturbed")
-    reference = _run(problem, duration, rtol, max_events, most)
+    reference = _run(problem, options)
     runs: list[Solution] = []
     try:
         for i, push in enumerate(pushes.tolist()):
             tell(f"member {i + 1} of {members}")
-            runs.append(_run(disturbed(problem, push), duration, rtol, max_events, most))
+            runs.append(_run(disturbed(problem, push), options))
     except KeyboardInterrupt:
         if not runs:
             raise
-    return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, event_rate)
+    return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, rate)
 
 
-def _run(problem: Problem, duration: float, rtol: float, max_events: int | None, max_pieces: int) -> Solution:
+def _run(problem: Problem, options: RunOptions) -> Solution:
+    limits: dict[str, Any] = {"max_events": options.max_events, "max_pieces": options.max_pieces}
     # leaps over creep and lumped events would hide the small differences between the runs
-    return uninterrupted(
-        simulate(problem, duration, rtol, max_events=max_events, max_pieces=max_pieces, creep_rtol=0.0, shortest_event=0.0)
-    )
+    return uninterrupted(simulate(problem, options.duration, options.rtol, creep_rtol=0.0, shortest_event=0.0, **limits))
 
 
 def _time(seconds: float) -> str:

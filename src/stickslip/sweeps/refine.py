@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
@@ -47,7 +48,7 @@ def refine(
     vary: Any,
     quantity: str,
     *,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     depth: int = DEPTH,
     factor: float | None = None,
     most: int = MOST_MEMBERS,

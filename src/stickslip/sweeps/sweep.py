@@ -11,11 +11,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.design import check_whole
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
 from stickslip.sweeps.execution.chunk import ChunkResult, Work, run_chunk
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
@@ -50,7 +51,7 @@ def sweep(
     scenario: Problem | Scenario | str | Path,
     vary: Any,
     *,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     design: str = "grid",
     members: int | None = None,
     seed: int = 0,
@@ -75,8 +76,8 @@ def sweep(
         an array, a list or a pint quantity array of their values. Numbers are in SI. A list may also hold texts with units
         ("10 km"), or words ("run.selection": ["minimal", "maximal"]). A DataFrame, or the `Path` of a CSV file, has one member in
         each row.
-    duration : float, optional
-        Latest end of the runs (s). A problem needs it; a scenario has its own.
+    duration : float or str, optional
+        Latest end of the runs (s, or a text with a unit). A problem needs it; a scenario has its own.
     design : {"grid", "random", "lhs"}
         "grid" runs every combination, with one dimension for each parameter. "random" and "lhs" (Latin hypercube) draw members:
         a tuple (LOW, HIGH) in place of values stands for all numbers between the two, (LOW, HIGH, "log") for the same spread
@@ -187,7 +188,7 @@ def on_threads(threads: int | None) -> Runner:
     Raises InputError.
     """
     if threads is not None:
-        check_whole(threads, 1, "sweep: threads must be a whole number above 0")
+        check_whole("sweep: threads", threads)
     return lambda work, chunks: ((chunk, run_chunk(work, values, threads)) for chunk, values in chunks)
 
 

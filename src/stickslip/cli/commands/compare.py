@@ -59,7 +59,8 @@ def _compared(names: list[str], until: str | None, rtol: float | None, event: in
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.long_run import progress
     from stickslip.cli.overrides import read
-    from stickslip.scenarios.schema import check_rtol, read_duration
+    from stickslip.problem.run_quantities import check_rtol
+    from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 
     if len(names) < 2:
