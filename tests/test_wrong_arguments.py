@@ -92,7 +92,7 @@ OPTIONS: list[tuple[str, Any, str]] = [
     ("checkpoint_every", None, 'must be a number in s or a text with a unit such as "10 s" (or "inf"), got None'),
     ("checkpoint_every", -1, "must be at least 0 s, got -1"),
     ("checkpoint_every", math.nan, "must be finite, got nan"),
-    ("progress", "loud", "must be a function, got 'loud'"),
+    ("progress", "loud", "must be True or a function, got 'loud'"),
 ]
 
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields, quantity
@@ -67,6 +68,8 @@ class ElasticSlab:
     p_wave_speed: OptionalNumber = quantity(
         "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
     )
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         check_fields(self)

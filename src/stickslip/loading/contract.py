@@ -13,6 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.field_docs import document_fields
@@ -86,6 +87,8 @@ class LoadingHistory(ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         document_fields(cls, vars(cls).get("source", ""))
+        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
+            cls.__repr__ = LoadingHistory.__repr__  # type: ignore[method-assign]
 
     unit: str = VARYING
     """Unit of the values, "m/s" or "Pa", if they were given with one; plain numbers fit both."""
@@ -101,6 +104,9 @@ class LoadingHistory(ABC):
             item, value = declared.item if isinstance(declared, Series) else declared, getattr(self, name)
             if isinstance(item, Quantity) and item.unit == VARYING:
                 yield from value if isinstance(declared, Series) and isinstance(value, list | tuple) else (value,)
+
+    def __repr__(self) -> str:
+        return brief_repr(self, {VARYING: self.unit})
 
     @property
     @abstractmethod

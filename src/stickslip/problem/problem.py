@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, Body
 from stickslip.foundation.arguments import check_type, is_number, shown
+from stickslip.foundation.brief_repr import brief_repr, fields_in, shown_fields
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.loading import LoadingHistory
@@ -108,6 +110,29 @@ class Problem:
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
+    def _shown(self) -> dict[str, str]:
+        """Return the texts of the fields that have not their default value, by name; those of body and friction come first."""
+        state, shown = self.friction.state, dict(shown_fields(self, {LOAD: self.load_unit}))
+        for name in self._varying:
+            shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
+        if state is not None and self.initial_state is not None:
+            shown["initial_state"] = f"'{brief(self.initial_state, state.unit)}'"
+        return shown | ({"selection": f"'{self.rule}'"} if "selection" in shown else {})
+
+    def __repr__(self) -> str:
+        shown = self._shown()
+        parts = [shown.pop("body"), shown.pop("friction"), ", ".join(f"{name}={text}" for name, text in shown.items())]
+        return "\n".join(["Problem(", *(f"    {part}," for part in parts), ")"])
+
+    def _repr_html_(self) -> str:
+        shown, declared = self._shown(), quantities_of(Problem)
+        rows = []
+        for name, part in (("body", self.body), ("friction", self.friction)):
+            rows += [(name, type(part).__name__, ""), *fields_in(part, f"{name}.")]
+        for name in [name for name in shown if name not in ("body", "friction")]:
+            rows.append((name, shown[name].strip("'"), declared[name].meaning if name in declared else ""))
+        return html_table("stickslip Problem", rows)
+
     def _check_varying(self) -> None:
         for name in MAY_VARY:
             value, declared = getattr(self, name), quantities_of(Problem)[name]
@@ -162,7 +187,7 @@ class Problem:
     def loading_texts(self) -> dict[str, str]:
         """Short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
         return {
-            name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
+            name: f"{value.kind}, {brief(value.first, unit)} at first" if isinstance(value, LoadingHistory) else brief(value, unit)
             for name, value, unit in (
                 ("pull_rate", self.pull_rate, "m/s"),
                 ("far_stress", self.far_stress, "Pa"),

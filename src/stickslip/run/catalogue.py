@@ -21,6 +21,7 @@ from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end, stream_of
 from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY, Status
@@ -44,7 +45,7 @@ def catalogue(
     max_events: int | None = None,
     event_rate: float | str | WithUnit | None = None,
     energies: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> pd.DataFrame:
@@ -88,23 +89,23 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
-    given = RunOptions(
-        duration,
-        rtol,
-        creep_rtol=creep_rtol,
-        shortest_event=shortest_event,
-        max_events=max_events,
-        progress=progress,
-        checkpoint_every=checkpoint_every,
-        max_pieces=max_pieces,
-    )
-    options = given.check("catalogue", problem)
     rate = check_event_rate(event_rate, "catalogue")
     file = None if path is None else as_path("catalogue: path", path)
     if file is not None:
         check_catalogue(file)
     check_energies(creep_rtol, energies, "catalogue")
-    return catalogue_of(problem, options, file, rate, energies=energies).read()
+    with told(progress, "catalogue") as report:
+        given = RunOptions(
+            duration,
+            rtol,
+            creep_rtol=creep_rtol,
+            shortest_event=shortest_event,
+            max_events=max_events,
+            progress=report,
+            checkpoint_every=checkpoint_every,
+            max_pieces=max_pieces,
+        )
+        return catalogue_of(problem, given.check("catalogue", problem), file, rate, energies=energies).read()
 
 
 def catalogue_of(

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
-from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
@@ -74,8 +73,6 @@ class RunOptions:
         check_problem(who, problem)
         creep_rtol = None if self.creep_rtol is None else CREEP_RTOL.check(who, "creep_rtol", self.creep_rtol)
         shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
-        if self.progress is not None and not callable(self.progress):
-            raise InputError(f"{who}: progress must be a function, got {shown(self.progress)}")
         return replace(
             self,
             duration=DURATION.check(who, "duration", self.duration),

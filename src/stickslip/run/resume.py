@@ -17,6 +17,7 @@ from stickslip.run.catalogue import Catalogue, alone_with, follow
 from stickslip.run.monitor import run_to_end, stream_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
 from stickslip.solution.solution import Solution
@@ -32,7 +33,7 @@ def resume(
     duration: float | str | WithUnit | None = None,
     *,
     max_events: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
@@ -77,10 +78,11 @@ def resume(
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave checkpoint away")
     stopped = open_solution(file) if paused is None else paused.stopped
-    others = {"progress": progress, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
-    options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
-    return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
+    with told(progress, "resume") as report:
+        others = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
+        options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
+        return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
 
 
 def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:

@@ -10,6 +10,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.event_stream import EventStream, Look
@@ -24,7 +25,7 @@ def simulate(
     creep_rtol: float | None = None,
     shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
@@ -48,8 +49,9 @@ def simulate(
         default (see Notes).
     max_events : int, optional
         Number of slip events after which the run stops.
-    progress : callable, optional
-        A function that is called with a `stickslip.run.progress.Report` while the run continues.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a
+        `stickslip.run.progress.Report` while the run continues.
     checkpoint : str or Path, optional
         File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
         solution.
@@ -85,19 +87,19 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    given = RunOptions(
-        duration,
-        rtol,
-        creep_rtol=creep_rtol,
-        shortest_event=shortest_event,
-        max_events=max_events,
-        progress=progress,
-        checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
-        checkpoint_every=checkpoint_every,
-        max_pieces=max_pieces,
-    )
-    options = given.check("simulate", problem)
-    return run_to_end(Session.begin(problem, options), WholeHistory())
+    with told(progress, "simulate") as report:
+        given = RunOptions(
+            duration,
+            rtol,
+            creep_rtol=creep_rtol,
+            shortest_event=shortest_event,
+            max_events=max_events,
+            progress=report,
+            checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
+            checkpoint_every=checkpoint_every,
+            max_pieces=max_pieces,
+        )
+        return run_to_end(Session.begin(problem, given.check("simulate", problem)), WholeHistory())
 
 
 class WholeHistory:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief, html_table
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
@@ -220,12 +221,13 @@ class Solution(Exports):
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        largest = f", largest slip {events.slip.max():.6g} m, peak rate {events.peak_rate.max():.6g} m/s" if len(events) else ""
+        most = events[["slip", "peak_rate"]].max()
+        largest = f", largest slip {brief(most.slip, 'm')}, peak rate {most.peak_rate:.6g} m/s" if len(events) else ""
         return [
             ("body", repr(problem.body)),
             ("friction", repr(problem.friction)),
-            ("loading", f"{loading}, initial load {problem.load:.9g} {problem.load_unit}"),
-            ("run", f"{self.duration:.6g} s, rtol {self.rtol:g}, {len(self.history)} pieces"),
+            ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
+            ("run", f"{brief(self.duration, 's')}, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
@@ -270,7 +272,4 @@ class Solution(Exports):
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])
 
     def _repr_html_(self) -> str:
-        from html import escape
-
-        rows = "".join(f"<tr><th style='text-align:left'>{name}</th><td>{escape(text)}</td></tr>" for name, text in self._lines())
-        return f"<table><caption>stickslip Solution</caption>{rows}</table>"
+        return html_table("stickslip Solution", self._lines())

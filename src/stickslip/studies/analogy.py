@@ -9,7 +9,6 @@ Source: Campillo et al. 1996, Figs 5-7, who compare both bodies at three points;
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -26,7 +25,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.run.simulate import simulate
-from stickslip.studies.study import Study, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
 
 Quantity = Literal["slip", "peak_rate", "duration"]
@@ -127,7 +126,7 @@ def analogy(
     *,
     rtol: float = RTOL,
     within: float = WITHIN,
-    progress: Callable[[int, int], Any] | None = None,
+    progress: TextProgress | bool | None = None,
 ) -> Analogy:
     """Compare the first slip event of a slab with that of its equivalent block, over two parameters of the problem.
 
@@ -143,8 +142,9 @@ def analogy(
         Relative tolerance of the runs.
     within : float
         Largest difference of the ratios from 1 at which the block represents the slab, between 0 and 1.
-    progress : callable, optional
-        Called with the number of finished points and the number of all points.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text after each
+        point.
 
     Returns
     -------
@@ -166,10 +166,10 @@ def analogy(
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")
     block_for(problem)  # raises InputError if there is no equivalent block
     rows = []
-    for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
-        rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), lasts, rtol))
-        if progress is not None:
-            progress(len(rows), x.points * y.points)
+    with telling(progress, "analogy") as tell:
+        for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
+            rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), lasts, rtol))
+            tell(f"{len(rows)} of {x.points * y.points} points")
     table = pd.DataFrame(rows)
     table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES})
     return Analogy(problem, lasts, x, y, within, table.assign(stands=_stands(table, within)))

@@ -20,7 +20,7 @@ from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents
 from stickslip.trajectory.tables import default_event_rate
 
@@ -118,7 +118,15 @@ class Comparison(Study):
             yield Scenario(solution.problem, solution.duration, solution.rtol, max_events=solution.max_events).to_toml()
 
     def __repr__(self) -> str:
-        return f"stickslip Comparison of {', '.join(self.runs)}\n{self.table.drop(columns='name').T.to_string()}"
+        return f"{super().__repr__()}\n{self._shown_table().to_string(float_format='{:.6g}'.format)}"
+
+    def _lines(self) -> Iterator[str]:
+        yield f"of {', '.join(self.runs)}"
+
+    def _shown_table(self) -> pd.DataFrame:
+        """Return the table with one column for each run and with units."""
+        with_units = {name: f"{name} ({unit})" for name, (unit, _) in COLUMNS.items() if unit}
+        return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
 
 
 def compare(
@@ -127,7 +135,7 @@ def compare(
     event: int | None = None,
     until: float | str | WithUnit | None = None,
     rtol: float | None = None,
-    progress: TextProgress | None = None,
+    progress: TextProgress | bool | None = None,
 ) -> Comparison:
     """Compare two or more runs in one table and one figure.
 
@@ -144,8 +152,9 @@ def compare(
         Duration of the runs (s, or a text with a unit), in place of that of the scenarios.
     rtol : float, optional
         Relative tolerance, in place of that of the scenarios.
-    progress : callable, optional
-        Called with the name of each run as it begins.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with the name of each run as it
+        begins.
 
     Returns
     -------
@@ -169,10 +178,11 @@ def compare(
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
-    tell, runs = progress or say_nothing, {}
-    for name, source in zip(called, read, strict=True):
-        tell(name)
-        runs[name] = source.solution(None)
+    runs = {}
+    with telling(progress, "compare") as tell:
+        for name, source in zip(called, read, strict=True):
+            tell(name)
+            runs[name] = source.solution(None)
     return Comparison(runs, event)
 
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.io.netcdf import origin
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
@@ -25,7 +24,7 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
 
 MAX_TOTAL = 2_000_000
@@ -225,17 +224,9 @@ class Ensemble(RunsCompared):
         lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
 
-    def save(self, path: str | Path) -> Path:
-        """Write the table of events (.csv), or all data of the figure with their provenance (.nc), and return the path.
-
-        Raises InputError if the name ends otherwise, or if an .nc file cannot be written.
-        """
-        ending = Path(path).suffix.lower()
-        if ending not in (".csv", ".nc"):
-            raise InputError(f"ensemble: {path}: the name must end in .csv or .nc")
-        if ending == ".csv":
-            return super().save(path)
-        return write(self.dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write all data of the figure with their provenance, and return the path. Raises InputError if that fails."""
+        return write(self.to_dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
 
     def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
@@ -252,7 +243,7 @@ def ensemble(
     max_events: int | None = None,
     seed: int = 0,
     event_rate: float | str | WithUnit | None = None,
-    progress: TextProgress | None = None,
+    progress: TextProgress | bool | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
     """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
@@ -275,8 +266,9 @@ def ensemble(
         Seed of the random numbers from which signs and sizes of the disturbances are drawn.
     event_rate : float or str, optional
         Slip rate (m/s, or a text with a unit) above which slip counts as an event, as in `Solution.catalogue`.
-    progress : callable, optional
-        Called with a line of text as each run begins.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text as each run
+        begins.
     max_pieces : int, optional
         Largest number of pieces of history of one run; default 200 000, and 2 000 000 for all runs together. A run that needs more
         ends early, and all runs are compared up to that time.
@@ -303,19 +295,19 @@ def ensemble(
     options = RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
     pushes = drawn(problem, members, size, seed)
     rate = check_event_rate(event_rate, "ensemble")
-    tell = progress or say_nothing
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     options = replace(options, max_pieces=most)
-    tell("undisturbed")
-    reference = _run(problem, options)
     runs: list[Solution] = []
-    try:
-        for i, push in enumerate(pushes.tolist()):
-            tell(f"member {i + 1} of {members}")
-            runs.append(_run(disturbed(problem, push), options))
-    except KeyboardInterrupt:
-        if not runs:
-            raise
+    with telling(progress, "ensemble") as tell:
+        tell("undisturbed")
+        reference = _run(problem, options)
+        try:
+            for i, push in enumerate(pushes.tolist()):
+                tell(f"member {i + 1} of {members}")
+                runs.append(_run(disturbed(problem, push), options))
+        except KeyboardInterrupt:
+            if not runs:
+                raise
     return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, rate)
 
 

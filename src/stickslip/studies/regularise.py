@@ -28,7 +28,7 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
 
@@ -38,6 +38,10 @@ RESOLVED = 100.0
 """Differences below this multiple of rtol times the range of slip count as numerical error."""
 FIRST_JUMPS = 12
 """Largest number of jumps that are timed."""
+
+
+SIZES = Series(Quantity("s", "time in which the slip rate settles", above=0), least=3)
+"""Sizes of regularisations."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -214,7 +218,7 @@ def regularise(
     rules: Sequence[str] = SELECTION_RULES,
     *,
     rtol: float = 1e-10,
-    progress: TextProgress | None = None,
+    progress: TextProgress | bool | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
     """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.
@@ -234,8 +238,9 @@ def regularise(
         Selection rules to compare with.
     rtol : float
         Relative tolerance of the runs.
-    progress : callable, optional
-        Called with a line of text as each run begins.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text as each run
+        begins.
     max_pieces : int
         Largest number of pieces of history of one run. A run that needs more ends early, and all runs are compared up to that time.
 
@@ -255,18 +260,17 @@ def regularise(
     slab = check_massless(problem)
     lasts = DURATION.check("regularise", "duration", duration)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
-    tell = progress or say_nothing
     softened = [regularised(problem, by, size) for size in times.tolist()]
-    exact = {}
-    for rule in _known(rules):
-        tell(f"exact answer, {rule}")
-        exact[rule], _ = _run(replace(problem, selection=rule), lasts, rtol, max_pieces)
-    runs, seconds = [], []
-    for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
-        tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
-        run, spent = _run(one, lasts, rtol, max_pieces)
-        runs.append(run)
-        seconds.append(spent)
+    exact, runs, seconds = {}, [], []
+    with telling(progress, "regularise") as tell:
+        for rule in _known(rules):
+            tell(f"exact answer, {rule}")
+            exact[rule], _ = _run(replace(problem, selection=rule), lasts, rtol, max_pieces)
+        for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
+            tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
+            run, spent = _run(one, lasts, rtol, max_pieces)
+            runs.append(run)
+            seconds.append(spent)
     return Regularisation(problem, by, times, rtol, exact, tuple(runs), tuple(seconds))
 
 
@@ -276,9 +280,6 @@ def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tup
     start = time.perf_counter()
     solution = uninterrupted(simulate(problem, duration, rtol, max_pieces=max_pieces, shortest_event=0.0))
     return solution, time.perf_counter() - start
-
-
-SIZES = Series(Quantity("s", "time in which the slip rate settles", above=0), least=3)
 
 
 def _checked(sizes: Sequence[float | str | WithUnit] | WithUnit) -> Floats:

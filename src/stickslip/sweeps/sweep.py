@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import about_time, number
 from stickslip.problem.problem import Problem
+from stickslip.run.progress_line import told
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class SweepProgress(NamedTuple):
-    """The progress of a sweep.
+    """The progress of a sweep; as a text it is one line for people.
 
     `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
     number. `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the
@@ -40,6 +42,12 @@ class SweepProgress(NamedTuple):
     members: int
     rate: float
     left: float
+
+    def __str__(self) -> str:
+        parts = [f"{self.done} of {self.members} members"]
+        if self.rate > 0.0:
+            parts += [f"{number(self.rate, 3)} a second", f"{about_time(self.left)} left"]
+        return ", ".join([*parts, *([f"{self.failed} failed"] if self.failed else [])])
 
 
 ProgressCallback = Callable[[SweepProgress], object]
@@ -63,7 +71,7 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk: int | None = None,
-    progress: ProgressCallback | None = None,
+    progress: ProgressCallback | bool | None = None,
 ) -> xr.Dataset:
     """Run a scenario with varied parameters and collect summary quantities of every run in a dataset with units.
 
@@ -103,8 +111,9 @@ def sweep(
         Run the chunks on the dask.distributed cluster whose scheduler has this address (or scheduler file).
     chunk : int, optional
         Number of members in a chunk: at most this many, because a chunk is a block of the design.
-    progress : callable, optional
-        Function that is called with a `SweepProgress` after each chunk.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a `SweepProgress` after each
+        chunk.
 
     Returns
     -------
@@ -129,8 +138,8 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    with runner_of(threads, workers, scheduler) as (run, _):
-        return carry_out(plan, out, run, progress)
+    with runner_of(threads, workers, scheduler) as (run, _), told(progress, "sweep") as tell:
+        return carry_out(plan, out, run, tell)
 
 
 @contextmanager

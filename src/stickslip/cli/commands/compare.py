@@ -50,7 +50,7 @@ def compare(
     check_target(figure, "--figure")
     found = _compared(runs, until, rtol, event)
     show_comparison(found)
-    announce(*write_files((out, found.save), (figure, drawing(found.plot))))
+    announce(*write_files((out, found.to_csv), (figure, drawing(found.plot))))
     if not all(solution.status.ok for solution in found.runs.values()):
         raise typer.Exit(1)
 
