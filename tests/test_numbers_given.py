@@ -156,6 +156,12 @@ def test_anything_else_is_refused_in_one_line(given: Any, shown: str) -> None:
     assert text.removeprefix(known) == shown
 
 
+def test_messages_show_a_text_that_is_accepted() -> None:
+    for unit in ("m", "1/m", "Pa s/m", "Pa or N", "kg/m^2"):
+        declared = Quantity(unit, "")
+        assert declared.check("Owner", "field", declared.allowed.split('"')[1]) == 10.0
+
+
 def test_a_registry_counts_with_its_own_definitions() -> None:
     own: Any = pint.UnitRegistry()
     own.define("year = 365 * day")

@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 from typer import Context
 
+from stickslip.cli.names import complete_design, complete_quantity, complete_vary
 from stickslip.sweeps.sweep import SweepProgress
 
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]

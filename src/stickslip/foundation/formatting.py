@@ -47,11 +47,11 @@ def with_unit(value: float, unit: str) -> str:
 def brief(value: float, unit: str) -> str:
     """Format a quantity with 6 digits in the unit in which it is shortest: "10 km", "0.05 m/year", "100 MPa".
 
-    Unlike `with_unit` it gives a text that can be given for the quantity again.
+    Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
     """
     if unit in ("1", ""):
         return f"{value:.{DIGITS}g}"
-    units = ((unit, 1.0), *_ALTERNATIVES.get(unit, ()))
+    units = ((unit.removeprefix("1"), 1.0), *_ALTERNATIVES.get(unit, ()))
     if unit in _SCALED:
         units = (*units, *((prefix + unit, factor) for factor, prefix in reversed(_PREFIXES)))
     sizes = ((f"{value / factor:.{DIGITS}g}", name, abs(value / factor)) for name, factor in units)

@@ -109,7 +109,7 @@ class Quantity:
     def allowed(self) -> str:
         """The values that may be given, in words."""
         first, several, _ = self.unit.partition(" or ")
-        example = f'a number in {self.unit}{"," * bool(several)} or a text with a unit such as "10 {first}"'
+        example = f'a number in {self.unit}{"," * bool(several)} or a text with a unit such as "10 {first.removeprefix("1")}"'
         return ("a number" if self.unit == "1" else example) + (f' (or "{self.word}")' if self.infinite else "")
 
     @property
