@@ -50,7 +50,7 @@ def example_of(kind: Any) -> Any:
 UNITS = st.sampled_from(["m", "s", "m/s", "Pa", "N", "N/m", "Pa s/m", "kg/m^3", "1/m", "s/m", "Pa/s", "kg"])
 
 
-@given(value=st.floats(allow_nan=False, allow_infinity=False, min_value=-1e40, max_value=1e40), unit=UNITS)
+@given(value=st.floats(-1e40, 1e40).filter(lambda value: value == 0.0 or abs(value) > 1e-40), unit=UNITS)
 def test_what_is_shown_can_be_given_again(value: float, unit: str) -> None:
     text = brief(value, unit)
     assert len(text) <= len(f"{value:.6g} {unit}")
