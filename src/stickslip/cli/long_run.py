@@ -147,7 +147,7 @@ def check_same(request: Request, problem: Problem) -> None:
 @contextmanager
 def progress(name: str) -> Iterator[Progress]:
     """Show the progress of a run on a terminal. Yields the callback that receives it."""
-    from stickslip.cli.output.show import progress_to, so_far
+    from stickslip.run.progress_line import progress_line
 
-    with progress_to(f"{name}:") as report:
-        yield lambda about: report(so_far(about))
+    with progress_line(f"{name}:") as report:
+        yield report

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.trajectory.history import Floats, History, Side
 from stickslip.trajectory.tables import shock_columns
@@ -46,6 +47,9 @@ class RuleInfluence:
     shocks: NDArray[np.bool_]
     since: float | None = None
     folds_move: bool = False
+
+    units: ClassVar = {"since": "s"}
+    __repr__ = brief_repr
 
     @property
     def note(self) -> str:

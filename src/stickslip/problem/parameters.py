@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
 from stickslip.problem.problem import Problem, check_problem
 
@@ -33,6 +34,9 @@ class Parameter:
     value: float
     declared: Quantity
     _put: Callable[[float], Problem]
+
+    def __repr__(self) -> str:
+        return f"Parameter({self.name} = {brief(self.value, self.unit)}, {self.declared.meaning})"
 
     @property
     def unit(self) -> str:

@@ -8,8 +8,9 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import number, table, titled, with_unit
+from stickslip.cli.output.show import table, titled
 from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.foundation.formatting import number, with_unit
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -44,7 +44,7 @@ class FromExpression(RemembersSlip):
     }
 
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
-    values: Any = declare(NamedNumbers("values of the parameters", "parameters"), ())  # noqa: RUF009 - makes a field
+    values: Any = declare(NamedNumbers("values of the parameters", "parameters"), ())
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
