@@ -78,6 +78,6 @@ def test_parameters_are_a_table_of_names_values_and_units() -> None:
     assert list(found)[:3] == ["friction.static", "friction.dynamic", "body.density"]
     assert len(found) == len(list(found))
     assert ("friction.static" in found, "static" in found, 3 in found) == (True, False, False)
-    assert repr(found).splitlines()[1:4] == ["friction.dynamic = 0.5", "body.density = 2800 kg/m^3", "body.wave_speed = 3500 m/s"]
+    assert repr(found).splitlines()[1:4] == ["friction.dynamic = 0.5", "body.density = 2800 kg/m^3", "body.wave_speed = 3.5 km/s"]
     with pytest.raises(ss.InputError, match=r'a name must be text such as "friction.alpha", got 3'):
         found[3]  # type: ignore[index] # on purpose

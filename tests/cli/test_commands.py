@@ -38,7 +38,7 @@ def test_without_arguments_the_help_is_shown(command):
     shown = command()
     assert shown.code == 0
     for name in COMMANDS:
-        assert re.search(rf"│ {name} ", shown.out)
+        assert re.search(rf"^  {name} ", shown.out, re.MULTILINE)
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
 
@@ -54,6 +54,21 @@ def test_help_is_fast_because_it_compiles_and_validates_nothing():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stderr == ""
     assert done.returncode == 0
+
+
+@pytest.mark.parametrize(
+    "arguments", [["run", "fig6-slab"], ["check", "fig6-slab"], ["new", "slab"], ["new", "--list"]], ids=" ".join
+)
+def test_warm_commands_load_no_library_that_they_do_not_need(arguments):
+    """Neither do they make the compiler ready, by which numba loads scipy's linear algebra."""
+    code = (
+        f"import sys\nfrom stickslip.cli.main import main\ntry:\n    main({arguments!r})\nexcept SystemExit:\n    pass\n"
+        "heavy = {'pandas', 'xarray', 'pint', 'scipy.linalg', 'matplotlib', 'numba.np.linalg'}\n"
+        "print(*(heavy & set(sys.modules)), file=sys.stderr)"
+    )
+    for _ in range(2):  # the first run may have to compile
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "\n"
 
 
 @pytest.mark.parametrize("name", templates.template_names())

@@ -67,7 +67,7 @@ def test_a_run_without_an_event_has_a_row_too() -> None:
 
 
 def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> None:
-    path = fig6.save(tmp_path / "both.csv")
+    path = fig6.to_csv(tmp_path / "both.csv")
     comment = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
     assert comment[0].startswith(f"# stickslip {ss.__version__}: runs side by side")
     assert "# slip (m): slip of the largest event" in comment

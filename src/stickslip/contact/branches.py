@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds.certified import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -40,6 +42,9 @@ class Branch:
     rate_to: float
     excess_from: float
     excess_to: float
+
+    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess_from": "Pa", "excess_to": "Pa"}
+    __repr__ = brief_repr
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:

@@ -19,6 +19,7 @@ from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds.certified import Verdict
 from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
@@ -58,6 +59,8 @@ class Critical:
     guaranteed bounds. It is never proven that there are no further changes between the values that were examined."""
     enclosures: tuple[tuple[float, float] | None, ...] = ()
     """For each of `values`, a number below it and one above it at which the regimes are proven to differ; None if that fails."""
+
+    __repr__ = brief_repr
 
     @property
     def value(self) -> float | None:

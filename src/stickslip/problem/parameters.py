@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ class Parameter:
     declared: Quantity
     _put: Callable[[float], Problem]
 
+    def __repr__(self) -> str:
+        return f"Parameter({self.name} = {brief(self.value, self.unit)}, {self.declared.meaning})"
+
     @property
     def unit(self) -> str:
         """The SI unit of the value, "1" for a pure number."""
@@ -62,9 +66,6 @@ class Parameter:
             If the problem does not allow the value.
         """
         return self._put(value)
-
-    def __repr__(self) -> str:
-        return f"{self.name} = {self.value:.9g}" + (f" {self.unit}" if self.unit != "1" else "")
 
 
 class Parameters(Mapping[str, Parameter]):
@@ -108,7 +109,7 @@ class Parameters(Mapping[str, Parameter]):
         return len(self._found)
 
     def __repr__(self) -> str:
-        return "\n".join(repr(one) for one in self._found.values())
+        return "\n".join(f"{one.name} = {brief(one.value, one.unit)}" for one in self._found.values())
 
 
 def _of_problem(problem: Problem) -> Iterator[Parameter]:

@@ -12,14 +12,15 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.loading import LoadingHistory
+from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.schema import in_unit, quantities_in
+from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
 LARGE_STRAIN = 0.01
@@ -108,7 +109,7 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
     """
     facts: list[Fact] = []
     for name, (entry, _) in fields_of(type(law)).items():
-        declared = in_unit(entry, varying)
+        declared = in_units(entry, {VARYING: varying})
         value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
         if isinstance(declared, Quantity) and value is not None:
             facts.append(Fact(place, value, declared.unit, declared.meaning))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.conversion import WithUnit
 from stickslip.problem.problem import Problem, check_problem
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | 
     return source
 
 
-def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | None = None) -> Uniqueness:
+def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
 
     Parameters
@@ -36,8 +37,8 @@ def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | None 
     problem : Problem, Scenario, str or Path
         Problem to examine: itself, its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
         mass and a law with a state, the answer is "regular".
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
+    law_slip : float or str, optional
+        Slip (m, or a text with a unit) as the law counts it; the initial one by default.
 
     Returns
     -------

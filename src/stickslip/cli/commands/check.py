@@ -61,12 +61,12 @@ def _set(problem: Problem) -> Figure:
 
 
 def _map(problem: Problem, axes: list[str]) -> Figure:
-    from stickslip.cli.output.show import progress_to
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
+    from stickslip.run.progress_line import progress_line
     from stickslip.scenarios.axes import read_axis
 
     x, y = (read_axis(problem, text, "check: --map") for text in axes)
-    with progress_to("map:") as report:
+    with progress_line("map:") as report:
         found = regime_map(problem, x, y, lambda done, count: report(f"{done} of {count} points"))
     return regimes.draw(regimes.data(problem, found))

@@ -67,7 +67,7 @@ class Pictures:
 
 
 def _animate(solution: Solution, target: Path) -> Path:
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
 
-    with progress_to(f"{target}:") as report:
+    with progress_line(f"{target}:") as report:
         return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

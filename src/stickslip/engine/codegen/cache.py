@@ -30,6 +30,7 @@ import numba
 import platformdirs
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
+from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
 from stickslip.engine.codegen.private_folder import private_folder
@@ -173,9 +174,14 @@ class SealedCache(FunctionCache):
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Return the compiled function, or None if it must be compiled; announce the compilation if it takes long (see SLOW)."""
+        """Return the compiled function, or None if it must be compiled; announce the compilation if it takes long (see SLOW).
+
+        numba's own method first makes ready all that it needs to compile (`context.refresh()`), which takes half a second. Machine
+        code from the disk needs the run-time functions only. The compiler calls `refresh` itself before it compiles anything.
+        """
         try:
-            found = super().load_overload(signature, context)
+            rtsys.initialize(context)
+            found = self._load_overload(signature, context)
         except Exception as error:  # unpickling may raise anything, and must not make every later start fail
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import ClassVar, Literal, cast
+from typing import ClassVar, Literal
 
 import numpy as np
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Converted, WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
 from stickslip.friction.contract import Formula
@@ -48,7 +49,9 @@ class FromExpression(RemembersSlip):
     }
 
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
-    values: Mapping[str, float | str] | Sequence[Named] = declare(NamedNumbers("values of the parameters", "parameters"), ())
+    values: Converted[tuple[Named, ...], Mapping[str, float | str | WithUnit] | Sequence[Named]] = declare(
+        NamedNumbers("values of the parameters", "parameters"), ()
+    )
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
@@ -56,7 +59,7 @@ class FromExpression(RemembersSlip):
     @override
     def check(self) -> None:
         self._check_names()
-        units = {value.name: value.unit for value in self.named}
+        units = {value.name: value.unit for value in self.values}
         try:
             if any(units.values()):
                 check_dimensions(self.tree, units)
@@ -68,7 +71,7 @@ class FromExpression(RemembersSlip):
             self._check_static(self.static)
 
     def _check_names(self) -> None:
-        names = [value.name for value in self.named]
+        names = [value.name for value in self.values]
         if len(names) > MOST_PARAMETERS:
             raise InputError(f"FromExpression: parameters: at most {MOST_PARAMETERS} parameters are allowed")
         for name in names:
@@ -98,15 +101,10 @@ class FromExpression(RemembersSlip):
             raise InputError(f"FromExpression: static must be at least the expression at v = 0, got {static:g} < {sliding:g}")
 
     @property
-    def named(self) -> tuple[Named, ...]:
-        """The parameters, each with name, value (SI) and unit: what `values` becomes."""
-        return cast("tuple[Named, ...]", self.values)
-
-    @property
     def tree(self) -> Expression:
         """The formula as an expression tree."""
         try:
-            return parse(self.expression, tuple(value.name for value in self.named))
+            return parse(self.expression, tuple(value.name for value in self.values))
         except InputError as error:
             raise InputError(f"FromExpression: expression: {error}") from None
 
@@ -118,11 +116,11 @@ class FromExpression(RemembersSlip):
 
     @override
     def parameters(self) -> tuple[str, ...]:
-        return tuple(value.name for value in self.named)
+        return tuple(value.name for value in self.values)
 
     @override
     def piece_values(self, i: int) -> tuple[float, ...]:
-        return tuple(value.value for value in self.named)
+        return tuple(value.value for value in self.values)
 
     @property
     @override
@@ -160,10 +158,10 @@ class FromExpression(RemembersSlip):
 
         If no value has a unit, any number of the expression may be a slip rate or the inverse of one: both are returned.
         """
-        units = {value.unit for value in self.named} - {""}
+        units = {value.unit for value in self.values} - {""}
         scales = [
             abs(value.value) ** (1 if value.unit == "m s^-1" else -1)
-            for value in self.named
+            for value in self.values
             if value.value and value.unit in _RATES
         ]
         if units:

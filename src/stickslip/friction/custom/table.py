@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import override
 
+from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity, Series, declare
 from stickslip.friction.families import RemembersSlip
@@ -31,10 +32,8 @@ class FromTable(RemembersSlip, PiecewiseLaw):
     columns: ClassVar = {"slip": "slip", "slip_rate": "rate", "friction": "friction"}
 
     friction: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
-    slip: Sequence[float] | None = declare(
-        Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None
-    )
-    rate: Sequence[float] | None = declare(
+    slip: OptionalNumbers = declare(Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None)
+    rate: OptionalNumbers = declare(
         Series(Quantity("m/s", "slip rates of the points; give either slip or rate", at_least=0), ascending=True), None
     )
     counts: Literal["net", "path"] = declare(Choice("slip that a table of slip sees", ("path", "net")), "path")  # type: ignore[misc] # here a choice of the user

@@ -75,7 +75,9 @@ def _syntax(text: str) -> ast.expr:
         raise InputError("nested too deeply") from None
     except (SyntaxError, ValueError) as error:
         if "=" in text and not set("<>!") & set(text) and "==" not in text:
-            raise InputError(f"{_shown(text)} is not an expression, because of its sign =; write only what comes after it") from None
+            raise InputError(
+                f"{_shown(text)} is not an expression, because of its sign =; write only what comes after it"
+            ) from None
         where = f" at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
         raise InputError(f"{_shown(text)} is not an expression: mistake{where}; {ALLOWED}") from None
 
