@@ -125,7 +125,7 @@ def example_of(kind: str) -> ss.friction.FrictionLaw:
     return read_scenario(template("slab", kind), "drawn").problem.friction
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(law=st.sampled_from(RATE_LAWS).flatmap(laws), slip=st.floats(0.0, 3.0))
 def test_proof_and_search_agree_on_drawn_laws(law, slip):
     """Laws without narrow features: every fold of the search is in one proven interval, and no other interval exists."""

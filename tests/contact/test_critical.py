@@ -144,7 +144,7 @@ def test_bodies_with_inertia_have_no_critical_value():
         ss.studies.critical_value(slab_problem(hyperbolic(1.0), contact_mass=10.0), "alpha")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(fall=st.floats(0.01, 0.5), rate=st.floats(1e-6, 1e3), exponent=st.integers(1, 6), viscosity=st.floats(0.0, 1.0))
 def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity):
     for law in (
@@ -158,7 +158,7 @@ def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity)
         assert (at_rate == 0.0) == (exponent == 1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(factor=st.floats(0.5, 2.0), exponent=st.integers(1, 4))
 def test_margin_says_what_the_branches_say(factor, exponent):
     assume(abs(factor - 1.0) > 1e-9)
