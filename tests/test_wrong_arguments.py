@@ -33,7 +33,7 @@ NO_PROBLEM = [
     (ss.Problem, "got the class Problem, not an instance of it: call it"),
 ]
 NO_SCENARIO = [
-    ("x", "got 'x'; a scenario is read by load_scenario, and has a problem"),
+    ("x", "got 'x'; a bundled scenario has one: ss.scenarios[name].problem"),
     (ss.load_scenario("cycles-block"), "got Scenario; take its .problem"),
 ]
 TAKE_A_SCENARIO: dict[str, Callable[[Any], Any]] = {
@@ -53,7 +53,8 @@ TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
 @pytest.mark.parametrize(("given", "shown"), NO_PROBLEM, ids=lambda one: getattr(one, "__name__", None))
 def test_other_types_than_problems_are_refused(name: str, given: Any, shown: str) -> None:
     take = TAKE_A_PROBLEM | TAKE_A_SCENARIO
-    refused(lambda: take[name](given), f"{name}: problem must be a Problem, {shown}")
+    wanted = "a Problem, a scenario, or the name of one" if name in TAKE_A_SCENARIO else "a Problem"
+    refused(lambda: take[name](given), f"{name}: problem must be {wanted}, {shown}")
 
 
 @pytest.mark.parametrize("name", TAKE_A_PROBLEM)

@@ -143,6 +143,7 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (lambda u, a=0.5: a, {"v": 1.0}, "v is the slip rate, and no parameter that could have a value"),
     (lambda u, v, a: a + v, {"a": "1 parsnip"}, "'parsnip' is not a unit"),
     (lambda u, v, a: a + v, {"a": None}, "'a' must be a number"),
+    (lambda u, v, a: a + v, {"a": "0.7"}, "'0.7' is not a number with a unit: write a number without quotes"),
     (3, {}, "it is not a Python function"),
     ("0.3 + v", {}, "it is a text: a formula as text makes a law with FromExpression"),
     (HyperbolicRate, {}, "HyperbolicRate: it is a class: a law is made with its parameters, HyperbolicRate(...)"),

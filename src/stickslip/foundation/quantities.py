@@ -214,7 +214,18 @@ class Named(NamedTuple):
         try:
             return cls(name, *si_base(value if isinstance(value, str) else as_text(value)))
         except InputError as error:
-            raise InputError(f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None
+            cure = ": write a number without quotes" if _is_number_text(value) else ""
+            raise InputError(
+                f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}{cure}"
+            ) from None
+
+
+def _is_number_text(value: Any) -> bool:
+    """Return True for a text that is a number without a unit, such as "0.7"."""
+    try:
+        return isinstance(value, str) and math.isfinite(float(value))
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)

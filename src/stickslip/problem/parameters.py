@@ -133,7 +133,7 @@ def _of_law(law: Any, place: str, put: Callable[[Any], Problem]) -> Iterator[Par
                 yield Parameter(f"{place}.{name}[{i}]", one, declared.item, _in_series(law, name, i, put))
         elif isinstance(declared, NamedNumbers):
             for i, one in enumerate(value):
-                number = Quantity(one.unit or "1", "")
+                number = Quantity(one.unit or "1", "parameter of the formula")
                 yield Parameter(f"{place}.{declared.key}.{one.name}", one.value, number, _in_names(law, name, i, put))
         elif isinstance(declared, Part):
             yield from _of_law(value, f"{place}.{name}", _in_field(law, name, put))

@@ -303,13 +303,13 @@ class Problem:
         return self.initial_load if self.initial_load is not None else self.strength + self.excess
 
 
-def check_problem(who: str, problem: Any) -> None:
+def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:
     """Raise InputError, beginning with `who`, if what should be a problem is none; hint at what was probably meant."""
     if isinstance(problem, Problem):
         return
     hint = ""
     if isinstance(problem, str):
-        hint = "; a scenario is read by load_scenario, and has a problem"
+        hint = "; a bundled scenario has one: ss.scenarios[name].problem"
     elif isinstance(getattr(problem, "problem", None), Problem):
         hint = "; take its .problem"
-    raise InputError(f"{who}: problem must be a Problem, got {shown(problem)}{hint}")
+    raise InputError(f"{who}: problem must be {wanted}, got {shown(problem)}{hint}")

@@ -25,7 +25,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | 
     if isinstance(source, str | Path):
         return load_scenario(source)
     if not isinstance(source, Scenario):
-        check_problem(who, source)
+        check_problem(who, source, "a Problem, a scenario, or the name of one")
     return source
 
 

@@ -10,6 +10,7 @@ from typing import Any, Literal, overload
 import numpy as np
 
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
@@ -33,7 +34,7 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
-    **parameters: float | str,
+    **parameters: float | str | WithUnit,
 ) -> FromExpression: ...
 @overload
 def FromFunction(
@@ -43,7 +44,7 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
-    **parameters: float | str,
+    **parameters: float | str | WithUnit,
 ) -> Callable[[Callable[..., Any]], FromExpression]: ...
 def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
     """Make a friction law from a Python function of slip u, of slip rate v, or of both, with named parameters.
