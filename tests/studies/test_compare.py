@@ -104,7 +104,7 @@ def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
         (("fig6-slab", "fig6-slap"), {}, "did you mean 'fig6-slab'"),
         (("fig6-slab", done), {"until": 3.0}, "has been run: leave until and rtol away"),
         (FIG6, {"names": ["one"]}, "names: 2 are needed, got 1"),
-        (FIG6, {"until": -1.0}, "until must be a positive time"),
+        (FIG6, {"until": -1.0}, "until must be greater than 0 s, got -1"),
         (FIG6, {"rtol": 1.0}, "rtol must be at most"),
         (FIG6, {"event": 1}, "fig6-block-reconstructed has no slip event 1: it has 1"),
     ):

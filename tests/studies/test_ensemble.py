@@ -308,10 +308,10 @@ BAD = [
     ({"size": 0.0}, "size must lie between 1e-15 and 0.01, got 0.0"),
     ({"size": math.nan}, "size must lie between"),
     ({"seed": -1}, "seed must be a whole number, 0 or more, got -1"),
-    ({"duration": 0.0}, "duration must be a positive time"),
-    ({"rtol": 1.0}, "rtol must lie between"),
+    ({"duration": 0.0}, "duration must be greater than 0 s, got 0"),
+    ({"rtol": 1.0}, "rtol must be at most 0.01, got 1"),
     ({"max_events": 0}, "max_events must be a whole number above 0"),
-    ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
+    ({"event_rate": -1.0}, "event_rate must be at least 0 m/s, got -1"),
     ({"problem": ss.Problem(SLAB, STATE, initial_load=0.0, initial_state=1.0)}, "neither a strength nor an initial load"),
 ]
 

@@ -125,7 +125,8 @@ class Comparison(Study):
 
     def _shown_table(self) -> pd.DataFrame:
         """Return the table with one column for each run and with units."""
-        with_units = {name: f"{name} ({unit})" for name, (unit, _) in COLUMNS.items() if unit}
+        units = {name: "Pa or N" if unit == "load" else unit for name, (unit, _) in COLUMNS.items()}
+        with_units = {name: f"{name} ({unit})" for name, unit in units.items() if unit}
         return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
 
 

@@ -17,7 +17,6 @@ import numpy as np
 import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
-from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, Series
@@ -284,8 +283,9 @@ def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tup
 
 def _checked(sizes: Sequence[float | str | WithUnit] | WithUnit) -> Floats:
     times = np.sort(SIZES.check("regularise", "sizes", sizes))[::-1]
-    if not (np.diff(times) < 0.0).all():
-        raise InputError(f"regularise: sizes must be three or more different positive times in s, got {shown(list(times))}")
+    twice = times[1:][np.diff(times) == 0.0]
+    if twice.size:
+        raise InputError(f"regularise: sizes must be different times, got {twice[0]:g} s twice")
     return times
 
 
