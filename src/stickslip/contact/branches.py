@@ -24,7 +24,7 @@ _POINTS_PER_DECADE = 64
 """Density of the geometric part of the search grid: laws vary smoothly with the logarithm of the slip rate."""
 _EVEN_POINTS, _EVEN_REACH = 2001, 10.0
 """Number of points of the evenly spaced part of the search grid, and its end as a multiple of the fastest scale."""
-_BELOW, _ABOVE = 1e-8, 1e4
+_BELOW, ABOVE = 1e-8, 1e4
 """The search grid extends from this multiple of the slowest scale of the contact to this multiple of the fastest one."""
 _ROUNDING = 1e-9
 """Relative distance by which a fold found from rounded values of g' may lie outside its proven interval."""
@@ -160,7 +160,7 @@ def search_grid(g: Resistance) -> NDArray[np.float64]:
     scale, and the law's knots in slip rate. Each knot is sampled from both sides, and each interval between two knots in its
     middle, so that none is overlooked.
     """
-    low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
+    low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * ABOVE)
     knots = np.array([0.0, *g.rate_knots])
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
     # the geometric points lie too far apart for a law that oscillates in v up to its fastest scale
