@@ -133,7 +133,7 @@ def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable
             lines.append(f"# {name} = {shown}  # {describe(entry)}".replace("=   #", "=  #"))
     columns = columns_of(table, kind)
     if columns:
-        lines.append(f'# file = "points.csv"  # instead of lists: a header line, then columns {", ".join(columns)} in SI')
+        lines.append(f'# file = "points.csv"  # instead of lists: columns {", ".join(columns)}, in SI or with units as in (mm/s)')
     return lines + inner
 
 
