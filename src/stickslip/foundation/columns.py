@@ -40,7 +40,7 @@ COLUMNS: Mapping[str, Column] = {
     "far_stress": Column("Pa", signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, - and _ make no difference."""
-PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")  # noqa: RUF001 - a dash that spreadsheets write
+PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 DECIMAL_COMMA = (
     "decimal commas are not read, write points: `tr , . < OLD.csv > NEW.csv` replaces them, "
@@ -49,7 +49,7 @@ DECIMAL_COMMA = (
 """The cure for decimal commas in a file whose columns are not separated by commas."""
 _COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 _HEADING = re.compile(r"\s*(?P<name>[^()\[\]]*?)\s*(?:[(\[]\s*(?P<unit>[^()\[\]]*?)\s*[)\]])?\s*")
-_SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1", "²": "2", "³": "3", "−": "-"})  # noqa: RUF001
+_SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1", "²": "2", "³": "3", "−": "-"})
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?\d)")
 
 

@@ -108,18 +108,19 @@ class Points:
         if variable not in self.has:
             hint = nearest(str(variable), self.has)
             raise InputError(f"{self.name}: the points have no {ascii(variable)[:40]}; {hint}")
-        return replace(self, **{name: None for name in ALONG if name != variable})
+        return replace(self, slip=None) if variable == "slip_rate" else replace(self, slip_rate=None)
 
     @property
     def places(self) -> Floats:
         """The slips (m) or the slip rates (m/s) of points that have one of the two, shape (n,)."""
         (variable,) = self.along().has
-        return np.asarray(getattr(self, variable))
+        return np.asarray(self.slip if variable == "slip" else self.slip_rate)
 
-    def sorted(self) -> Points:
-        """Return the points in ascending order of slip, or of slip rate if they have no slip; equal ones keep their order."""
-        order = np.argsort(getattr(self, self.has[0]), kind="stable")
-        return replace(self, friction=self.friction[order], **{name: getattr(self, name)[order] for name in self.has})
+    @property
+    def variables(self) -> tuple[Floats, Floats]:
+        """The slips (m) and the slip rates (m/s) of all points, zeros where they are not given."""
+        zeros = np.zeros(len(self))
+        return (zeros if self.slip is None else self.slip), (zeros if self.slip_rate is None else self.slip_rate)
 
     def __len__(self) -> int:
         return len(self.friction)
