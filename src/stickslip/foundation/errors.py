@@ -21,7 +21,7 @@ def warn(message: str) -> None:
     package, level, frame = __name__.partition(".")[0], 1, inspect.currentframe()
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
         frame, level = frame.f_back, level + 1
-    warnings.warn(InputWarning(message), stacklevel=level - 1)
+    warnings.warn(InputWarning(message), stacklevel=level)
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str:

@@ -59,6 +59,8 @@ def fit(
       stickslip fit data.csv --law exponential-stribeck --fix viscosity=0
       stickslip fit data.csv --smooth auto --out mine.toml --body slab
     """
+    from stickslip import friction
+    from stickslip.cli.output.fits import show_result
     from stickslip.friction import Points
 
     check_target(out, "--out", (".toml",))
@@ -69,7 +71,13 @@ def fit(
 
         template(body)  # refuses an unknown name before the work
     points = Points.read(data)
-    result = _result(points, law, smooth, monotone, along, _values(fix, "--fix"), _values(start, "--start"))
+    if law is not None:
+        result: Fit | Smooth = friction.fit(points, law, start=_values(start, "--start"), fixed=_values(fix, "--fix"))
+    elif smooth is not None:
+        result = friction.smooth(points, _strength(smooth), monotone=monotone, along=along)
+    else:
+        result = _best(points)
+    show_result(result)
     text = None if out is None else _scenario(result, body, data)
     if text is not None:
         _print_uniqueness(result, text, str(out))
@@ -108,31 +116,16 @@ def _values(given: Sequence[str] | None, name: str) -> dict[str, str]:
     return found
 
 
-def _result(
-    points: Points,
-    law: str | None,
-    smooth: str | None,
-    monotone: bool,
-    along: str | None,
-    fixed: dict[str, str],
-    start: dict[str, str],
-) -> Fit | Smooth:
-    """Return the fit or the smooth curve that is wanted, and print it; without one, print a comparison and return the best fit."""
+def _best(points: Points) -> Fit:
+    """Fit all laws that suit the points, print a comparison, and return the best fit. Raises InputError if there is none."""
     from stickslip import friction
-    from stickslip.cli.output.fits import show_comparison, show_result
+    from stickslip.cli.output.fits import show_comparison
 
-    if law is not None:
-        result: Any = friction.fit(points, law, start=start, fixed=fixed)
-    elif smooth is not None:
-        result = friction.smooth(points, _strength(smooth), monotone=monotone, along=along)
-    else:
-        fits = friction.fit_each(points)
-        if not fits:
-            raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
-        show_comparison(points, fits)
-        return fits[0]
-    show_result(result)
-    return result  # type: ignore[no-any-return]
+    fits = friction.fit_each(points)
+    if not fits:
+        raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
+    show_comparison(points, fits)
+    return fits[0]
 
 
 def _strength(text: str) -> Any:

@@ -29,10 +29,10 @@ def show_result(result: Fit | Smooth) -> None:
 
 
 def show_comparison(points: Points, fits: Sequence[Fit]) -> None:
-    """Print the fits of several laws to the same points, best first, and the numbers of the best one."""
+    """Print the fits of several laws to the same points, best first."""
     screen = console()
     screen.print(clean(f"{points.name}: {len(points)} points along {' and '.join(points.has)}"), style="bold")
-    shown = table("law", "parameters", "residual", "BIC above best", "noticed", numbers=False)
+    shown = table("law", "parameters", "residual", "BIC above best", "noticed")
     for one in fits:
         known = f"{len(one.uncertainty)}"
         noticed = "; ".join(one.notes[:1]) + (f" (and {len(one.notes) - 1} more)" if len(one.notes) > 1 else "")
@@ -42,7 +42,6 @@ def show_comparison(points: Points, fits: Sequence[Fit]) -> None:
         screen,
         "a difference of BIC above 10 is decisive. The best of several wrong laws is wrong too: see what was noticed, and a figure",
     )
-    show_result(fits[0])
 
 
 def show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -24,7 +25,7 @@ MOST_STARTS = 600
 """Largest number of starts; of more, every second, third and so on is taken."""
 FARTHEST = 1e6
 """Factor by which a slip or a slip rate of the law may lie beyond all starts; farther out it has no effect on the points."""
-FOLLOWED = 6
+FOLLOWED = 4
 """Number of starts, the best ones, from which the search is carried to its end."""
 FEW = 2000
 """Number of points with which starts are compared."""
@@ -43,19 +44,20 @@ class Model:
     free: list[str]
     points: Points
 
-    @property
+    @cached_property
     def known(self) -> dict[str, Leaf]:
         """All parameters of the law."""
         return leaves(self.law)
 
+    @cached_property
     def logarithmic(self) -> NDArray[np.bool_]:
-        """Return for each free parameter whether the search works on its logarithm."""
+        """Whether the search works on the logarithm of each free parameter."""
         return np.array([self.known[name].is_scale for name in self.free], bool)
 
     def bounds(self) -> tuple[Floats, Floats]:
         """Return the smallest and the largest values of the searched numbers."""
         low, high = np.full(len(self.free), -np.inf), np.full(len(self.free), np.inf)
-        for i, (name, log) in enumerate(zip(self.free, self.logarithmic(), strict=True)):
+        for i, (name, log) in enumerate(zip(self.free, self.logarithmic, strict=True)):
             sizes, least = _sizes(self.known[name], self.points), self.known[name].declared.at_least
             if log:
                 low[i], high[i] = math.log(min(sizes) / FARTHEST), math.log(max(sizes) * FARTHEST)
@@ -65,13 +67,13 @@ class Model:
 
     def values(self, searched: Floats) -> dict[str, float]:
         """Return the parameters by name from the searched numbers."""
-        natural = np.where(self.logarithmic(), np.exp(np.where(self.logarithmic(), searched, 0.0)), searched)
+        natural = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, searched, 0.0)), searched)
         return dict(zip(self.free, natural.tolist(), strict=True))
 
     def searched(self, values: Mapping[str, float]) -> Floats:
         """Return the searched numbers from parameters by name."""
         return np.array(
-            [math.log(values[name]) if log else values[name] for name, log in zip(self.free, self.logarithmic(), strict=True)]
+            [math.log(values[name]) if log else values[name] for name, log in zip(self.free, self.logarithmic, strict=True)]
         )
 
     def at(self, searched: Floats) -> FrictionLaw:
@@ -85,7 +87,7 @@ class Model:
     def jacobian(self, searched: Floats) -> Floats:
         """Return the derivatives of `differences` with respect to the searched numbers, shape (n, number of free parameters)."""
         plain = slopes(self.at(searched), self.free, *self.points.variables)
-        return np.nan_to_num(plain) * np.where(self.logarithmic(), list(self.values(searched).values()), 1.0)
+        return np.nan_to_num(plain) * np.where(self.logarithmic, list(self.values(searched).values()), 1.0)
 
 
 def search(model: Model, start: Mapping[str, float]) -> tuple[float, dict[str, float]]:
@@ -100,10 +102,10 @@ def search(model: Model, start: Mapping[str, float]) -> tuple[float, dict[str, f
     begun = sorted((one for one in begun if np.isfinite(one[0])), key=lambda one: one[0])
     best: tuple[float, Floats] = (math.inf, model.searched({name: leaf.value for name, leaf in model.known.items()}))
     for _, one in begun[:FOLLOWED]:
-        found = least_squares(thin.differences, one, thin.jacobian, thin.bounds(), x_scale="jac", max_nfev=60)
+        found = least_squares(thin.differences, one, thin.jacobian, thin.bounds(), x_scale="jac", xtol=1e-6, max_nfev=60)
         if found.cost < best[0]:
             best = found.cost, found.x
-    tight = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "max_nfev": 300}
+    tight = {"xtol": 1e-13, "ftol": 1e-13, "gtol": 1e-13, "max_nfev": 200}
     found = least_squares(model.differences, best[1], model.jacobian, model.bounds(), x_scale="jac", **tight)
     idle = ~np.any(found.jac, axis=0)  # these have no effect, and may have gone anywhere
     return 2.0 * float(found.cost), model.values(np.where(idle, begun[0][1], found.x))

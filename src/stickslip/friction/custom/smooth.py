@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 
 SCALES = ("auto", "linear", "log")
 """Scales of slip or slip rate in which points can be smoothed."""
+LARGEST = 1e6
+"""Largest strength: it makes a straight line of any points."""
 FINEST = 257
 """Largest number of points by which the law follows the smooth curve."""
 FOLLOWS = 0.01
@@ -102,7 +104,7 @@ class Smooth:
     def notes(self) -> list[str]:
         """Sentences on what the result does not say."""
         found = ["a reversal that survives depends on the strength: try a stronger and a weaker one"] if self.reversals[1] else []
-        if self.freedom > 0.5 * len(self._basis.right):
+        if self.freedom > 0.5 * self._basis.design.shape[1]:
             found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
         return found
 
@@ -208,8 +210,8 @@ def _checked(strength: Any) -> float | None:
     """Return a given strength as a number, or None for "auto". Raises InputError."""
     if isinstance(strength, str) and strength == "auto":
         return None
-    if not is_number(strength) or not 0.0 < float(strength) <= 1e12:
-        raise InputError(f"smooth: strength must be 'auto' or a number above 0, up to 1e12, got {shown(strength)}")
+    if not is_number(strength) or not 0.0 < float(strength) <= LARGEST:
+        raise InputError(f"smooth: strength must be 'auto' or a number above 0, up to 1e6, got {shown(strength)}")
     return float(strength)
 
 
