@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pint
 import pytest
 
 from stickslip import InputError
@@ -30,9 +31,8 @@ HEADINGS = [
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 def test_headings_carry_units_under_every_separator(tmp_path: Path, heading: str, factor: float, separator: str) -> None:
     path = tmp_path / "points.csv"
-    path.write_text(
-        f"# from the rig\nstep{separator}Friction coefficient (-){separator}{heading}\n1{separator}.5{separator}0\n2{separator}.4{separator}3\n"
-    )
+    rows = (("step", "Friction coefficient (-)", heading), ("1", ".5", "0"), ("2", ".4", "3"))
+    path.write_text("# from the rig\n" + "".join(f"{separator.join(row)}\n" for row in rows))
     read = Points.read(path)
     np.testing.assert_allclose(read.places, [0.0, 3.0 * factor], rtol=1e-15)
     assert read.friction.tolist() == [0.5, 0.4]
@@ -53,6 +53,14 @@ def test_a_file_a_frame_a_mapping_points_and_lists_make_the_same_law(tmp_path: P
     points = Points(np.array([0.7, 0.6, 0.4]), None, np.array([0.0, 0.001, 0.02]))
     for source in (path, str(path), frame, dict(frame), points, wanted, PiecewiseLinearRate((0, 0.001, 0.02), (0.7, 0.6, 0.4))):
         assert FromTable(source) == wanted
+
+
+def test_arrays_with_a_unit_of_pint_are_converted() -> None:
+    registry = pint.UnitRegistry()
+    read = Points.read({"v": registry.Quantity(np.array([1.0, 2.0]), "mm/s"), "mu": [0.5, 0.4]})
+    np.testing.assert_allclose(read.places, [1e-3, 2e-3], rtol=1e-15)
+    with pytest.raises(InputError, match="slip_rate must be a column of numbers"):
+        Points.read({"v": registry.Quantity(np.array([1.0, 2.0]), "kg"), "mu": [0.5, 0.4]})
 
 
 def test_a_plain_heading_wins_over_another_name_for_the_same() -> None:

@@ -57,7 +57,7 @@ def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) 
 
 
 def test_the_score_is_that_of_leaving_points_out() -> None:
-    """In a design whose points all have the same leverage the score of generalised and of ordinary cross-validation agree to 10 %."""
+    """Points have nearly the same leverage here: generalised and ordinary cross-validation agree to 10 %."""
     x, y = drawn(40, 3)
     strength, errors = 1e-5, []
     for i in range(len(x)):
@@ -194,7 +194,7 @@ def test_the_result_says_what_it_did_as_text_and_html() -> None:
         assert part in text
     assert "note: a reversal that survives depends on the strength" in text
     html = found._repr_html_()
-    assert "<td>residual</td>" in html
+    assert "residual</th>" in html
     assert "-&gt;" in html
 
 

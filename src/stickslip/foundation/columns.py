@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.conversion import has_unit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.units import si_factor, split_quantity
 
@@ -109,8 +110,11 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     chosen = find([str(heading) for heading in headings], wanted, place)
     columns = {}
     for name, (i, factor) in chosen.items():
+        given = table[headings[i]]
         try:
-            numbers = np.asarray(table[headings[i]], dtype=float)
+            if has_unit(given):  # a unit of its own outweighs one in the heading
+                given, factor = given.to(COLUMNS[name].unit).magnitude, Fraction(1)
+            numbers = np.asarray(given, dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"{place}: {name} must be a column of numbers") from None
         if numbers.ndim != 1:

@@ -9,6 +9,7 @@ from dataclasses import MISSING
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import clean
 from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import StateVariable
@@ -105,12 +106,7 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
     if former.state is not None:  # type: ignore[attr-defined] # registered
         example["initial"] = {"excess": 0.0}
     example |= {"title": about[0], "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
-    return _written(example, "".join(f"# {_printable(line)}".rstrip() + "\n" for line in about))
-
-
-def _printable(line: str) -> str:
-    """Return a line with spaces in place of control characters, which a comment must not have."""
-    return "".join(letter if letter.isprintable() else " " for letter in line)
+    return _written(example, "".join(f"# {clean(line)}".rstrip() + "\n" for line in about))
 
 
 def _listed(table: dict[str, Any]) -> dict[str, Any]:

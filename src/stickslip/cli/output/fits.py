@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.show import clean, console, print_sentences, table
+from stickslip.cli.output.show import console, print_sentences, table
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import clean
 
 if TYPE_CHECKING:
     from stickslip.friction import Fit, Points, Smooth

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
-from stickslip.foundation.units import si_base, split_quantity, to_si
 from stickslip.friction.law import FrictionLaw
 
 Floats = NDArray[np.float64]
@@ -79,7 +78,7 @@ def _example(law: type[FrictionLaw]) -> FrictionLaw:
             raise InputError(f"fit: {law.kind} is given by points: use smooth, or FromTable for exact interpolation")
         if isinstance(declared, NamedNumbers):
             raise InputError(f"fit: {law.kind} has parameters of your own: give the law itself, with values to begin with")
-    return law(**{name: si_base(value)[0] if isinstance(value, str) else value for name, value in law.example.items()})
+    return law(**law.example)
 
 
 def leaves(law: FrictionLaw, inner: str = "", outer: str = "") -> dict[str, Leaf]:
@@ -138,27 +137,13 @@ def slopes(law: FrictionLaw, names: list[str], u: Floats, v: Floats) -> Floats:
     return result
 
 
-def number_of(value: Any, leaf: Leaf, where: str) -> float:
-    """Return a value for a parameter, given as a number in SI or as a text with a unit. Raises InputError."""
-    if isinstance(value, str):
-        parts = split_quantity(value)
-        try:
-            number = float(value) if parts is None else to_si(*parts, leaf.declared.unit)
-        except ValueError as error:  # an InputError too
-            said = f": {error}" if isinstance(error, InputError) else ""
-            raise InputError(f"{where} must be a number in {leaf.declared.label}, got {ascii(value)[:60]}{said}") from None
-        value = number
-    owner, _, name = where.rpartition(": ")
-    return leaf.declared.check(owner, name, value)
-
-
 def numbers_of(given: Mapping[str, Any] | None, known: Mapping[str, Leaf], what: str) -> dict[str, float]:
-    """Return given values of parameters as numbers in SI. Raises InputError for unknown names and wrong values."""
+    """Return given values of parameters, numbers or texts with a unit, in SI. Raises InputError for unknown names and values."""
     found = {}
     if given is not None and not isinstance(given, Mapping):
         raise InputError(f"fit: {what} must be a mapping of names to values, got {shown(given)}")
     for name, value in (given or {}).items():
         if name not in known:
             raise InputError(f"fit: {what} {ascii(name)[:60]} is no parameter of this law; {nearest(str(name), known)}")
-        found[name] = number_of(value, known[name], f"fit: {what} {name}")
+        found[name] = known[name].declared.check("fit", f"{what} {name}", value)
     return found

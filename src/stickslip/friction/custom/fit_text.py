@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from html import escape
+
+from stickslip.foundation.formatting import html_table
 
 Row = tuple[str, str, str]
 """Name, value and unit or meaning, as text."""
@@ -36,6 +37,4 @@ def text_of(title: str, rows: Sequence[Row], notes: Sequence[str]) -> str:
 
 def html_of(title: str, rows: Sequence[Row], notes: Sequence[str]) -> str:
     """Return a result as HTML for notebooks."""
-    lines = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
-    said = "".join(f"<li>{escape(note)}</li>" for note in notes)
-    return f"<b>{escape(title)}</b><table>{lines}</table>" + (f"<ul>{said}</ul>" if said else "")
+    return html_table(title, [*rows, *(("note", note) for note in notes)])

@@ -93,7 +93,8 @@ class Basis:
         rows = np.zeros((0, k + 1))
         for first in range(0, len(self.values), ROWS):
             part = slice(first, first + ROWS)
-            rows = np.linalg.qr(np.vstack((rows, np.column_stack((self.design[part].toarray(), self.values[part])))), mode="r")
+            more = np.column_stack((self.design[part].toarray(), self.values[part]))
+            rows = np.asarray(np.linalg.qr(np.vstack((rows, more)), mode="r"))
         return rows[:k, :k], rows[:k, k], float(np.sum(rows[k:, k] ** 2))
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -46,9 +46,9 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         source: Any = None,
         /,
         *,
-        friction: Sequence[float] | None = None,
-        slip: Sequence[float] | None = None,
-        rate: Sequence[float] | None = None,
+        friction: Iterable[Any] | None = None,
+        slip: Iterable[Any] | None = None,
+        rate: Iterable[Any] | None = None,
         counts: Literal["net", "path"] = "path",
         memory: Literal["all", "since-arrest"] = "all",
     ) -> None:
