@@ -35,7 +35,7 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "contract"),
+        ("formula", "contract", "noise"),
         ("law",),
         ("families", "composite", "piecewise"),
         ("laws", "custom"),

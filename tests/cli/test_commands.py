@@ -24,7 +24,7 @@ from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from tests.limits import limit_of_process
 
-COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
+COMMANDS = ["run", "check", "new", "fit", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)

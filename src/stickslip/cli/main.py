@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from inspect import cleandoc
 from typing import Annotated, Any
@@ -16,12 +17,13 @@ from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
 from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.export import export
+from stickslip.cli.commands.fit import fit
 from stickslip.cli.commands.new import new
 from stickslip.cli.commands.paper import paper
 from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
 from stickslip.cli.commands.sweep import sweep
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, InputWarning
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
 
@@ -33,6 +35,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip new slab > mine.toml   a commented scenario to start from
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
+  stickslip fit points.csv         make a law from measured friction
   stickslip compare A B            runs side by side: a table, a figure
   stickslip sweep mine.toml        many runs: maps over its numbers
   stickslip analogy                where a block can replace a slab
@@ -43,7 +46,7 @@ slips, how it stops, and whether the answer is even unique.
 """
 
 COMMANDS: dict[str, Callable[..., None]] = {
-    command.__name__: command for command in (run, check, new, compare, sweep, analogy, export, regularise, ensemble, paper)
+    command.__name__: command for command in (run, check, new, fit, compare, sweep, analogy, export, regularise, ensemble, paper)
 }
 """The functions of all commands, by name."""
 STYLE: dict[str, Any] = {
@@ -112,7 +115,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _code(arguments: Sequence[str] | None) -> int:
     try:
-        code = app(arguments, prog_name="stickslip", standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", InputWarning)
+            warnings.showwarning = _show_warning
+            code = app(arguments, prog_name="stickslip", standalone_mode=False)
     except InputError as error:
         return _fail(str(error))
     except TyperException as error:
@@ -124,6 +130,14 @@ def _code(arguments: Sequence[str] | None) -> int:
     if code == 130:
         return _fail("interrupted", code=130)
     return code if isinstance(code, int) else 0
+
+
+def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: Any, **__: Any) -> None:
+    """Show what to know about the input as one line on standard error, and other warnings as Python does."""
+    if issubclass(category, InputWarning):
+        typer.echo(f"stickslip: note: {message}", err=True)
+    else:
+        sys.stderr.write(warnings.formatwarning(message, category, filename, lineno))
 
 
 def _fail(message: str, code: int = 2) -> int:

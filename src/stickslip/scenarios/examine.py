@@ -14,6 +14,9 @@ from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
+from stickslip.friction.composite import LawOfParts
+from stickslip.friction.noise import noise_in
+from stickslip.friction.piecewise import PiecewiseLaw
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
@@ -215,7 +218,7 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
 
 
 def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
-    problem, found = scenario.problem, []
+    problem, found = scenario.problem, _noise(scenario.problem.friction, contact)
     steady = math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
@@ -227,6 +230,14 @@ def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
         found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
     return found
+
+
+def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
+    """Return a warning for a law, or a part of one, that joins noisy points exactly."""
+    parts = law.parts.values() if isinstance(law, LawOfParts) else (law,)
+    noises = [noise_in(*part.points) for part in parts if isinstance(part, PiecewiseLaw)]
+    folds = f"they make {len(contact.folds)} folds" if contact.folds else ""
+    return [noise.warning(folds) for noise in noises if noise is not None]
 
 
 def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -> list[str]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from stickslip.cli.options import AXIS, ScenarioName, option
 from stickslip.cli.output.files import announce, check_target, drawing, write_files
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, InputWarning
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +46,9 @@ def check(
     from stickslip.scenarios.scenario import load_scenario
 
     check_target(figure, "--figure")
-    loaded, axes = load_scenario(scenario), map_axes or []
+    with warnings.catch_warnings(action="ignore", category=InputWarning):  # the examination has these
+        loaded = load_scenario(scenario)
+    axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
     drawn = None if figure is None else _map(loaded.problem, axes) if axes else _set(loaded.problem)
