@@ -1,15 +1,19 @@
-"""Readable names for the cases of parametrised tests."""
+"""Readable names for the cases of parametrised tests, and no deadline for drawn ones."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 import numpy as np
+from hypothesis import settings
 
 import stickslip as ss
 
 LONGEST = 60
 """Characters of a name."""
+
+settings.register_profile("stickslip", deadline=None)  # a slow machine is no failure
+settings.load_profile("stickslip")
 
 
 def pytest_make_parametrize_id(val: object) -> str | None:

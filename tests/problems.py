@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 import stickslip as ss
 from stickslip.engine.state.layout import Store
+
+Floats = NDArray[np.float64]
 
 DENSITY, SPEED, THICKNESS, NORMAL = 2800.0, 3500.0, 1e4, 1e8
 IMPEDANCE, MODULUS, ROUND = DENSITY * SPEED, DENSITY * SPEED**2, 2 * THICKNESS / SPEED
@@ -47,3 +52,11 @@ def scaled_rate(store: Store, factor: float) -> Store:
     wrong = store._replace(pieces=store.pieces.copy())
     wrong.rate[:] *= factor
     return wrong
+
+
+def measured(
+    law: ss.friction.FrictionLaw, slip: Floats | None, rate: Floats | None, noise: float, seed: int = 0
+) -> ss.friction.Points:
+    """Return points of a law, at slips (m), slip rates (m/s) or both, with normal noise of this standard deviation."""
+    friction = law.coefficient(0.0 if slip is None else slip, 0.0 if rate is None else rate)
+    return ss.friction.Points(friction + noise * np.random.default_rng(seed).standard_normal(friction.shape), slip, rate)

@@ -51,10 +51,18 @@ def test_arrays_are_held_to_the_rules_of_single_numbers(quantity: Quantity, valu
 @pytest.mark.parametrize(
     ("quantity", "value", "message"),
     [
-        (Quantity("m", ""), True, "must be a number in m, got True"),
-        (Quantity("m", ""), "1", "must be a number in m, got '1'"),
+        (Quantity("m", ""), True, 'must be a number in m or a text with a unit such as "10 m", got True'),
+        (
+            Quantity("m", ""),
+            "1",
+            "must be a number in m or a text with a unit such as \"10 m\", got '1': write a number without quotes",
+        ),
         (Quantity("m", ""), math.nan, "must be finite, got nan"),
-        (Quantity("m", ""), -(10**400), "must be finite, got -inf"),
+        (
+            Quantity("m", ""),
+            -(10**400),
+            'must be a number in m or a text with a unit such as "10 m", got a whole number beyond 1e300',
+        ),
         (Quantity("1", "", whole=True), 1.5, "must be a whole number up to 16, got 1.5"),
         (Quantity("1", "", above=0), 0.0, r"must be greater than 0 \(a pure number\), got 0"),
         (Quantity("m", "", at_least=1), 0.5, "must be at least 1 m, got 0.5"),

@@ -1,5 +1,7 @@
 """Text with a unit to SI: exact, and closed to anything that is not a number with a unit."""
 
+import random
+import subprocess
 import sys
 from fractions import Fraction
 
@@ -7,7 +9,8 @@ import pytest
 
 import stickslip as ss
 from stickslip import InputError
-from stickslip.foundation.units import COMMON_UNITS, si_factor, split_quantity, to_si
+from stickslip.foundation.unit_table import UNITS, tabulated
+from stickslip.foundation.units import COMMON_UNITS, _looked_up, si_factor, split_quantity, to_si
 
 
 @pytest.mark.parametrize(
@@ -79,10 +82,40 @@ def test_other_units_are_refused(unit: str, si: str, message: str) -> None:
     assert str(caught.value) == message
 
 
-def test_pint_is_not_imported_before_a_unit_is_met() -> None:
-    import subprocess
+@pytest.mark.parametrize("name", UNITS)
+def test_every_name_of_the_table_is_what_the_library_of_units_says(name: str) -> None:
+    assert tabulated(name) == _looked_up(name, "")
 
-    code = "import sys, stickslip.scenarios.scenario as s, stickslip.scenarios.templates; sys.exit('pint' in sys.modules)"
+
+def test_units_made_of_several_names_are_what_the_library_of_units_says() -> None:
+    draw = random.Random(1)
+    names = list(UNITS)
+    for _ in range(500):
+        factors = [draw.choice(names) + draw.choice(["", "", "^2", "**-1", " ^ 3", "^-9"]) for _ in range(draw.randint(1, 4))]
+        unit = (
+            draw.choice(["", "1/", "1/ "])
+            + factors[0]
+            + "".join(draw.choice([" ", "*", "/", " * ", " / "]) + one for one in factors[1:])
+        )
+        assert tabulated(unit) == _looked_up(unit, ""), unit
+
+
+@pytest.mark.parametrize("unit", COMMON_UNITS)
+def test_common_units_need_no_library_of_units(unit: str) -> None:
+    assert tabulated(unit) is not None
+
+
+@pytest.mark.parametrize("unit", ["", "1", "m*", "* m", "m^10", "m^", "m//s", "m (s)", "parsnip", "psi", "km parsnip", "hbar"])
+def test_the_table_leaves_all_else_to_the_library_of_units(unit: str) -> None:
+    assert tabulated(unit) is None
+
+
+def test_bundled_scenarios_are_read_without_the_library_of_units() -> None:
+    code = (
+        "import sys; from stickslip.scenarios.library import names; from stickslip.scenarios.scenario import load_scenario\n"
+        "for name in names(): load_scenario(name)\n"
+        "sys.exit('pint' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

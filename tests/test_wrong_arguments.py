@@ -28,60 +28,91 @@ def refused(call: Callable[[], Any], message: str) -> None:
 
 
 NO_PROBLEM = [
-    ("x", "got 'x'; a scenario is read by load_scenario, and has a problem"),
     (SLAB, "got ElasticSlab"),
     (None, "got None"),
     (ss.Problem, "got the class Problem, not an instance of it: call it"),
+]
+NO_SCENARIO = [
+    ("x", "got 'x'; a bundled scenario has one: ss.scenarios[name].problem"),
     (ss.load_scenario("cycles-block"), "got Scenario; take its .problem"),
 ]
-TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
+TAKE_A_SCENARIO: dict[str, Callable[[Any], Any]] = {
     "simulate": lambda problem: ss.simulate(problem, 1.0),
     "catalogue": lambda problem: ss.catalogue(problem, 1.0),
     "uniqueness": lambda problem: ss.uniqueness(problem),
+}
+TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
     "critical_value": lambda problem: ss.studies.critical_value(problem, "alpha"),
     "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
     "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
     "analogy": lambda problem: ss.studies.analogy(problem, 1.0, None, None),  # type: ignore[arg-type] # refused before
-    "parameter": lambda problem: ss.parameters.parameter(problem, "alpha"),
-    "parameters": lambda problem: list(ss.parameters.parameters(problem)),
 }
 
 
-@pytest.mark.parametrize("name", TAKE_A_PROBLEM)
+@pytest.mark.parametrize("name", [*TAKE_A_PROBLEM, *TAKE_A_SCENARIO])
 @pytest.mark.parametrize(("given", "shown"), NO_PROBLEM, ids=lambda one: getattr(one, "__name__", None))
 def test_other_types_than_problems_are_refused(name: str, given: Any, shown: str) -> None:
+    take = TAKE_A_PROBLEM | TAKE_A_SCENARIO
+    wanted = "a Problem, a scenario, or the name of one" if name in TAKE_A_SCENARIO else "a Problem"
+    refused(lambda: take[name](given), f"{name}: problem must be {wanted}, {shown}")
+
+
+@pytest.mark.parametrize("name", TAKE_A_PROBLEM)
+@pytest.mark.parametrize(("given", "shown"), NO_SCENARIO, ids=("name", "scenario"))
+def test_scenarios_are_refused_where_they_mean_nothing(name: str, given: Any, shown: str) -> None:
     refused(lambda: TAKE_A_PROBLEM[name](given), f"{name}: problem must be a Problem, {shown}")
 
 
-def test_a_duration_is_needed() -> None:
+@pytest.mark.parametrize("name", TAKE_A_SCENARIO)
+def test_names_of_no_scenario_are_refused_with_the_nearest(name: str) -> None:
+    refused(
+        lambda: TAKE_A_SCENARIO[name]("fig6-slap"), "fig6-slap: no such file, and no bundled scenario of that name; did you mean"
+    )
+    refused(
+        lambda: TAKE_A_SCENARIO[name](Path("lost.toml")), "lost.toml: no such file, and no bundled scenario of that name; `stick"
+    )
+
+
+def test_a_problem_needs_a_duration_and_a_scenario_has_one() -> None:
     for run in (ss.simulate, ss.catalogue):
-        with pytest.raises(TypeError, match="missing 1 required positional argument: 'duration'"):
-            run(PROBLEM)  # type: ignore[call-arg]
+        refused(lambda run=run: run(PROBLEM), f"{run.__name__}: duration {A_TIME}None")  # type: ignore[misc]
+    assert ss.simulate("cycles-block").duration == ss.scenarios["cycles-block"].duration
 
 
-NOT_POSITIVE = [
-    ("10", "'10'"),
-    (None, "None"),
-    (math.nan, "nan"),
+NO_NUMBER = [
+    ("10", "'10': write a number without quotes"),
     (True, "True"),
     (float, "the class float"),
-    (0, "0"),
     ([1.0], "[1.0]"),
+    (1j, "complex"),
 ]
-"""What is no positive number, and how messages show it."""
-NO_NUMBER = [("0", "'0'"), (True, "True")]
-OR_AUTOMATIC = "must be a number, or None for automatic, got "
+"""What is no number, and how messages show it."""
+A_TIME = 'must be a number in s or a text with a unit such as "10 s", got '
 OPTIONS: list[tuple[str, Any, str]] = [
-    *(("duration", given, f"must be a positive time in s up to 1e+50, got {shown}") for given, shown in NOT_POSITIVE),
-    *(("rtol", given, f"must lie between 1e-15 and 0.01, got {shown}") for given, shown in NOT_POSITIVE),
-    *(("creep_rtol", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
-    ("creep_rtol", math.nan, "must be 0 (no leaps over creep, every round trip is run) or at most 0.01, got nan"),
-    *(("shortest_event", given, OR_AUTOMATIC + shown) for given, shown in NO_NUMBER),
-    ("shortest_event", math.nan, "must be 0 or at most 0.0571429 s (1 % of the two-way travel time), got nan s"),
+    *(
+        ("duration", given, A_TIME + shown)
+        for given, shown in [*NO_NUMBER, (None, "None"), ("10 m", "'10 m': 'm' does not convert to s")]
+    ),
+    ("duration", math.nan, "must be finite, got nan"),
+    ("duration", 0, "must be greater than 0 s, got 0"),
+    ("duration", "-1 year", "must be greater than 0 s, got -3.15576e+07 (from '-1 year')"),
+    ("duration", 1e51, "must lie within 1e+50 s, got 1e+51"),
+    *(("rtol", given, f"must be a number, got {shown}") for given, shown in NO_NUMBER),
+    ("rtol", math.nan, "must be finite, got nan"),
+    ("rtol", 0, "must be at least 1e-15 (a pure number), got 0"),
+    ("rtol", 0.1, "must be at most 0.01, got 0.1"),
+    *(("creep_rtol", given, f"must be a number, got {shown}") for given, shown in NO_NUMBER),
+    ("creep_rtol", math.nan, "must be finite, got nan"),
+    ("creep_rtol", 0.1, "must be 0 (no leaps over creep, every round trip is run) or at most 0.01, got 0.1"),
+    *(("shortest_event", given, A_TIME + shown) for given, shown in NO_NUMBER),
+    ("shortest_event", math.nan, "must be finite, got nan"),
+    ("shortest_event", "1 min", "must be 0 or at most 0.0571429 s (1 % of the two-way travel time), got 60 s"),
     *(("max_events", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, -1, 2.0, math.nan)),
     *(("max_pieces", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, 1e6)),
-    *(("checkpoint_every", given, f"must be a time in s, got {given!r}") for given in ("3", True, None, -1, math.nan)),
-    ("progress", "loud", "must be a function, got 'loud'"),
+    ("checkpoint_every", "often", 'must be a number in s or a text with a unit such as "10 s" (or "inf"), got \'often\''),
+    ("checkpoint_every", -1, "must be at least 0 s, got -1"),
+    ("checkpoint_every", math.nan, "must be finite, got nan"),
+    ("progress", "loud", "must be True or a function, got 'loud'"),
 ]
 
 
@@ -108,27 +139,39 @@ def test_files_are_named_by_texts_or_paths(tmp_path: Path) -> None:
     refused(lambda: ss.simulate(PROBLEM, 1.0, checkpoint=3), "simulate: checkpoint must be the name of a file, got 3")  # type: ignore[arg-type]
     refused(lambda: ss.catalogue(PROBLEM, 1.0, 3), "catalogue: path must be the name of a file, got 3")  # type: ignore[arg-type]
     run.to_netcdf(tmp_path / "run.nc")
-    refused(lambda: ss.resume(tmp_path / "run.nc", "10"), "resume: duration must be a positive time in s up to 1e+50, got '10'")  # type: ignore[arg-type]
+    refused(lambda: ss.resume(tmp_path / "run.nc", "10"), f"resume: duration {A_TIME}'10'")
     refused(lambda: ss.resume(tmp_path / "run.nc", checkpoint=3), "resume: checkpoint must be the name of a file, got 3")  # type: ignore[arg-type]
 
 
 NO_BODY = "Problem: body must be an ElasticSlab or a SpringBlock, got "
-NO_LAW = "Problem: friction must be a friction law, got "
+NO_LAW = 'Problem: friction must be a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)", got '
 EXCESS = "Problem: initial_excess must be "
-PULL = "Problem: pull_rate must be a number in m/s or one of stickslip.loading"
+A_STRESS = 'a number in Pa or a text with a unit such as "10 Pa", got '
+PULL = 'Problem: pull_rate must be a number in m/s or a text with a unit such as "10 m/s", got '
+HISTORY = "; what varies in time is one of stickslip.loading, such as Steps("
 PROBLEMS: list[tuple[tuple[Any, ...], dict[str, Any], str]] = [
     ((LAW, SLAB), {}, "Problem: body comes first, then friction: got HyperbolicRate as body and ElasticSlab as friction"),
     ((ss.ElasticSlab, LAW), {}, NO_BODY + "the class ElasticSlab, not an instance of it: call it"),
     ((None, LAW), {}, NO_BODY + "None"),
-    ((SLAB, ss.friction.Coulomb), {}, NO_LAW + "the class Coulomb, not an instance of it: call it"),
-    ((SLAB, "coulomb"), {}, NO_LAW + "'coulomb'"),
-    ((SLAB, LAW), {"initial_excess": "0"}, EXCESS + "a number in Pa or N, got '0'"),
-    ((SLAB, LAW), {"initial_excess": True}, EXCESS + "a number in Pa or N, got True"),
+    ((SLAB, ss.friction.Coulomb), {}, NO_LAW + "the class Coulomb, not an instance of it: call it with its parameters, Coulomb("),
+    ((SLAB, None), {}, NO_LAW + "None"),
+    ((SLAB, 3), {}, NO_LAW + "3"),
+    ((SLAB, [0.6, 0.5]), {}, NO_LAW + "[0.6, 0.5]"),
+    ((SLAB, "coulomb"), {}, "Problem: friction: 'coulomb' is not a formula; the laws of the package are classes"),
+    ((SLAB, LAW), {"initial_excess": "0"}, f"{EXCESS}{A_STRESS}'0'"),
+    ((SLAB, LAW), {"initial_excess": True}, f"{EXCESS}{A_STRESS}True"),
     ((SLAB, LAW), {"initial_excess": math.nan}, EXCESS + "finite, got nan"),
     ((SLAB, LAW), {"initial_excess": None}, "Problem: needs either initial_load or initial_excess"),
-    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": "fast"}, PULL),
-    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": None}, PULL),
-    ((SLAB, LAW), {"initial_excess": 0.0, "initial_slip": None}, "Problem: initial_slip must be a number in m, got None"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": "fast"}, f"{PULL}'fast'{HISTORY}"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": None}, f"{PULL}None{HISTORY}"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": [1.0]}, f"{PULL}[1.0]{HISTORY}"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": "1 m"}, f"{PULL}'1 m': 'm' does not convert to m/s{HISTORY}"),
+    ((SLAB, LAW), {"initial_excess": 0.0, "pull_rate": math.nan}, "Problem: pull_rate must be finite, got nan"),
+    (
+        (SLAB, LAW),
+        {"initial_excess": 0.0, "initial_slip": None},
+        'Problem: initial_slip must be a number in m or a text with a unit such as "10 m", got None',
+    ),
     ((SLAB, LAW), {"initial_excess": 0.0, "selection": 3}, "Problem: selection must be a name or a function (g, stable), got int"),
 ]
 
@@ -138,11 +181,11 @@ def test_problems_are_checked(arguments: tuple[Any, ...], named: dict[str, Any],
     refused(lambda: ss.Problem(*arguments, **named), message)
 
 
-@pytest.mark.parametrize(("given", "shown"), [("1", "'1'"), (None, "None"), (True, "True"), (float, "<class 'float'>")])
+@pytest.mark.parametrize(("given", "shown"), [*NO_NUMBER, (None, "None")])
 def test_numbers_of_bodies_and_laws_are_checked(given: Any, shown: str) -> None:
-    where = "Coulomb: static must be a number in (a pure number), got"
+    where = "Coulomb: static must be a number, got"
     refused(lambda: ss.friction.Coulomb(static=given, dynamic=0.3), f"{where} {shown}")
-    where = "ElasticSlab: density must be a number in kg/m^3, got"
+    where = 'ElasticSlab: density must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3", got'
     refused(lambda: ss.ElasticSlab(given, wave_speed=3500, thickness=1e4, normal_stress=1e8), f"{where} {shown}")
 
 

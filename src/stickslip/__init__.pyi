@@ -6,15 +6,16 @@ from . import figures, friction, loading, studies
 from .bodies import ElasticSlab, SpringBlock
 
 # One run
-from .contact.uniqueness import uniqueness
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
 from .io.netcdf import open_solution
-from .problem import Problem, parameters, selection
+from .problem import Problem, selection
 from .run.catalogue import catalogue
 from .run.resume import resume
 from .run.simulate import simulate
-from .scenarios import load_scenario
+from .scenarios.library import scenarios
+from .scenarios.scenario import load_scenario
+from .scenarios.source import uniqueness
 from .solution.solution import Solution
 from .sweeps.refine import refine
 from .sweeps.sweep import sweep
@@ -34,9 +35,9 @@ __all__ = [
     "load_scenario",
     "loading",
     "open_solution",
-    "parameters",
     "refine",
     "resume",
+    "scenarios",
     "selection",
     "simulate",
     "studies",

@@ -25,7 +25,7 @@ from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from tests.limits import limit_of_process
 
-COMMANDS = ["run", "check", "new", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
+COMMANDS = ["run", "check", "new", "fit", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -39,7 +39,7 @@ def test_without_arguments_the_help_is_shown(command):
     shown = command()
     assert shown.code == 0
     for name in COMMANDS:
-        assert re.search(rf"│ {name} ", shown.out)
+        assert re.search(rf"^  {name} ", shown.out, re.MULTILINE)
     assert shown.out.rstrip() == command("--help").out.rstrip()
 
 
@@ -71,13 +71,29 @@ def test_help_is_fast_because_it_compiles_and_validates_nothing():
     assert done.returncode == 0
 
 
+@pytest.mark.parametrize(
+    "arguments", [["run", "fig6-slab"], ["check", "fig6-slab"], ["new", "slab"], ["new", "--list"]], ids=" ".join
+)
+def test_warm_commands_load_no_library_that_they_do_not_need(arguments):
+    """Neither do they make the compiler ready, by which numba loads scipy's linear algebra."""
+    code = (
+        f"import sys\nfrom stickslip.cli.main import main\ntry:\n    main({arguments!r})\nexcept SystemExit:\n    pass\n"
+        "heavy = {'pandas', 'xarray', 'pint', 'scipy.linalg', 'matplotlib', 'numba.np.linalg'}\n"
+        "print(*(heavy & set(sys.modules)), file=sys.stderr)"
+    )
+    for _ in range(2):  # the first run may have to compile
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "\n"
+
+
 @pytest.mark.parametrize("name", templates.template_names())
 def test_new_prints_the_template(command, name):
     assert command("new", name).out == templates.template(name)
 
 
-def test_new_lists_every_name(command):
-    shown = command("new", "--list")
+@pytest.mark.parametrize("arguments", [(), ("--list",)])
+def test_new_lists_every_name(command, arguments: tuple[str, ...]):
+    shown = command("new", *arguments)
     assert shown.code == 0
     for name in templates.template_names():
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)

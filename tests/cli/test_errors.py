@@ -14,7 +14,7 @@ CASES = [
     (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
     (["check", "fig6-slap"], "fig6-slap: no such file"),
     (["check", "."], ".: cannot be read: Is a directory"),
-    (["new"], "new: which scenario? `stickslip new --list` lists them"),
+    (["new", "--friction", "coulomb"], "new: which scenario? `stickslip new --list` lists them"),
     (["new", "blok"], "no scenario 'blok'; did you mean 'block'?"),
     (["run", "fig6-slab", "--out", "a.csv"], "--out a.csv: the name must end in .nc"),
     (["run", "fig6-slab", "--out", "no/a.nc"], "--out no/a.nc: there is no folder no"),

@@ -13,7 +13,6 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.cli.output.show import so_far
 from stickslip.io.catalogue_rows import read_table
 from stickslip.run.progress import Progress, Report
 from tests.long_runs.problems import differences
@@ -150,9 +149,9 @@ def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.Monkey
 
 def test_progress_is_shown_in_sensible_units():
     report = Report(150 * ss.YEAR, 10_000 * ss.YEAR, 31, None, 5000, "stuck", 120.3 * ss.YEAR, 81.9)
-    assert so_far(report) == "150 of 10000 years, 31 slip events, stuck, 120 years a second, 1.4 min left"
+    assert str(report) == "150 of 10000 years, 31 slip events, stuck, 120 years a second, 1.4 min left"
     start = Report(0.0, 12.0, 1, 4, 0, "slipping", float("nan"), float("nan"))
-    assert so_far(start) == "0 of 12 s, 1 of 4 slip events, slipping"
+    assert str(start) == "0 of 12 s, 1 of 4 slip events, slipping"
 
 
 def test_creep_is_leapt_over_by_default(command, tmp_path: Path):

@@ -131,7 +131,7 @@ def test_folds_move_with_slip(slip):
                 assert abs(Z + slope) < 1e-12 * Z * 10
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(0.001, 0.999))
 def test_every_root_of_a_dense_scan_is_found(law, slip, share):
     g = resistance(slab_problem(law), slip)
@@ -149,7 +149,7 @@ def test_every_root_of_a_dense_scan_is_found(law, slip, share):
     assert np.all(np.abs(g.excess(rates[moving]) - excess) <= 1e-15 * (S + Z * rates[moving]) * 4)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0))
 def test_branches_are_where_the_resistance_rises(law, slip):
     g = resistance(slab_problem(law), slip)

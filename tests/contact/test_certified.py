@@ -17,7 +17,7 @@ from stickslip.contact.equation import resistance
 from stickslip.contact.folds import certified
 from stickslip.contact.folds.certified import certificate
 from stickslip.contact.folds.lowest import lowest_slope, proven_regime
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.state.layout import Branch
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.friction import LAWS, FromExpression
@@ -57,7 +57,7 @@ def slope_of(problem: ss.Problem, rates: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("width", WIDTHS)
 def test_a_bump_of_any_width_has_its_two_folds(width):
-    found = uniqueness(bump(width))
+    found = uniqueness_of(bump(width))
     assert found.certificate == "proven"
     assert found.undecided == ()
     assert found.regime == "irregular"
@@ -86,7 +86,7 @@ def test_a_bump_has_its_critical_normal_stress(width):
     problem = bump(width)
     exact = Z * width / (HEIGHT * math.sqrt(2.0 / math.e))
     assert critical_normal_stress(resistance(problem)) == pytest.approx(exact, rel=1e-12, abs=0)
-    low, high = uniqueness(problem).critical_stress_between
+    low, high = uniqueness_of(problem).critical_stress_between
     assert low <= exact * (1 + 1e-15)
     assert exact * (1 - 1e-15) <= high
     assert high - low <= 1e-12 * exact
@@ -116,8 +116,8 @@ def test_compiled_scans_are_given_the_folds_that_a_grid_misses():
 @pytest.mark.parametrize("kind", RATE_LAWS)
 def test_the_example_of_every_law_is_proven(kind):
     problem = slab_problem(example_of(kind))
-    assert uniqueness(problem).certificate == "proven"
-    assert all(fold.enclosure is not None for fold in uniqueness(problem).folds)
+    assert uniqueness_of(problem).certificate == "proven"
+    assert all(fold.enclosure is not None for fold in uniqueness_of(problem).folds)
 
 
 def example_of(kind: str) -> ss.friction.FrictionLaw:
@@ -125,7 +125,7 @@ def example_of(kind: str) -> ss.friction.FrictionLaw:
     return read_scenario(template("slab", kind), "drawn").problem.friction
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(law=st.sampled_from(RATE_LAWS).flatmap(laws), slip=st.floats(0.0, 3.0))
 def test_proof_and_search_agree_on_drawn_laws(law, slip):
     """Laws without narrow features: every fold of the search is in one proven interval, and no other interval exists."""
@@ -180,7 +180,7 @@ def with_features(seed: int) -> tuple[ss.Problem, np.ndarray]:
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_with_narrow_features_have_the_folds_of_a_dense_scan(seed):
     problem, rates = with_features(seed)
-    found = uniqueness(problem)
+    found = uniqueness_of(problem)
     with np.errstate(over="ignore", invalid="ignore"):
         slope = slope_of(problem, rates)
     usable = np.isfinite(slope)
@@ -203,7 +203,7 @@ def touching(shift: float) -> ss.Problem:
 
 
 def test_a_root_that_only_touches_is_not_decided():
-    found = uniqueness(touching(0.0))
+    found = uniqueness_of(touching(0.0))
     assert found.certificate == "not decided"
     ((low, high),) = found.undecided
     assert low <= 1.0 <= high
@@ -217,7 +217,7 @@ def test_a_root_that_only_touches_is_not_decided():
 @pytest.mark.parametrize("shift", [-1e-10, 1e-10])
 def test_beside_a_root_that_only_touches_all_is_decided(shift):
     """1e-10 of friction per m/s is 1e-9 of what the two parts of g' are: bounds of g' are narrower than that."""
-    found = uniqueness(touching(shift))
+    found = uniqueness_of(touching(shift))
     assert found.certificate == "proven"
     half = math.sqrt(-shift / 0.3) if shift < 0.0 else 0.0
     assert [fold.rate for fold in found.folds] == pytest.approx([1.0 - half, 1.0 + half] if half else [], rel=0, abs=1e-11)
@@ -225,7 +225,7 @@ def test_beside_a_root_that_only_touches_all_is_decided(shift):
 
 
 def test_at_the_critical_value_the_start_is_not_decided():
-    found = uniqueness(slab_problem(hyperbolic(ALPHA_C)))
+    found = uniqueness_of(slab_problem(hyperbolic(ALPHA_C)))
     assert found.certificate == "not decided"
     ((low, high),) = found.undecided
     assert low == 0.0
@@ -235,7 +235,7 @@ def test_at_the_critical_value_the_start_is_not_decided():
 
 def test_a_plateau_is_not_decided():
     flat = ss.friction.PiecewiseLinearRate(rates=(0.0, 1.0, 2.0, 6.0), coefficients=(0.6, 0.65, 0.65 - Z / S, 0.5))
-    found = uniqueness(slab_problem(flat))
+    found = uniqueness_of(slab_problem(flat))
     assert found.regime == "continuum"
     assert found.certificate == "not decided"
     assert found.undecided == ((1.0, 2.0),)
@@ -243,7 +243,7 @@ def test_a_plateau_is_not_decided():
 
 def test_kinks_are_folds_of_no_width():
     law = ss.friction.PiecewiseLinearRate(rates=(0.0, 1.0, 2.0, 6.0), coefficients=(0.6, 0.65, 0.5, 0.5))
-    found = uniqueness(slab_problem(law))
+    found = uniqueness_of(slab_problem(law))
     assert [fold.enclosure for fold in found.folds] == [(1.0, 1.0), (2.0, 2.0)]
     assert found.certificate == "proven"
 
@@ -251,7 +251,7 @@ def test_kinks_are_folds_of_no_width():
 def test_a_formula_without_sure_bounds_is_searched(monkeypatch):
     enclosure._nodes.cache_clear()
     monkeypatch.delitem(enclosure._UNARY, "exp")
-    found = uniqueness(bump(1e-2))
+    found = uniqueness_of(bump(1e-2))
     assert found.certificate == "searched"
     assert len(found.folds) == 2
     assert [fold.enclosure for fold in found.folds] == [None, None]

@@ -54,7 +54,7 @@ def test_friction_falls_by_the_impedance_at_the_closed_form(name):
     """At the critical value the steepest fall of friction is Z/S."""
     place, value = CLOSED[name].critical_value(Z, S)
     problem = slab_problem(CLOSED[name])
-    at_critical = ss.parameters.parameter(problem, place).put(value).friction
+    at_critical = problem.parameters[place].put(value).friction
     assert -S * steepest_by_scan(at_critical) == pytest.approx(Z, rel=2e-5, abs=0)
 
 
@@ -62,7 +62,7 @@ def test_friction_falls_by_the_impedance_at_the_closed_form(name):
 @pytest.mark.parametrize("step", [-1e-6, 1e-6])
 def test_the_regime_changes_where_it_is_said_to(name, step):
     place, value = CLOSED[name].critical_value(Z, S)
-    changed = ss.parameters.parameter(slab_problem(CLOSED[name]), place).put(value * (1.0 + step))
+    changed = slab_problem(CLOSED[name]).parameters[place].put(value * (1.0 + step))
     found = ss.studies.critical_value(changed, place)
     side = found.regimes[0] if step < 0 else found.regimes[-1]
     assert ss.uniqueness(changed).regime == side
@@ -144,7 +144,7 @@ def test_bodies_with_inertia_have_no_critical_value():
         ss.studies.critical_value(slab_problem(hyperbolic(1.0), contact_mass=10.0), "alpha")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(fall=st.floats(0.01, 0.5), rate=st.floats(1e-6, 1e3), exponent=st.integers(1, 6), viscosity=st.floats(0.0, 1.0))
 def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity):
     for law in (
@@ -158,7 +158,7 @@ def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity)
         assert (at_rate == 0.0) == (exponent == 1)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(factor=st.floats(0.5, 2.0), exponent=st.integers(1, 4))
 def test_margin_says_what_the_branches_say(factor, exponent):
     assume(abs(factor - 1.0) > 1e-9)

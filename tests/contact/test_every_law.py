@@ -31,7 +31,7 @@ def scanned(found, load):
     return SCAN[crossed], SCAN[crossed + 1], level[crossed + 1] > 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(law=KINDS, slip=st.floats(0.0, 3.0), share=st.floats(-1.5, 1.5))
 def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share):
     found = ss.uniqueness(problem_of(law, slip))
@@ -54,7 +54,7 @@ def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share
     assert kinds[within].tolist() == rises[inside].tolist()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(law=KINDS, slip=st.floats(0.0, 3.0), rule=st.sampled_from(SELECTION_RULES))
 def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     problem = problem_of(law, slip, rule)
@@ -73,7 +73,7 @@ def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     assert bool(found.jumps) <= (found.regime != "regular")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(law=KINDS, slip=st.floats(0.0, 3.0))
 def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     areas = {}
@@ -88,14 +88,14 @@ def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     assert (areas["perfect-delay"] > 1e-9 * size) <= (found.regime != "regular")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(law=st.sampled_from(["hyperbolic-rate", "exponential-stribeck", "power-stribeck"]).flatmap(laws))
 def test_closed_forms_agree_with_the_critical_normal_stress(law):
     """At a critical value of its own number, the law's critical normal stress is the present one."""
     problem = problem_of(law)
     found = ss.uniqueness(problem)
     assume(found.critical_parameter not in (None, "normal_stress"))
-    one = ss.parameters.parameter(problem, found.critical_parameter)
+    one = problem.parameters[found.critical_parameter]
     assume(1e-9 < found.critical_value < 1e9)
     critical = critical_normal_stress(resistance(one.put(found.critical_value)))
     assert critical == pytest.approx(S, rel=1e-11, abs=0)

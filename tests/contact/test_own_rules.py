@@ -194,7 +194,7 @@ def can_be_followed(table):
     return True
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(
     stick=st.sampled_from([level for level in LEVELS if level <= 0.0]),
     ends=st.lists(st.tuples(st.sampled_from(LEVELS), st.sampled_from(LEVELS)), min_size=1, max_size=4),

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
@@ -14,7 +14,7 @@ from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
 
 def test_the_regime_changes_at_the_critical_value():
     for alpha, regime in [(0.1, "regular"), (ALPHA_C, "regular"), (ALPHA_C + 1e-6, "irregular"), (1.0, "irregular")]:
-        found = uniqueness(slab_problem(hyperbolic(alpha)))
+        found = uniqueness_of(slab_problem(hyperbolic(alpha)))
         assert found.regime == regime
         assert regime in found.summary
         assert found.critical_parameter == "alpha"
@@ -22,7 +22,7 @@ def test_the_regime_changes_at_the_critical_value():
 
 
 def test_the_fold_and_the_window_of_loads_have_their_closed_form():
-    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    found = uniqueness_of(slab_problem(hyperbolic(1.0)))
     (fold,) = found.folds
     assert fold.rate == pytest.approx(q_of(1.0) - 1.0, rel=1e-14, abs=0)
     assert fold.load == pytest.approx(64_471_887.242, rel=0, abs=5e-4)
@@ -39,7 +39,7 @@ def test_the_fold_and_the_window_of_loads_have_their_closed_form():
     ],
 )
 def test_each_rule_jumps_where_the_closed_form_says(rule, up, down):
-    found = uniqueness(slab_problem(hyperbolic(1.0), rule))
+    found = uniqueness_of(slab_problem(hyperbolic(1.0), rule))
     assert [jump.direction for jump in found.jumps] == ["up", "down"]
     for jump, wanted in zip(found.jumps, (up, down), strict=True):
         assert (jump.rate_before, jump.rate_after) == pytest.approx(wanted[:2], rel=5e-9, abs=0)
@@ -58,7 +58,7 @@ def test_each_rule_jumps_where_the_closed_form_says(rule, up, down):
     ],
 )
 def test_there_are_three_admissible_rates_in_the_window_and_one_outside(load, count, stable):
-    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    found = uniqueness_of(slab_problem(hyperbolic(1.0)))
     rates = found.admissible(load)
     assert rates.size == count
     assert found.stability(load).tolist() == stable
@@ -67,33 +67,33 @@ def test_there_are_three_admissible_rates_in_the_window_and_one_outside(load, co
 
 
 def test_there_are_two_admissible_rates_at_the_folds():
-    found = uniqueness(slab_problem(hyperbolic(1.0)))
+    found = uniqueness_of(slab_problem(hyperbolic(1.0)))
     assert found.admissible(found.folds[0].load)[0] == 0.0
     at_rest = found.admissible(0.8 * S)  # the upper end of the window: stick and the fast branch
     assert at_rest == pytest.approx([0.0, 4.10204081633], rel=1e-11, abs=0)
-    (slow, fast) = uniqueness(slab_problem(Wavy(0.5, 0.0, 1.0, 1.0, step=0.1))).admissible(0.55 * S)
+    (slow, fast) = uniqueness_of(slab_problem(Wavy(0.5, 0.0, 1.0, 1.0, step=0.1))).admissible(0.55 * S)
     assert slow == 0.0
     assert fast == pytest.approx(0.05 * S / Z, rel=1e-13, abs=0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(load=st.floats(-2e8, 2e8), alpha=st.floats(0.01, 1e5), slip=st.floats(-3.0, 3.0))
 def test_backward_slip_mirrors_forward_slip(load, alpha, slip):
     for law in (hyperbolic(alpha), ss.friction.SinusoidalSlip(0.6, 0.2, 5.0), ss.friction.Coulomb(0.6, 0.2)):
-        found = uniqueness(slab_problem(law), slip)
+        found = uniqueness_of(slab_problem(law), slip)
         assert found.admissible(-load).tolist() == (-found.admissible(load)[::-1]).tolist()
         assert found.stability(-load).tolist() == found.stability(load)[::-1].tolist()
         assert np.all(np.diff(found.admissible(load)) > 0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(load=st.floats(0.0, 2e8), alpha=st.floats(0.01, 1e5))
 def test_admissible_rates_solve_the_quadratic(load, alpha):
     """alpha Z v^2 + (Z + alpha (S muD - load)) v + S muS - load = 0, with stick below the static strength."""
     roots = np.roots([alpha * Z, Z + alpha * (0.3 * S - load), 0.8 * S - load])
     wanted = sorted({0.0} if load <= 0.8 * S else set())
     wanted += sorted(float(r.real) for r in roots if abs(r.imag) < 1e-9 * abs(r) and r.real > 1e-7)
-    found = [rate for rate in uniqueness(slab_problem(hyperbolic(alpha))).admissible(load).tolist() if not 0 < rate <= 1e-7]
+    found = [rate for rate in uniqueness_of(slab_problem(hyperbolic(alpha))).admissible(load).tolist() if not 0 < rate <= 1e-7]
     assert found == pytest.approx(wanted, rel=1e-5, abs=0)
 
 
@@ -101,10 +101,10 @@ def test_admissible_rates_solve_the_quadratic(load, alpha):
 def test_the_summary_says_why_the_rule_has_no_effect(rule):
     block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0, selection=rule)
     cases = {
-        "The block has inertia": uniqueness(block),
-        "The contact mass has inertia": uniqueness(slab_problem(hyperbolic(1.0), rule, contact_mass=10.0)),
-        "friction does not depend on the slip rate": uniqueness(slab_problem(ss.friction.SinusoidalSlip(1.0, 0.5, 5.0), rule)),
-        "rises with the slip rate everywhere": uniqueness(slab_problem(hyperbolic(0.1), rule)),
+        "The block has inertia": uniqueness_of(block),
+        "The contact mass has inertia": uniqueness_of(slab_problem(hyperbolic(1.0), rule, contact_mass=10.0)),
+        "friction does not depend on the slip rate": uniqueness_of(slab_problem(ss.friction.SinusoidalSlip(1.0, 0.5, 5.0), rule)),
+        "rises with the slip rate everywhere": uniqueness_of(slab_problem(hyperbolic(0.1), rule)),
     }
     for words, found in cases.items():
         assert words in found.summary
@@ -113,7 +113,7 @@ def test_the_summary_says_why_the_rule_has_no_effect(rule):
 
 
 def test_a_contact_with_mass_has_no_admissible_rates():
-    found = uniqueness(slab_problem(hyperbolic(1.0), contact_mass=10.0))
+    found = uniqueness_of(slab_problem(hyperbolic(1.0), contact_mass=10.0))
     with pytest.raises(ss.InputError, match="state"):
         found.admissible(7e7)
 
@@ -124,7 +124,7 @@ def test_laws_know_their_own_critical_value():
 
 
 def test_coulomb_friction_is_irregular():
-    found = uniqueness(slab_problem(ss.friction.Coulomb(0.8, 0.3)))
+    found = uniqueness_of(slab_problem(ss.friction.Coulomb(0.8, 0.3)))
     assert found.regime == "irregular"
     assert found.window == pytest.approx((-0.5 * S, 0.0), rel=1e-15, abs=0)
     assert found.admissible(0.5 * S) == pytest.approx([0.0, 0.2 * S / Z], rel=1e-14, abs=0)

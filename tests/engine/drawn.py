@@ -15,7 +15,6 @@ from tests.friction.drawn import laws
 NORMAL = 1e8
 few = settings(
     max_examples=5,
-    deadline=None,
     derandomize=True,
     suppress_health_check=list(HealthCheck),
     phases=[Phase.explicit, Phase.generate],

@@ -36,6 +36,24 @@ def test_second_scenario_compiles_nothing() -> None:
     assert {path: path.stat().st_mtime_ns for path in CACHE.rglob("*") if path.is_file()} == before
 
 
+AFTER = """
+import sys
+from numba import njit
+import numpy as np
+{run}
+print("numba.np.linalg" in sys.modules)
+print(njit(lambda values: values[np.argmax(np.abs(values))] + np.sum(values))(np.array([1.0, -4.0, 2.0])))
+"""
+
+
+def test_code_from_the_disk_makes_no_compiler_ready_and_code_compiled_after_it_runs() -> None:
+    values = {"density": 2800, "thickness": 1e4, "dynamic": 0.3, "alpha": 1.0, "pull": 1e-9, "duration": 20}
+    run(**values)
+    code = AFTER.format(run=SCRIPT.format(**values))
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert shown == "2\nFalse\n-5.0\n"
+
+
 TWICE = """
 from stickslip.engine.codegen.cache import CACHE, load_module
 text = '''
@@ -155,9 +173,10 @@ def test_compiling_the_engine_is_announced(monkeypatch: pytest.MonkeyPatch) -> N
     from stickslip.engine.series.polynomial import total
 
     said: list[str] = []
-    monkeypatch.setattr(FunctionCache, "load_overload", lambda *_: None)
+    monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
     monkeypatch.setattr(cache, "announce", cache.announce)
     cache.announce_by(said.append)
     for kernel in (run_until, total):
-        assert kernel.entry._cache.load_overload(None, None) is None  # type: ignore[attr-defined]
+        entry = kernel.entry  # type: ignore[attr-defined]
+        assert entry._cache.load_overload(None, entry.targetctx) is None
     assert said == ["compiling the engine for this machine: about 10 s, once"]

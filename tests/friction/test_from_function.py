@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import pickle
+import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -75,40 +79,184 @@ def doubling(u: Any, v: Any) -> Any:
     return x
 
 
-REFUSED: list[tuple[Callable[..., Any], dict[str, Any], str]] = [
-    (branches, {}, "branches: a branch on the value of u, v or a parameter cannot be traced; use a smooth function"),
+def returns_nothing(v: Any) -> Any:
+    0.5 + v
+
+
+def swapped(v: Any, u: Any) -> Any:
+    return 0.5 + 0.1 * np.sin(u) + 0.2 * np.tanh(v)
+
+
+class Sliding:
+    """An object that can be called, and that has a method: both are functions of slip and slip rate."""
+
+    def __call__(self, u: Any, v: Any, mu_s: float = 0.6) -> Any:
+        return mu_s + 0.01 * u * u + 0.1 * np.tanh(v)
+
+    def of_rate(self, v: Any) -> Any:
+        return 0.6 + 0.1 * np.tanh(v)
+
+
+KINK_IN_RATE = "for a kink or a jump in v use PiecewiseLinearRate or FromTable(rate=..., friction=...)"
+KINK_IN_SLIP = "for a kink or a jump in u use PiecewiseLinearSlip, LinearSlipWeakening or FromTable(slip=..., friction=...)"
+NO_VARIABLE = "it must have an argument named u (slip, m) or v (slip rate, m/s), or both; its arguments are: "
+REFUSED: list[tuple[Any, dict[str, Any], str]] = [
+    (
+        branches,
+        {},
+        f"branches: a branch on the value of u, v or a parameter cannot be traced; {KINK_IN_RATE}; for a smooth step np",
+    ),
     (equal, {}, "a branch on the value"),
     (doubling, {}, "longer than 10000 operations"),
-    (lambda u, v: max(v, 0.1), {}, "a branch on the value"),
-    (lambda u, v: np.where(v > 1, 1, 2), {}, "a branch on the value"),
-    (lambda u, v: np.maximum(v, 1), {}, "np.maximum cannot be traced; allowed: np.sin"),
-    (lambda u, v: np.arctan(v), {}, "np.arctan cannot be traced"),
+    (lambda u, v: max(v, 0.1), {}, KINK_IN_RATE),
+    (lambda u: 0.5 if u < 1 else 0.3, {}, KINK_IN_SLIP),
+    (lambda u, v: np.where(v > 1, 1, 2), {}, KINK_IN_RATE),
+    (lambda u, v: np.where(u, 1, 2), {}, f"np.where cannot be traced; {KINK_IN_SLIP}"),
+    (lambda u, v: np.maximum(v, 1), {}, f"np.maximum has a kink or a jump and cannot be traced; {KINK_IN_RATE}"),
+    (lambda u: np.minimum(0.5, u), {}, KINK_IN_SLIP),
+    (lambda u: np.fabs(u), {}, KINK_IN_SLIP),
+    (lambda v: np.clip(v, 0.1, 0.5), {}, f"np.clip cannot be traced; {KINK_IN_RATE}"),
+    (lambda u, v: np.arctan(v), {}, "np.arctan cannot be traced; allowed: np.sin"),
     (lambda u, v: math.exp(-v), {}, "use numpy's: np.exp instead of math.exp"),
-    (lambda u, v: abs(u), {}, "abs has a kink"),
+    (lambda u, v: abs(u), {}, 'abs has a kink and cannot be traced; counts="path" makes u a length that is never negative'),
+    (lambda u, v: abs(v - 1), {}, "abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth"),
     (lambda u, v: np.array([1.0, 2.0]) * v, {}, "an array cannot be traced"),
-    (lambda u, v: np.interp(v, [0, 1], [1, 0]), {}, "cannot be traced"),
+    (lambda u, v: np.array([1.0, 2.0]), {}, "it must return one number, the friction coefficient, and returns an array"),
+    (lambda u, v: np.interp(v, [0, 1], [1, 0]), {}, f"np.interp cannot be traced; {KINK_IN_RATE}"),
     (lambda u, v: v.mean(), {}, "cannot be traced (AttributeError"),
-    (lambda u, v: [v], {}, "cannot be traced"),
-    (lambda u, v: None, {}, "cannot be traced"),
+    (lambda u, v: [v], {}, "it must return one number, the friction coefficient, and returns list"),
+    (lambda u, v: "0.5", {}, "and returns '0.5'"),
+    (lambda u, v: True, {}, "and returns True"),
+    (lambda u, v: 1j, {}, "and returns complex"),
+    (returns_nothing, {}, "it returns nothing: end it with return and the friction coefficient"),
     (lambda u, v: v**u, {}, "the exponent"),
     (lambda u, v: math.inf + v, {}, "inf"),
-    (lambda u, v: 0.5 - v, {}, "friction must be a number >= 0, but at u = 0 m, v = 10 m/s it is -9.5"),
-    (lambda u: 0.5, {}, "must be a function of u and v, then named parameters"),
-    (lambda u, v, *a: 0.5, {}, "must be a function of u and v, then named parameters"),
-    (lambda u, v, a: a, {}, "parameter a has no value"),
+    (lambda u, v: 0.5 - v, {}, ">: friction must be a number >= 0, but at u = 0 m, v = 10 m/s it is -9.5"),
+    (lambda v: 0.6 + np.log(v), {}, "it is not a finite number; slip begins at v = 0, and friction there is the static strength"),
+    (lambda x, y: 0.5, {}, NO_VARIABLE + "x, y"),
+    (lambda: 0.5, {}, NO_VARIABLE + "none"),
+    (np.exp, {}, "exp: it "),
+    (lambda u, v, *a: 0.5, {}, "it must name each of its arguments: u, v and parameters, without *args and **named"),
+    (lambda u, **a: 0.5, {}, "without *args and **named"),
+    (lambda u, v, a: a, {}, "parameter a has no value: give it a default, or FromFunction(..., a=...)"),
     (lambda u, v, width: width, {"widht": 1.0}, "has no parameter widht; did you mean 'width'?"),
+    (lambda u, a=0.5: a, {"v": 1.0}, "v is the slip rate, and no parameter that could have a value"),
     (lambda u, v, a: a + v, {"a": "1 parsnip"}, "'parsnip' is not a unit"),
-    (3, {}, "is not a Python function"),  # type: ignore[list-item] # on purpose
+    (lambda u, v, a: a + v, {"a": None}, "'a' must be a number"),
+    (lambda u, v, a: a + v, {"a": "0.7"}, "'0.7' is not a number with a unit: write a number without quotes"),
+    (3, {}, "it is not a Python function"),
+    ("0.3 + v", {}, "it is a text: a formula as text makes a law with FromExpression"),
+    (HyperbolicRate, {}, "HyperbolicRate: it is a class: a law is made with its parameters, HyperbolicRate(...)"),
 ]
 
 
 @pytest.mark.parametrize(("function", "values", "message"), REFUSED)
-def test_one_line_says_what_cannot_be_traced(function: Callable[..., Any], values: dict[str, Any], message: str) -> None:
+def test_one_line_says_what_cannot_be_traced(function: Any, values: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError) as caught:
         FromFunction(function, **values)
     assert message in str(caught.value)
     assert str(caught.value).startswith("FromFunction: ")
     assert str(caught.value).isprintable()
+
+
+def test_arguments_named_u_and_v_are_slip_and_slip_rate_in_any_order() -> None:
+    law = FromFunction(swapped)
+    assert float(law.coefficient(0.4, 2.0)) == pytest.approx(0.5 + 0.1 * math.sin(0.4) + 0.2 * math.tanh(2.0), rel=1e-15)
+    of_rate, of_slip = FromFunction(lambda v: 0.5 + 0.1 * np.tanh(v)), FromFunction(lambda u: 0.5 + 0.1 * np.tanh(u))
+    assert (of_rate.depends_on_slip, of_rate.depends_on_rate) == (False, True)
+    assert (of_slip.depends_on_slip, of_slip.depends_on_rate) == (True, False)
+    assert float(of_rate.coefficient(7.0, 2.0)) == float(of_slip.coefficient(2.0, 7.0)) == 0.5 + 0.1 * math.tanh(2.0)
+
+
+FORMS: dict[str, tuple[Any, float]] = {
+    "positional only": (lambda u, v, /: 0.6 + 0.1 * np.tanh(v), 0.6),
+    "keywords only": (lambda *, v, mu_s=0.6: mu_s + 0.1 * np.tanh(v), 0.6),
+    "keyword before v": (lambda mu_s=0.6, *, v: mu_s + 0.1 * np.tanh(v), 0.6),
+    "object": (Sliding(), 0.6),
+    "method": (Sliding().of_rate, 0.6),
+    "partial": (functools.partial(Sliding(), mu_s=0.55), 0.55),
+    "constant": (lambda v: 0.6, 0.6),
+    "constant of numpy": (lambda v: np.array(0.6), 0.6),
+    "default with a unit": (lambda v, v_c="1 mm/s": 0.6 + 0.1 * np.tanh(v / v_c), 0.6),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_of_a_function_makes_a_law_in_a_problem(form: str) -> None:
+    """Its static coefficient is its value at v = 0, and the law is the one that FromFunction makes."""
+    function, static = FORMS[form]
+    slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
+    problem = ss.Problem(slab, function, initial_excess=0.0)
+    assert problem.friction == FromFunction(function)
+    assert problem.strength == pytest.approx(static * 1e8, rel=1e-15, abs=0)
+
+
+def test_a_function_a_text_and_the_built_in_law_give_one_run() -> None:
+    """The slab of Fig. 6 with its law in four forms: the first event is the same to rounding, and known in closed form."""
+
+    def mu(v: Any, mu_s: float = 0.8, mu_d: float = 0.3) -> Any:
+        return mu_d + (mu_s - mu_d) / (1.0 + v)
+
+    slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
+    for law in (HyperbolicRate(0.8, 0.3, 1.0), mu, "0.3 + 0.5/(1 + v)", FromFunction(mu)):
+        events = ss.simulate(ss.Problem(slab, law, pull_rate=1e-9, initial_excess=0.0), 7.0).events
+        assert events.peak_rate[0] == pytest.approx(0.402 / 0.098, rel=1e-8, abs=0)  # (alpha / alpha_c - 1) / alpha
+        assert events.end[0] == pytest.approx(2e4 / 3500.0, rel=1e-12, abs=0)
+
+
+TEXTS = [
+    ("coulomb", "'coulomb' is not a formula; the laws of the package are classes, such as ss.friction.Coulomb(...)"),
+    ("data/points.csv", "'data/points.csv' is not a formula; measured points make a law with ss.friction.FromTable"),
+    (
+        "mu_d + 0.5/(1 + v)",
+        "'mu_d' is neither u, v, pi nor a declared parameter; allowed: u, v; parameters get values in ss.friction.",
+    ),
+    ("0.3 + v^2", "the operator in '0.3 + v^2' is not allowed; a power is written **"),
+    ("0.5 - v", "friction must be a number >= 0, but at u = 0 m, v = 10 m/s it is -9.5"),
+    ("__import__('os').system('ls')", "is not allowed; allowed are numbers"),
+    ("", "'' is not an expression"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), TEXTS)
+def test_a_text_that_is_no_formula_is_refused_in_one_line(text: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), text, initial_excess=0.0)
+    assert str(caught.value).startswith("Problem: friction: ")
+    assert message in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:
+    """FromFunction gives the law, or a decorator; Problem takes functions and texts, and keeps a law; wrong types are errors."""
+    pytest.importorskip("mypy")
+    file = tmp_path / "user.py"
+    file.write_text(
+        "import stickslip as ss\n"
+        "slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)\n"
+        "reveal_type(ss.friction.FromFunction(lambda v: 0.5, counts='path', a=1.0))\n"
+        "@ss.friction.FromFunction(a='1 m')\n"
+        "def law(u: float, a: float) -> float: return 0.5 + u / a\n"
+        "reveal_type(law)\n"
+        "reveal_type(ss.Problem(slab, lambda u, v: 0.5, initial_excess=0.0).friction)\n"
+        "ss.Problem(slab, '0.3 + 0.5/(1 + v)', initial_excess=0.0)\n"
+        "ss.friction.FromExpression('a + b*v', {'a': 0.5, 'b': '1 s/m'})\n"
+        "ss.Problem(slab, 3, initial_excess=0.0)\n"
+        "ss.friction.FromFunction(lambda v: 0.5, counts='pth')\n"
+        "ss.friction.FromExpression('a', {'a': [0.5]})\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file=", "--ignore-missing-imports", "--follow-imports=silent", str(file)],
+        capture_output=True, text=True, cwd=tmp_path, check=False,
+    )  # fmt: skip
+    said = [line.partition("user.py:")[2] for line in done.stdout.splitlines() if "user.py:" in line]
+    assert [(line.partition(":")[0], line.partition(": ")[2].partition(":")[0]) for line in said] == [
+        ("3", "note"), ("6", "note"), ("7", "note"), ("10", "error"), ("11", "error"), ("11", "note"), ("11", "note"),
+        ("11", "note"), ("12", "error"),
+    ], done.stdout  # fmt: skip
+    assert "FromExpression" in said[0]
+    assert "FromExpression" in said[1]
+    assert "FrictionLaw" in said[2]
 
 
 def test_symbols_are_values_of_sets_and_dictionaries_but_of_no_branch() -> None:

@@ -19,6 +19,7 @@ from stickslip.scenarios.templates import template
 points = st.lists(st.tuples(st.floats(0.01, 2.0), st.floats(0.0, 1.5)), min_size=2, max_size=12)
 
 
+@pytest.mark.filterwarnings("ignore::stickslip.foundation.errors.InputWarning")  # drawn points may well look noisy
 @given(points, st.booleans())
 def test_the_cubic_is_that_of_scipy_exact_at_points_and_monotone_between(
     drawn: list[tuple[float, float]], along_slip: bool
@@ -93,10 +94,16 @@ def test_tables_are_read_from_files(tmp_path: Path) -> None:
 
 BAD_FILES = [
     ("", "line 1: no column 'friction' in the header"),
-    ("slip,mu\n0,1\n", "line 1: no column 'friction' in the header"),
+    ("slip,tau\n0,1\n", "line 1: no column 'friction' in the header; write it as friction"),
     ("slip,fricton\n0,1\n", "line 1: no column 'friction' in the header; rename 'fricton'?"),
     ("0,0.7\n1,0.6\n", "line 1: no column 'friction'"),
     ("slips,friction\n0,1\n", "line 1: the header needs a column slip or slip_rate, got none; rename 'slips'?"),
+    ("slip_rate (mm),friction\n0,1\n", "line 1, column 1: the unit in the heading does not convert to m/s; write it like m/s"),
+    ("slip,friction (MPa)\n0,1\n", "line 1, column 2: friction is a pure number: no unit in its heading"),
+    ("u,slip distance,friction\n0,0,1\n", "line 1: columns 1 and 2 both are the slip: rename or remove one"),
+    ("slip;friction\n0;0,7\n", "line 2: friction has a decimal comma; decimal commas are not read, write points: `tr , . <"),
+    ("slip,friction\n0,5,0,7\n", "line 2: 4 cells, but the header has 2; decimal commas? Then separate columns by semicolons"),
+    ("slip,friction\nm,-\n0,1\n", "line 2: slip must be a number, got text; a unit belongs into the heading, as in slip (m)"),
     ("slip,slip_rate,friction\n0,0,1\n", "line 1: the header needs a column slip or slip_rate, got both"),
     ("slip,friction\n0,0.7\n", "line 2: at least two rows of numbers are needed, got 1"),
     ("slip,friction\n", "line 1: at least two rows of numbers are needed, got 0"),
@@ -110,7 +117,7 @@ BAD_FILES = [
     ("slip_rate,friction\n-1,0.7\n1,0.1\n", "line 2: slip_rate must not be negative, got -1"),
     ("slip,friction\n-1,0.7\n1,0.1\n", "slip[0] must be at least 0 where the path is counted"),
     (b"slip,friction\n\xff\xfe", "not a text file in UTF-8"),
-    ("slip;friction\n0;1\n", "no column 'friction' in the header"),
+    ("slip friction\n0 1\n", "no column 'friction' in the header; columns are separated by commas, semicolons or tabs"),
     ("slip,friction\n" + "".join(f"{i},0.5\n" for i in range(10_002)), "more than 10000 rows"),
 ]  # fmt: skip
 

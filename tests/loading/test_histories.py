@@ -20,7 +20,9 @@ LOSSY = replace(SLAB, driver_impedance=2e6)
 BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
 LAW = ss.friction.LinearSlipWeakening(0.8, 0.7, 0.1)
 STEPS = Steps([0.0, 1.0], [1.0, 2.0])
-NUMBER = "a number in {} or one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+VALUE = 'a number in m/s or Pa, or a text with a unit such as "10 m/s"'
+HINT = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+NUMBER = 'a number in {0} or a text with a unit such as "10 {0}", got {1}'
 FAR = "Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance"
 
 
@@ -76,7 +78,7 @@ class Bare(LoadingHistory):
         (lambda: Steps(5, [1]), "Steps: times must be a list of numbers in s, got int"),  # type: ignore[arg-type]
         (lambda: Steps([0, 1], [1, 2, 3]), "Steps: 2 times but 3 values"),
         (lambda: Steps([0, 1], "ab"), "Steps: values must be a list of numbers in m/s or Pa, got str"),
-        (lambda: Steps([0, 1], [1, "a"]), "Steps: values[1] must be a number in m/s or Pa, got 'a'"),
+        (lambda: Steps([0, 1], [1, "a"]), f"Steps: values[1] must be {VALUE}, got 'a'"),
         (lambda: Steps([0, 2, 1], [1, 2, 3]), "Steps: times must ascend, but [2] = 1 follows 2"),
         (lambda: Steps([0, 0], [1, 2]), "Steps: times must ascend, but [1] = 0 follows 0"),
         (lambda: Steps([1, 2], [1, 2]), "Steps: times must begin with 0, from which the first value holds, got 1"),
@@ -92,14 +94,14 @@ class Bare(LoadingHistory):
         (lambda: Sinusoidal(1, 1, 0), "Sinusoidal: period must be greater than 0 s, got 0"),
         (lambda: Sinusoidal(1, 1, -5), "Sinusoidal: period must be greater than 0 s, got -5"),
         (lambda: Sinusoidal(1, np.nan, 5), "Sinusoidal: amplitude must be finite, got nan"),
-        (lambda: Sinusoidal("a", 1, 5), "Sinusoidal: mean must be a number in m/s or Pa, got 'a'"),  # type: ignore[arg-type]
+        (lambda: Sinusoidal("a", 1, 5), f"Sinusoidal: mean must be {VALUE}, got 'a'"),  # type: ignore[arg-type]
         (lambda: HoldAndSlide(1, 0, [1]), "HoldAndSlide: slide_time must be greater than 0 s, got 0"),
         (lambda: HoldAndSlide(1, 1, 3), "HoldAndSlide: hold_times must be a list of numbers in s, got int"),  # type: ignore[arg-type]
         (lambda: HoldAndSlide(1, 1, []), "HoldAndSlide: hold_times must have 1 to 10000 numbers, got 0"),
         (lambda: HoldAndSlide(1, 1, [-3]), "HoldAndSlide: hold_times[0] must be greater than 0 s, got -3"),
-        (lambda: problem(pull_rate="steps"), f"Problem: pull_rate must be {NUMBER.format('m/s')}, got 'steps'"),
-        (lambda: problem(pull_rate=None), f"Problem: pull_rate must be {NUMBER.format('m/s')}, got None"),
-        (lambda: problem(far_stress=[1, 2]), f"Problem: far_stress must be {NUMBER.format('Pa')}, got [1, 2]"),
+        (lambda: problem(pull_rate="steps"), f"Problem: pull_rate must be {NUMBER.format('m/s', repr('steps'))}{HINT}"),
+        (lambda: problem(pull_rate=None), f"Problem: pull_rate must be {NUMBER.format('m/s', None)}{HINT}"),
+        (lambda: problem(far_stress=[1, 2]), f"Problem: far_stress must be {NUMBER.format('Pa', [1, 2])}{HINT}"),
         (
             lambda: problem(far_stress_rate=STEPS),
             "Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress",

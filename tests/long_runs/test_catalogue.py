@@ -219,8 +219,8 @@ def test_bad_arguments_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     problem, duration = RUNS["slab that heals"]
     for arguments, message in (
         ({"path": tmp_path / "events.txt"}, r"events\.txt: the name must end in \.csv, \.parquet or \.nc"),
-        ({"event_rate": -1.0}, "event_rate must be a slip rate in m/s, got -1.0"),
-        ({"event_rate": np.nan}, "event_rate must be a slip rate in m/s, got nan"),
+        ({"event_rate": -1.0}, "event_rate must be at least 0 m/s, got -1"),
+        ({"event_rate": np.nan}, "event_rate must be finite, got nan"),
         ({"max_events": -1}, "catalogue: max_events must be a whole number above 0, got -1"),
     ):
         with pytest.raises(ss.InputError, match=message):

@@ -158,7 +158,7 @@ def test_another_engine_is_refused(tmp_path: Path) -> None:
     [
         ({"max_events": 0}, "max_events must be a whole number above 0, got 0"),
         ({"max_events": 2.5}, "max_events must be a whole number above 0, got 2.5"),
-        ({"checkpoint_every": -1.0}, "checkpoint_every must be a time in s, got -1.0"),
+        ({"checkpoint_every": -1.0}, "checkpoint_every must be at least 0 s, got -1"),
         ({"checkpoint": "nowhere/run.nc"}, "nowhere/run.nc: cannot be written"),
     ],
 )

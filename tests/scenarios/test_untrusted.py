@@ -62,7 +62,7 @@ def refusal(text: str) -> str:
         ("0.5 + 0*a**b", {"a": 1e50, "b": 99}, r"the part 'a\*\*b' is not a finite number: it is inf"),
         ("0.5 + v/1e300**2", {}, r"the part '1e\+300 \* 1e\+300' is not a finite number: it is inf"),
         ("0.5 + exp(-a*a*v)", {"a": 1e300}, r"a' must lie within 1e\+50 \(a pure number\), got 1e\+300"),
-        ("0.5 + exp(-a*v)", {"a": 10**400}, "a' must be finite, got inf"),
+        ("0.5 + exp(-a*v)", {"a": 10**400}, "a' must be a number, got a whole number beyond 1e300"),
     ],
 )
 def test_an_expression_without_a_value_is_refused_with_its_part(
@@ -97,11 +97,11 @@ def test_a_long_text_without_dots_is_no_long_key() -> None:
 
 def test_a_whole_number_beyond_all_floats_is_refused() -> None:
     problem = read_scenario(SLAB, "my.toml").problem
-    with pytest.raises(ss.InputError, match="thickness must be finite, got inf"):
+    with pytest.raises(ss.InputError, match=r"thickness must be a number in m .*, got a whole number beyond 1e300"):
         ss.ElasticSlab(2800, 3500, 10**400, 1e8)
-    with pytest.raises(ss.InputError, match="duration must be a positive time in s"):
+    with pytest.raises(ss.InputError, match=r"duration must be a number in s .*, got a whole number beyond 1e300"):
         ss.simulate(problem, 10**400)
-    with pytest.raises(ss.InputError, match=r"friction\[1\] must be finite, got inf"):
+    with pytest.raises(ss.InputError, match=r"friction\[1\] must be a number, got a whole number beyond 1e300"):
         ss.friction.FromTable(slip=[0, 1], friction=[0.7, 10**400])
 
 
@@ -201,7 +201,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
         (["run", "fig6-slab", "--until", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
         (
             ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "random", "--members", "1000000000000"],
-            "sweep: members must be at most 10000000 for the design random",
+            "sweep: the design random: members must be a whole number from 1 to 10000000, got",
         ),
         (["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "lhs", "--members", "1e12"], "Invalid value for '--members'"),
         (

@@ -32,7 +32,7 @@ def test_the_two_numbers_are_those_of_the_laws(found: Analogy) -> None:
 
 def test_a_point_is_a_run_of_each(found: Analogy) -> None:
     row = found.table.iloc[0]
-    problem = ss.parameters.parameter(CASE.problem, WAVELENGTH).put(2.0)
+    problem = CASE.problem.parameters[WAVELENGTH].put(2.0)
     for name, one in (("slab", problem), ("block", block_for(problem))):
         run = ss.simulate(one, CASE.duration, 1e-8, max_events=1)
         event = run.events.iloc[0]

@@ -68,7 +68,7 @@ def test_a_run_without_an_event_has_a_row_too() -> None:
 
 
 def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> None:
-    path = fig6.save(tmp_path / "both.csv")
+    path = fig6.to_csv(tmp_path / "both.csv")
     comment = [line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
     assert comment[0].startswith(f"# stickslip {ss.__version__}: runs side by side")
     assert "# slip (m): slip of the largest event" in comment
@@ -105,7 +105,7 @@ def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
         (("fig6-slab", "fig6-slap"), {}, "did you mean 'fig6-slab'"),
         (("fig6-slab", done), {"until": 3.0}, "has been run: leave until and rtol away"),
         (FIG6, {"names": ["one"]}, "names: 2 are needed, got 1"),
-        (FIG6, {"until": -1.0}, "until must be a positive time"),
+        (FIG6, {"until": -1.0}, "until must be greater than 0 s, got -1"),
         (FIG6, {"rtol": 1.0}, "rtol must be at most"),
         (FIG6, {"event": 1}, "fig6-block-reconstructed has no slip event 1: it has 1"),
     ):

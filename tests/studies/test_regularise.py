@@ -163,14 +163,14 @@ BAD = [
     ),
     ({"friction": ss.friction.Coulomb(0.8, 0.3)}, {"by": "direct-effect"}, "coulomb is not; try 'contact-mass'"),
     ({}, {"by": "contactmass"}, "no regularisation 'contactmass'; did you mean 'contact-mass'"),
-    ({}, {"sizes": [0.1, 0.01]}, "three or more different positive times"),
-    ({}, {"sizes": [0.1, 0.1, 0.01]}, "three or more different positive times"),
-    ({}, {"sizes": [0.1, 0.01, -1.0]}, "three or more different positive times"),
-    ({}, {"sizes": [0.1, 0.01, np.nan]}, "three or more different positive times"),
+    ({}, {"sizes": [0.1, 0.01]}, "sizes must have 3 to 10000 numbers, got 2"),
+    ({}, {"sizes": [0.1, 0.1, 0.01]}, "sizes must be different times, got 0.1 s twice"),
+    ({}, {"sizes": [0.1, 0.01, -1.0]}, "sizes[2] must be greater than 0 s, got -1"),
+    ({}, {"sizes": [0.1, 0.01, np.nan]}, "sizes[2] must be finite, got nan"),
     ({}, {"rules": ("maxwel",)}, "selection rule 'maxwel' is unknown; did you mean 'maxwell'"),
     ({}, {"rules": ()}, "needs a selection rule to compare with"),
-    ({}, {"duration": 0.0}, "duration must be a positive time"),
-    ({}, {"rtol": 1.0}, "rtol must lie between"),
+    ({}, {"duration": 0.0}, "duration must be greater than 0 s, got 0"),
+    ({}, {"rtol": 1.0}, "rtol must be at most 0.01, got 1"),
 ]
 
 

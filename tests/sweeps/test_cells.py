@@ -71,7 +71,7 @@ def test_a_sphere_over_three_axes_is_found() -> None:
     st.tuples(st.integers(8, 12), st.integers(8, 12)),
     st.integers(0, 5),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_every_point_of_a_circle_is_near_a_finest_cell(
     x: float, y: float, radius: float, coarse: tuple[int, int], depth: int
 ) -> None:
@@ -90,7 +90,7 @@ def test_every_point_of_a_circle_is_near_a_finest_cell(
 
 
 @given(st.lists(st.integers(0, 3), min_size=81, max_size=81), st.integers(0, 3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_cells_tile_the_square_and_agree_within(values: list[int], depth: int) -> None:
     """Any answers at all: the cells cover everything once, and only finest ones have answers that differ around them."""
     table = np.array(values).reshape(9, 9)

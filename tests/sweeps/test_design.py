@@ -227,8 +227,11 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
     ({"vary": {"initial.load": [1], "initial.excess": [1]}}, "exclude each other"),
     ({"vary": {"alpha": [1, 2]}, "kind": "lh"}, "design 'lh' is unknown"),
     ({"vary": {"alpha": [1, 2]}, "members": 5}, "members belongs to"),
-    ({"vary": {"alpha": (1, 2)}, "kind": "lhs"}, "members must be a whole number above 0"),
-    ({"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 0}, "members must be a whole number above 0"),
+    ({"vary": {"alpha": (1, 2)}, "kind": "lhs"}, "the design lhs: members must be a whole number from 1 to 10000000, got None"),
+    (
+        {"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 0},
+        "the design lhs: members must be a whole number from 1 to 10000000, got 0",
+    ),
     ({"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 5, "seed": -1}, "seed must be a whole number"),
     ({"vary": typed("alpha=1..2:5"), "kind": "random", "members": 5}, "takes no number of points"),
     ({"vary": {"alpha": (2, 1)}, "kind": "lhs", "members": 5}, "must go from a smaller to a larger number, got 2 to 1 s/m"),
@@ -255,7 +258,7 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
         ({"vary": {"alpha": one}}, "sweep: vary: friction.alpha must be a one-dimensional array or a list of values, got ")
         for one in (5, 5.0, None, np.array(5.0), np.float64(5.0), 5 * UREG.s / UREG.m, "1,2", "1..2:5", {"a": 1}, np.ones((2, 99)))
     ),
-    ({"vary": {"alpha": "0.05..2:40"}}, "got '0.05..2:40': LOW..HIGH:POINTS is for the command line, here use numpy.linspace"),
+    ({"vary": {"alpha": "0.05..2:40"}}, "got '0.05..2:40': use a list or numpy.linspace"),
     ({"vary": {"alpha": np.array([1.0, np.nan])}}, "sweep: vary: friction.alpha must be finite, got nan"),
     ({"vary": {"alpha": np.array([np.inf])}}, "friction.alpha must be finite, got inf"),
     (

@@ -20,9 +20,9 @@ from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
 from stickslip.run.run_loop import MOST_ROUND_TRIPS, check_round_trips
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.schema import DURATION, LARGEST_RTOL, RTOL, check_rtol
 
 Values = Mapping[str, Floats]
 """Numbers in SI, one for each member, by key such as "friction.alpha"."""

@@ -9,6 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields, quantity
 
@@ -50,21 +52,24 @@ class ElasticSlab:
     energy_unit: ClassVar[str] = "J m-2"
     has_waves: ClassVar[bool] = True
 
-    density: float = quantity("kg/m^3", "density rho", above=0)
-    wave_speed: float = quantity("m/s", "shear wave speed c", above=0)
-    thickness: float = quantity("m", "thickness h", above=0)
-    normal_stress: float = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
-    driver_impedance: float = quantity(
+    density: Number = quantity("kg/m^3", "density rho", above=0)
+    wave_speed: Number = quantity("m/s", "shear wave speed c", above=0)
+    thickness: Number = quantity("m", "thickness h", above=0)
+    normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
+    driver_impedance: Number = quantity(
         "Pa s/m",
         "impedance Zd of the driver: inf for a rigid driver, 0 for a dead load",
         at_least=0,
         infinite=True,
+        word="rigid",
         default=math.inf,
     )
-    contact_mass: float = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
-    p_wave_speed: float | None = quantity(
+    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
+    p_wave_speed: OptionalNumber = quantity(
         "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
     )
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         check_fields(self)

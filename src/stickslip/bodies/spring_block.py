@@ -8,6 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import check_fields, quantity
 
 
@@ -41,10 +43,12 @@ class SpringBlock:
     is_driven_rigidly: ClassVar[bool] = True
     reflection: ClassVar[float] = 0.0
 
-    mass: float = quantity("kg", "mass m", above=0)
-    stiffness: float = quantity("N/m", "stiffness K of the spring", above=0)
-    normal_force: float = quantity("N", "normal force S on the contact, compression positive", above=0)
-    damping: float = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+    mass: Number = quantity("kg", "mass m", above=0)
+    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
+    normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
+    damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         check_fields(self)

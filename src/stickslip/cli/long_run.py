@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import check_target
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
-from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
-from stickslip.io.netcdf import is_catalogue
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
 
@@ -56,13 +54,19 @@ class Request:
         if self.energies and self.catalog is None:
             raise InputError("run: --energies belongs to --catalog FILE")
         if self.catalog is not None:
+            from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
+
             check_target(self.catalog, "--catalog", SUFFIXES)
             check_catalogue(self.catalog, "--catalog")
 
     @property
     def keeps_events_only(self) -> bool:
         """True if only slip events are kept, and no history."""
-        return self.catalog is not None if self.resume is None else is_catalogue(self.resume)
+        if self.resume is None:
+            return self.catalog is not None
+        from stickslip.io.netcdf import is_catalogue  # imports xarray, which takes a while
+
+        return is_catalogue(self.resume)
 
     @property
     def duration(self) -> float | None:
@@ -143,7 +147,7 @@ def check_same(request: Request, problem: Problem) -> None:
 @contextmanager
 def progress(name: str) -> Iterator[Progress]:
     """Show the progress of a run on a terminal. Yields the callback that receives it."""
-    from stickslip.cli.output.show import progress_to, so_far
+    from stickslip.run.progress_line import progress_line
 
-    with progress_to(f"{name}:") as report:
-        yield lambda about: report(so_far(about))
+    with progress_line(f"{name}:") as report:
+        yield report

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
 from inspect import cleandoc
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
 from stickslip.cli.commands.analogy import analogy
@@ -15,12 +17,13 @@ from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
 from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.export import export
+from stickslip.cli.commands.fit import fit
 from stickslip.cli.commands.new import new
 from stickslip.cli.commands.paper import paper
 from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
 from stickslip.cli.commands.sweep import sweep
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, InputWarning
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
 
@@ -32,6 +35,7 @@ slips, how it stops, and whether the answer is even unique.
   stickslip new slab > mine.toml   a commented scenario to start from
   stickslip check mine.toml        what it means, what to know before a run
   stickslip run mine.toml          run it; --figure mine.png draws it
+  stickslip fit points.csv         make a law from measured friction
   stickslip compare A B            runs side by side: a table, a figure
   stickslip sweep mine.toml        many runs: maps over its numbers
   stickslip analogy                where a block can replace a slab
@@ -41,16 +45,47 @@ slips, how it stops, and whether the answer is even unique.
   stickslip paper --out paper      the source paper, claim by claim
 """
 
-app = typer.Typer(
-    name="stickslip",
-    help=_HELP,
-    invoke_without_command=True,
-    rich_markup_mode="rich",
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-for command in (run, check, new, compare, sweep, analogy, export, regularise, ensemble, paper):
-    app.command(help=cleandoc(command.__doc__ or "").replace(r"\b", "\b"))(command)  # \b keeps the line breaks of a paragraph
+COMMANDS: dict[str, Callable[..., None]] = {
+    command.__name__: command for command in (run, check, new, fit, compare, sweep, analogy, export, regularise, ensemble, paper)
+}
+"""The functions of all commands, by name."""
+STYLE: dict[str, Any] = {
+    "rich_markup_mode": None,
+    "pretty_exceptions_enable": False,
+    "context_settings": {"help_option_names": ["-h", "--help"], "max_content_width": 100},
+}
+"""Plain help, because boxes and colours take as long to load as all else that `stickslip --help` does."""
+
+
+class Commands(TyperGroup):
+    """The commands of `stickslip`. Only the one that is asked for is built, because each takes some milliseconds."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self.commands: Any = dict.fromkeys(COMMANDS)  # the names, from which the nearest one to a wrong name is found
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return the command of this name, or None if there is none."""
+        return _built(cmd_name) if cmd_name in COMMANDS else None
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the names of all commands, each with the first sentence of its help."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, " ".join(_help_of(name).partition("\n\n")[0].split())) for name in COMMANDS])
+
+
+def _built(name: str) -> Any:
+    """Return a command as typer reads it from its function."""
+    alone = typer.Typer(add_completion=False, **STYLE)
+    alone.command(name, help=_help_of(name))(COMMANDS[name])
+    return typer.main.get_command(alone)
+
+
+def _help_of(name: str) -> str:
+    return cleandoc(COMMANDS[name].__doc__ or "").replace(r"\b", "\b")  # \b keeps the line breaks of a paragraph
+
+
+app = typer.Typer(name="stickslip", cls=Commands, help=_HELP, invoke_without_command=True, **STYLE)
 
 
 def _print_version(wanted: bool) -> None:
@@ -70,7 +105,7 @@ def start(
 ) -> None:
     """Show the help if no command is given."""
     if context.invoked_subcommand is None:
-        context.get_help()
+        typer.echo(context.get_help())
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -80,7 +115,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _code(arguments: Sequence[str] | None) -> int:
     try:
-        code = app(arguments, prog_name="stickslip", standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", InputWarning)
+            warnings.showwarning = _show_warning
+            code = app(arguments, prog_name="stickslip", standalone_mode=False)
     except InputError as error:
         return _fail(str(error))
     except TyperException as error:
@@ -92,6 +130,14 @@ def _code(arguments: Sequence[str] | None) -> int:
     if code == 130:
         return _fail("interrupted", code=130)
     return code if isinstance(code, int) else 0
+
+
+def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: Any, **__: Any) -> None:
+    """Show what to know about the input as one line on standard error, and other warnings as Python does."""
+    if issubclass(category, InputWarning):
+        typer.echo(f"stickslip: note: {message}", err=True)
+    else:
+        sys.stderr.write(warnings.formatwarning(message, category, filename, lineno))
 
 
 def _fail(message: str, code: int = 2) -> int:

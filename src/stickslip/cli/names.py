@@ -30,6 +30,27 @@ complete_quantity = _completion("sweeps.design.quantities", "QUANTITIES")
 complete_design = _completion("sweeps.design.design", "KINDS")
 
 
+def complete_fitted(incomplete: str) -> list[str]:
+    """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
+    from stickslip.foundation.errors import InputError
+    from stickslip.friction import LAWS
+    from stickslip.friction.custom.fit_parameters import template
+
+    found = []
+    for name in complete_law(incomplete):
+        try:
+            template(LAWS[name])
+        except InputError:
+            continue
+        found.append(name)
+    return found
+
+
+def complete_table(incomplete: str) -> list[str]:
+    """Return the CSV files and folders that begin with what is typed."""
+    return _files(incomplete, (".csv", ".txt", ".tsv", ".dat"))
+
+
 def complete_scenario(incomplete: str) -> list[str]:
     """Return the bundled scenarios, TOML files and folders that begin with what is typed."""
     return _complete_files(incomplete, (".toml",))
@@ -43,10 +64,14 @@ def complete_source(incomplete: str) -> list[str]:
 def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
     from stickslip.scenarios import library
 
+    return [name for name in library.names() if name.startswith(incomplete)] + _files(incomplete, suffixes)
+
+
+def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
     typed = Path(incomplete)
     folder = typed if incomplete.endswith("/") else typed.parent
     files = [str(path) + ("/" if path.is_dir() else "") for path in _listing(folder) if path.is_dir() or path.suffix in suffixes]
-    return [name for name in [*library.names(), *sorted(files)] if name.startswith(incomplete)]
+    return [name for name in sorted(files) if name.startswith(incomplete)]
 
 
 def _listing(folder: Path) -> list[Path]:

@@ -10,8 +10,9 @@ from typing import Any
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
 from stickslip.scenarios.scenario import Scenario, load_scenario
-from stickslip.scenarios.schema import SHORTEST_EVENT, check_events, check_rtol, check_rule, read_duration
+from stickslip.scenarios.schema import check_events, check_rule, read_duration
 from stickslip.scenarios.values import read_typed
 
 Reader = Callable[[Any, str, str], Any]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds.certified import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -22,7 +24,7 @@ _POINTS_PER_DECADE = 64
 """Density of the geometric part of the search grid: laws vary smoothly with the logarithm of the slip rate."""
 _EVEN_POINTS, _EVEN_REACH = 2001, 10.0
 """Number of points of the evenly spaced part of the search grid, and its end as a multiple of the fastest scale."""
-_BELOW, _ABOVE = 1e-8, 1e4
+_BELOW, ABOVE = 1e-8, 1e4
 """The search grid extends from this multiple of the slowest scale of the contact to this multiple of the fastest one."""
 _ROUNDING = 1e-9
 """Relative distance by which a fold found from rounded values of g' may lie outside its proven interval."""
@@ -40,6 +42,9 @@ class Branch:
     rate_to: float
     excess_from: float
     excess_to: float
+
+    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess_from": "Pa", "excess_to": "Pa"}
+    __repr__ = brief_repr
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
@@ -155,7 +160,7 @@ def search_grid(g: Resistance) -> NDArray[np.float64]:
     scale, and the law's knots in slip rate. Each knot is sampled from both sides, and each interval between two knots in its
     middle, so that none is overlooked.
     """
-    low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * _ABOVE)
+    low, high = math.log10(min(g.scales) * _BELOW), math.log10(max(g.scales) * ABOVE)
     knots = np.array([0.0, *g.rate_knots])
     count = math.ceil((high - low) * _POINTS_PER_DECADE)
     # the geometric points lie too far apart for a law that oscillates in v up to its fastest scale

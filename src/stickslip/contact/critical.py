@@ -13,21 +13,23 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from stickslip.contact.branches import search_grid
+from stickslip.contact.branches import ABOVE, search_grid
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds.certified import Verdict
 from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
 
 Regime = Literal["regular", "irregular"]
 
 _DECADES, _PER_DECADE = 9, 4
 """Decades that the search covers on either side of the present value, and its steps in each decade."""
-_MISSED = 1e-6
+MISSED = 1e-6
 """Share of Z by which the true minimum of g' must lie below that of the grid to be searched for.
 
 A smaller share would cost time at each point of a regime map.
@@ -59,6 +61,8 @@ class Critical:
     enclosures: tuple[tuple[float, float] | None, ...] = ()
     """For each of `values`, a number below it and one above it at which the regimes are proven to differ; None if that fails."""
 
+    __repr__ = brief_repr
+
     @property
     def value(self) -> float | None:
         """The critical value nearest to the present value, or None if none was found."""
@@ -68,29 +72,47 @@ class Critical:
 def steepest_fall(g: Resistance) -> tuple[float, float]:
     """Return the slip rate (m/s) at which g' is smallest, and g' there (Pa s/m), to the rounding of g'.
 
-    The minimum is searched on a grid. If guaranteed bounds of g' show that the grid has missed a lower one, it is searched there.
+    For a law that bends one way it is at one of the two ends. Otherwise the minimum is searched on a grid. If guaranteed bounds of
+    g' show that the grid has missed a lower one, it is searched there.
     """
-    rate, slope = _searched_fall(g)
     if g.law.bends_one_way:
-        return rate, slope
-    lowest = lowest_slope(g, _MISSED)
-    if not lowest.at_most < slope - _MISSED * g.impedance:
+        return _lower_end(g)
+    rate, slope = _searched_fall(g)
+    lowest = lowest_slope(g, MISSED)
+    if not lowest.at_most < slope - MISSED * g.impedance:
         return rate, slope
     width = lowest.rate_to - lowest.rate_from
     slope, rate = _lowest_between(g, max(lowest.rate_from - width, 0.0), lowest.rate_to + width)
     return rate, slope
 
 
+def _lower_end(g: Resistance) -> tuple[float, float]:
+    """Return the same as `steepest_fall` for a law whose g' only rises, or only falls."""
+    ends = np.array((0.0, ABOVE * max(g.scales)))
+    slopes = g.slope(ends)
+    k = int(np.argmin(slopes))
+    return float(ends[k]), float(slopes[k])
+
+
 def _searched_fall(g: Resistance) -> tuple[float, float]:
     """Return the same as `steepest_fall`, from the grid alone."""
+    best = (math.inf, 0.0)
+    for slope, rate, low, high in local_minima(g):
+        best = min(best, (slope, rate), _lowest_between(g, low, high))
+    return best[1], best[0]
+
+
+def local_minima(g: Resistance) -> list[tuple[float, float, float, float]]:
+    """Return the lowest local minima of g' on the search grid, lowest first.
+
+    Each is g' (Pa s/m), its slip rate, and those of the grid points on both sides (m/s).
+    """
     rates = search_grid(g)
     slope = g.slope(rates)
     lowest = np.flatnonzero((slope <= np.append(slope[1:], np.inf)) & (slope <= np.append(np.inf, slope[:-1])))
-    best = (math.inf, 0.0)
-    for i in lowest[np.argsort(slope[lowest])][:_LOWEST].tolist():
-        low, high = float(rates[max(i - 1, 0)]), float(rates[min(i + 1, len(rates) - 1)])
-        best = min(best, (float(slope[i]), float(rates[i])), _lowest_between(g, low, high))
-    return best[1], best[0]
+    chosen = lowest[np.argsort(slope[lowest])][:_LOWEST]
+    sides = rates[np.maximum(chosen - 1, 0)], rates[np.minimum(chosen + 1, len(rates) - 1)]
+    return list(zip(slope[chosen].tolist(), rates[chosen].tolist(), *(side.tolist() for side in sides), strict=True))
 
 
 def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, float]:
@@ -100,8 +122,14 @@ def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, floa
         slope = g.slope(rates)
         k = int(np.argmin(slope))
         low, high = float(rates[max(k - 1, 0)]), float(rates[min(k + 1, 32)])
-        if np.ptp(slope[max(k - 1, 0) : k + 2]) <= 4.0 * np.finfo(float).eps * g.impedance or high - low <= 4.0 * np.spacing(high):
+        if same_to_rounding(slope[max(k - 1, 0) : k + 2], g.impedance, low, high):
             return float(slope[k]), float(rates[k])
+
+
+def same_to_rounding(slopes: ArrayLike, impedance: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.bool_]:
+    """Return True if values of g' (last axis) differ only by rounding, or if two slip rates are neighbouring numbers."""
+    still = np.ptp(slopes, axis=-1) <= 4.0 * np.finfo(float).eps * np.asarray(impedance)
+    return np.asarray(still | (np.subtract(high, low) <= 4.0 * np.spacing(high)))
 
 
 def margin(problem: Problem, law_slip: float | None = None) -> float:
@@ -162,7 +190,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
     """
     check_problem("critical_value", problem)
-    found = parameter(problem, name)
+    found = problem.parameters[name]
     check_no_contact_mass(problem, "critical value")
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from stickslip.contact.branches import within
 from stickslip.contact.equation import Resistance
 from stickslip.contact.folds.certified import Certificate, Interval, sign_of
 from stickslip.contact.folds.slope_bounds import FASTEST, Cells, SlopeBounds
+from stickslip.foundation.brief_repr import brief_repr
 
 _HALVINGS = np.exp2(np.arange(-52.0, 0.0))
 """Relative distances from a fold at which a proof of the sign of g' is tried, the smallest first."""
@@ -25,6 +27,9 @@ class Fold:
     load: float
     enclosure: Interval | None = None
     """Slip rates (m/s) between which g is proven to turn exactly once; None if that is not decided."""
+
+    units: ClassVar = {"rate": "m/s", "load": "Pa", "enclosure": "m/s"}
+    __repr__ = brief_repr
 
 
 def enclosure(g: Resistance, proof: Certificate, rate: float) -> Interval | None:

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import as_slab
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression, evaluate
@@ -31,6 +32,9 @@ class Plateau:
     rate_to: float
     excess: float
 
+    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess": "Pa"}
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True)
 class Resistance:
@@ -44,6 +48,9 @@ class Resistance:
     impedance: float
     normal: float
     law_slip: float
+
+    units: ClassVar = {"impedance": "Pa s/m", "normal": "Pa", "law_slip": "m"}
+    __repr__ = brief_repr
 
     @property
     def strength(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -11,15 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.critical import check_no_contact_mass, margin
-from stickslip.contact.roots import sign_change
+from stickslip.contact.margins import margins
+from stickslip.contact.roots import sign_changes
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import Parameter, parameter
+from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem
 
 Floats = NDArray[np.float64]
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
+_AT_A_TIME = 100
+"""Number of points that are computed together: enough for numpy, and seldom enough for a progress display."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Axis:
     Parameters
     ----------
     parameter : str
-        Name of the parameter (see `stickslip.parameters`).
+        Name of the parameter (a key of `problem.parameters`).
     low, high : float
         First and last value, in SI units.
     points : int
@@ -90,7 +93,7 @@ class RegimeMap:
 
 def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Parameter, Parameter]:
     """Return the parameters of two axes. Raises InputError, which begins with `where`, if both are the same."""
-    names = (parameter(problem, x.parameter), parameter(problem, y.parameter))
+    names = (problem.parameters[x.parameter], problem.parameters[y.parameter])
     if names[0].name == names[1].name:
         raise InputError(f"{where}: needs two different parameters, got {names[0].name} twice")
     return names
@@ -101,7 +104,7 @@ def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) ->
     pairs = list(zip(names, values, strict=True))
     for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be refused although both together are not
         try:
-            return parameter(first.put(one), second.name).put(other)
+            return first.put(one).parameters[second.name].put(other)
         except InputError:
             continue
     return None
@@ -134,37 +137,42 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     check_no_contact_mass(problem, "regime map")
     margin(problem)  # raises for a block, which `at` would otherwise turn into a map of NaN
 
-    def at(x_value: float, y_value: float) -> float:
-        point = put_both(names, (x_value, y_value))
-        return math.nan if point is None else margin(point)
+    def at(points: Sequence[tuple[float, float]]) -> Floats:
+        problems = [put_both(names, point) for point in points]
+        found = np.full(len(points), math.nan)
+        found[[problem is not None for problem in problems]] = margins([problem for problem in problems if problem is not None])
+        return found
 
-    values = np.empty((y.points, x.points))
-    for row, column in product(range(y.points), range(x.points)):
-        values[row, column] = at(float(x.values[column]), float(y.values[row]))
+    points = [(x_value, y_value) for y_value in y.values.tolist() for x_value in x.values.tolist()]
+    found = np.empty(len(points))
+    for first in range(0, len(points), _AT_A_TIME):
+        some = slice(first, first + _AT_A_TIME)
+        found[some] = at(points[some])
         if progress is not None:
-            progress(row * x.points + column + 1, values.size)
+            progress(min(first + _AT_A_TIME, len(points)), len(points))
+    values = found.reshape(y.points, x.points)
     return RegimeMap(x, y, values, _boundary(x.values, y.values, values, at), (names[0].value, names[1].value))
 
 
-def _boundary(x: Floats, y: Floats, values: Floats, at: Callable[[float, float], float]) -> Floats:
+Point = tuple[float, float]
+
+
+def _boundary(x: Floats, y: Floats, values: Floats, at: Callable[[Sequence[Point]], Floats]) -> Floats:
     """Return segments of the critical curve: in each cell of four points, the critical values on its sides, joined by a line."""
-    known: dict[tuple[int, int, int, int], tuple[float, float]] = {}
+    sides = [((i, j), (i, j + 1)) for i in range(len(y)) for j in range(len(x) - 1)]
+    sides += [((i, j), (i + 1, j)) for i in range(len(y) - 1) for j in range(len(x))]
+    crossed = [(a, b) for a, b in sides if not np.isnan(values[a] + values[b]) and (values[a] < 0.0) != (values[b] < 0.0)]
 
-    def on_side(a: tuple[int, int], b: tuple[int, int]) -> tuple[float, float] | None:
-        ends = values[a], values[b]
-        if np.isnan(ends).any() or (ends[0] < 0.0) == (ends[1] < 0.0):
-            return None
-        if (*a, *b) not in known:
-            (i, j), (k, m) = a, b
-            if i == k:
-                known[*a, *b] = sign_change(lambda one: at(one, float(y[i])), float(x[j]), float(x[m])), float(y[i])
-            else:
-                known[*a, *b] = float(x[j]), sign_change(lambda one: at(float(x[j]), one), float(y[i]), float(y[k]))
-        return known[*a, *b]
+    def place(side: int, value: float) -> Point:
+        (i, j), (k, _) = crossed[side]
+        return (value, float(y[i])) if i == k else (float(x[j]), value)
 
+    brackets = [(float(x[j]), float(x[m])) if i == k else (float(y[i]), float(y[k])) for (i, j), (k, m) in crossed]
+    found = sign_changes(lambda wanted: at([place(*one) for one in wanted]).tolist(), brackets)
+    known = {side: place(n, found[n]) for n, side in enumerate(crossed)}
     pieces = []
     for i, j in product(range(len(y) - 1), range(len(x) - 1)):
         corners = ((i, j), (i, j + 1)), ((i, j), (i + 1, j)), ((i, j + 1), (i + 1, j + 1)), ((i + 1, j), (i + 1, j + 1))
-        found = [point for side in corners if (point := on_side(*side)) is not None]
-        pieces += [found[k : k + 2] for k in range(0, len(found) - 1, 2)]
+        ends = [known[side] for side in corners if side in known]
+        pieces += [ends[k : k + 2] for k in range(0, len(ends) - 1, 2)]
     return np.array(pieces).reshape(-1, 2, 2)

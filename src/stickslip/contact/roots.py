@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
 
 _NEAR = 1e-8
 """Relative step below which Newton's method, which converges quadratically, is done after one more step."""
@@ -41,14 +41,40 @@ def sign_change(function: Callable[[float], float], low: float, high: float) -> 
     Chandrupatla's method (1997, Adv. Eng. Softw. 28, 145) interpolates by an inverse quadratic where the function is nearly
     straight, and bisects elsewhere.
     """
+    return sign_changes(lambda wanted: [function(x) for _, x in wanted], [(low, high)])[0]
+
+
+def sign_changes(
+    function: Callable[[list[tuple[int, float]]], list[float]], brackets: Sequence[tuple[float, float]]
+) -> list[float]:
+    """Return the same as `sign_change` for each of several brackets.
+
+    The function is called with pairs of the number of a bracket and a place in it, and returns its value at each.
+    """
+    searches = [_sign_change(low, high) for low, high in brackets]
+    wanted = {k: next(search) for k, search in enumerate(searches)}
+    found = dict.fromkeys(range(len(searches)), math.nan)
+    while wanted:
+        values = function(list(wanted.items()))
+        for k, value in zip(list(wanted), values, strict=True):
+            try:
+                wanted[k] = searches[k].send(value)
+            except StopIteration as ended:
+                found[k] = ended.value
+                del wanted[k]
+    return list(found.values())
+
+
+def _sign_change(low: float, high: float) -> Generator[float, float, float]:
+    """Yield the places at which the search needs the function, receive its value there, and return the place of the change."""
     a, b, c = high, low, high
-    fa, fb = function(a), function(b)
+    fa, fb = (yield a), (yield b)
     fc, t = fa, 0.5
     for _ in range(200):
         x = a + t * (b - a)
         if not min(a, b) < x < max(a, b):
             break
-        fx = function(x)
+        fx = yield x
         if (fx < 0.0) == (fa < 0.0):
             c, fc = a, fa
         else:

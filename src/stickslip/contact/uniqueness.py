@@ -5,6 +5,7 @@ Source: Campillo et al. 1996, section 3: the set K of Fig. 3, the terms regular 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,14 +20,19 @@ from stickslip.contact.folds.certified import Certificate, Verdict, certificate
 from stickslip.contact.folds.lowest import critical_stress_between
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import parameter
-from stickslip.problem.problem import Problem, check_problem
+from stickslip.foundation.formatting import brief, html_table
+from stickslip.foundation.quantities import quantities_of
+from stickslip.problem.problem import Problem
+
+MOST_SHOWN = 6
+"""Largest number of folds, and of jumps, that `repr` shows."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Uniqueness:
-    """The result of `uniqueness`.
+    """The result of `stickslip.uniqueness`; `print` shows it in sentences.
 
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
     """
@@ -41,6 +47,8 @@ class Uniqueness:
     otherwise the normal stress."""
     critical_value: float | None = None
     """Value of that parameter at which the regime changes, in SI units."""
+    critical_unit: str = ""
+    """Unit of the critical value, "1" for a pure number; empty if there is none."""
     critical_stress_between: tuple[float, float] | None = None
     """Bounds between which the critical normal stress (Pa) is proven to lie; None if friction is not proven to fall anywhere."""
     certificate: Verdict = "proven"
@@ -57,6 +65,34 @@ class Uniqueness:
     branches: tuple[Branch, ...] = ()
     loop: Loop | None = None
     """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state."""
+
+    def __str__(self) -> str:
+        return self.summary
+
+    def __repr__(self) -> str:
+        return "\n".join(["stickslip Uniqueness", *(f"  {name:<10}{text}" for name, text in self._lines())])
+
+    def _repr_html_(self) -> str:
+        return html_table("stickslip Uniqueness", [*self._lines(), ("summary", self.summary)])
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Yield name and text of what the result consists of."""
+        yield "regime", f"{self.regime}, {self.certificate}"
+        if self.critical_parameter is not None and self.critical_value is not None:
+            yield "critical", f"{self.critical_parameter} = {brief(self.critical_value, self.critical_unit)}"
+        if self.window is not None:
+            low, high = (brief(excess, "Pa") for excess in self.window)
+            yield "window", f"load minus static strength from {low} to {high}"
+        for fold in self.folds[:MOST_SHOWN]:
+            yield "fold", f"at {brief(fold.rate, 'm/s')}, load {brief(fold.load, 'Pa')}"
+        if len(self.folds) > MOST_SHOWN:
+            yield "", f"and {len(self.folds) - MOST_SHOWN} more folds"
+        yield "rule", self.rule
+        for jump in self.jumps[:MOST_SHOWN]:
+            rates = f"from {brief(jump.rate_before, 'm/s')} to {brief(jump.rate_after, 'm/s')}"
+            yield "jump", f"{jump.direction} {rates} at a load of {brief(jump.load, 'Pa')}"
+        if len(self.jumps) > MOST_SHOWN:
+            yield "", f"and {len(self.jumps) - MOST_SHOWN} more jumps"
 
     @property
     def loop_area(self) -> float:
@@ -155,38 +191,15 @@ class Uniqueness:
         return rates[order], kinds[order]
 
 
-def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
-    """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
-
-    Parameters
-    ----------
-    problem : Problem
-        Problem to examine. For a block, a contact with mass and a law with a state, the answer is "regular".
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
-
-    Returns
-    -------
-    Uniqueness
-        Regime, critical value, folds, jumps of the rule, and what is proven of the folds.
-
-    Raises
-    ------
-    InputError
-        If friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the selection
-        rule cannot be followed.
-
-    Notes
-    -----
-    Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
-    """
-    check_problem("uniqueness", problem)
+def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
+    """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`, where all is described."""
+    slip = None if law_slip is None else quantities_of(Problem)["initial_slip"].check("uniqueness", "law_slip", law_slip)
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
     if problem.friction.state is not None:
         return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
-    g = resistance(problem, law_slip)
+    g = resistance(problem, slip)
     proof = certificate(g) if g.law.depends_on_rate else Certificate("proven")
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
@@ -198,6 +211,7 @@ def uniqueness(problem: Problem, law_slip: float | None = None) -> Uniqueness:
         summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
+        critical_unit=problem.parameters[critical[0]].unit if critical else "",
         critical_stress_between=critical_stress_between(g),
         certificate=proof.verdict,
         undecided=proof.undecided,
@@ -255,7 +269,7 @@ def _summary(
     law, idle = _named(problem, g), f"The selection rule ({problem.rule}) has no effect."
     bound = ""
     if critical:
-        found = parameter(problem, critical[0])
+        found = problem.parameters[critical[0]]
         unit = "" if found.unit == "1" else f" {found.unit}"
         bound = f" The critical value is {critical[0]} = {critical[1]:.9g}{unit}; here {critical[0]} = {found.value:.9g}{unit}."
     if not problem.friction.depends_on_rate:

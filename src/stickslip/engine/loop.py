@@ -40,14 +40,15 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.append_segment import xi_at
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.stiffness import is_implicit
+from stickslip.engine.contact_step.implicit_step import evolves_at_rest, slip_implicitly, stick_with_state
 from stickslip.engine.contact_step.stick import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_fold_piece, leave_moving_branch
-from stickslip.engine.state.layout import Incoming, Integers, NearFold, Part, Stop, Task
+from stickslip.engine.state.layout import Incoming, Integers, NearFold, Part, Stop
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
@@ -167,9 +168,12 @@ def take_step(run: Run, xi_to: float) -> int:
         run.missing = Part.IMPLICIT_STEPS
         return Stop.NEED_PART
     if run.counts.mode == 0:
-        stick(run, xi_to)
+        if evolves_at_rest(run):
+            stick_with_state(run, xi_to)
+        else:
+            stick(run, xi_to)
     elif is_implicit(run):
-        call_part(run.implicit_steps, run, Task.SLIP, xi_to)
+        slip_implicitly(run, xi_to)
     elif run.counts.waits == 1:
         run.state.target = xi_to
         return Stop.SLIPS

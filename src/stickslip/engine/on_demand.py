@@ -11,7 +11,7 @@ from typing import Any
 from stickslip.engine.codegen.compiler import PART, address_of, kernel
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.folds.fold_ahead import way_to_fold
-from stickslip.engine.implicit_step.implicit_step import slip_implicitly, stick_with_state
+from stickslip.engine.implicit_step.radau_step import collocate
 from stickslip.engine.state.layout import Counts, Integers, Params, Part, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
@@ -19,13 +19,9 @@ from stickslip.engine.waves.varying_forcing import take_loading, trips_withstood
 
 
 @kernel
-def implicit_steps(memory: int, task: int, xi_to: float) -> float:
-    """Take one implicit step of the run at an address, up to the place xi_to at most."""
-    if task == Task.SLIP:
-        slip_implicitly(borrow(memory), xi_to)
-    else:
-        stick_with_state(borrow(memory), xi_to)
-    return 0.0
+def implicit_steps(memory: int, task: int, left: float) -> float:
+    """Make the polynomials of an implicit step over the way `left` (in xi) at most; return the length of the step (in xi)."""
+    return collocate(borrow(memory), left)
 
 
 @kernel

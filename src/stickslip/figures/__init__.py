@@ -1,6 +1,7 @@
 """The figures of the package: most modules have `data(...)`, which makes a dataset, and `draw(dataset)`, which draws it.
 
-Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figures of datasets: `ss.figures.plot_sweep(dataset)`.
+Runs and studies draw themselves (`solution.plot()`); `ss.figures` has the figures of datasets: `ss.figures.plot_sweep(dataset)`,
+and of laws made from points: `ss.figures.plot_fit(result)`.
 """
 
 import lazy_loader

@@ -1,3 +1,4 @@
+from .contact.measured import plot_fit
 from .sweeps.sweep import plot_sweep
 
-__all__ = ["plot_sweep"]
+__all__ = ["plot_fit", "plot_sweep"]

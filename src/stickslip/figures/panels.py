@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import Place, sheet
-from stickslip.figures.style import GREY, PALE, label, shown
-from stickslip.problem.parameters import parameter
+from stickslip.figures.style import PALE, label, shown
 from stickslip.problem.problem import Problem
 
 LETTERS = 13.0
@@ -62,20 +61,9 @@ def set_title(where: Any, title: str) -> None:
         where.suptitle(text, x=0.012, ha="left", **look)
 
 
-def letter(axes: Axes, text: str) -> None:
-    """Set the title of a panel."""
-    axes.set_title(text, pad=6)
-
-
 def zero_line(axes: Axes) -> None:
     """Draw a faint horizontal line at zero, for quantities whose zero has a meaning."""
     axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
-
-
-def leave_empty(axes: Axes, text: str = "") -> None:
-    """Replace a panel by a note that says why there is nothing to draw."""
-    axes.set_axis_off()
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=GREY)
 
 
 def set_scale(axes: Axes, which: str, log: bool) -> None:
@@ -103,7 +91,7 @@ def parameter_variables(problem: Problem, **axes: Axis) -> dict[str, xr.Variable
     """Return the coordinates `x` and `y` of a map over two parameters of a problem."""
     found = {}
     for name, axis in axes.items():
-        one = parameter(problem, axis.parameter)
+        one = problem.parameters[axis.parameter]
         text = parameter_name(one.name, one.declared.meaning)
         found[name] = xr.Variable(name, axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
     return found

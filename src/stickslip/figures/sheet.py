@@ -67,8 +67,8 @@ class StickslipFigure(Figure):
         Figures that pyplot knows are shown by the notebook's own backend at the end of the cell, or by a window. The result of the
         cell would be a second picture, so that pyplot forgets a figure that has no window, and the window is left to show its own.
         """
-        from IPython import get_ipython  # type: ignore[import-not-found]
-        from IPython.display import display  # type: ignore[import-not-found]
+        from IPython import get_ipython
+        from IPython.display import display
         from matplotlib import pyplot
 
         if pyplot.fignum_exists(getattr(self, "number", -1)):

@@ -229,16 +229,6 @@ def time_unit(span: float) -> tuple[str, float]:
     return unit_of("s", span)
 
 
-def length_unit(length: float) -> tuple[str, float]:
-    """Return the unit (name, size in m) in which lengths up to the given one (m) are readable."""
-    return unit_of("m", length)
-
-
-def readable(largest: float, units: str) -> tuple[str, float]:
-    """Return the unit (name, size) in which a stress, force or energy (SI) is readable."""
-    return unit_of(units, largest)
-
-
 def nearly_flat(*stresses: Floats) -> bool:
     """Return True if stresses, taken together, vary so little that only their change can be seen in a figure."""
     together = np.concatenate(stresses)

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+import math
 import os
+from datetime import date, time
 from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import as_float
 
 LONGEST = 60
 """Largest number of characters of a value that a message repeats."""
 EXACT = 10**15
 """Whole numbers below this are shown with all digits."""
+
+
+def as_float(value: Any) -> float:
+    """Return a number as a float; an integer that is too large for a float becomes infinite, with its sign."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 def is_number(value: Any) -> bool:
@@ -31,8 +40,11 @@ def shown(value: Any) -> str:
         return str(int(value))
     if isinstance(value, Real):
         return repr(as_float(value))
-    if isinstance(value, str | bytes | os.PathLike | list | tuple):
-        return ascii(value)[:LONGEST]
+    if isinstance(value, date | time):  # from a TOML file
+        return str(value)
+    if isinstance(value, str | bytes | os.PathLike | list | tuple | dict):
+        text = ascii(value)
+        return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
     return type(value).__name__
 
 
@@ -42,11 +54,13 @@ def check_type(where: str, value: Any, kind: Any, wanted: str) -> None:
         raise InputError(f"{where} must be {wanted}, got {shown(value)}")
 
 
-def check_whole(where: str, value: Any) -> int:
-    """Return a whole number above 0. Raises InputError, beginning with `where`, for anything else."""
-    if isinstance(value, bool) or not (isinstance(value, Integral) and int(value) > 0):
-        raise InputError(f"{where} must be a whole number above 0, got {shown(value)}")
-    return int(value)
+def check_whole(where: str, value: Any, least: int = 1, most: int | None = None) -> int:
+    """Return a whole number from `least` to `most` as an int. Raises InputError, beginning with `where`, for anything else."""
+    found = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    if found is not None and least <= found and (most is None or found <= most):
+        return found
+    bounds = f" from {least} to {most}" if most is not None else f" above {least - 1}" if least > 0 else ", 0 or more"
+    raise InputError(f"{where} must be a whole number{bounds}, got {shown(value)}")
 
 
 def as_path(where: str, value: Any, wanted: str = "the name of a file") -> Path:

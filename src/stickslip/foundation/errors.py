@@ -1,13 +1,27 @@
-"""Errors that a user can act on, and hints at the nearest allowed word."""
+"""Errors and warnings that a user can act on, and hints at the nearest allowed word."""
 
 from __future__ import annotations
 
 import difflib
+import inspect
+import warnings
 from collections.abc import Iterable
 
 
 class InputError(ValueError):
     """Raised for input that cannot be used; the message says in one line where the fault is, what it is and what is allowed."""
+
+
+class InputWarning(UserWarning):
+    """Issued for input that can be used but hardly means what it says; the message is one line with the cure."""
+
+
+def warn(message: str) -> None:
+    """Issue an `InputWarning` that points at the first line outside this package which led here."""
+    package, level, frame = __name__.partition(".")[0], 1, inspect.currentframe()
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(InputWarning(message), stacklevel=level)
 
 
 def nearest(word: str, allowed: Iterable[str]) -> str:

@@ -13,13 +13,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
 from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     import h5py
+    import xarray as xr
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
 """First bytes of every HDF5 file, and so of every netCDF file of this package."""
@@ -124,6 +123,8 @@ def digest_of(file: Any, size: int) -> str:
 
 def read(path: Path, what: str = "a file") -> xr.Dataset:
     """Read a file that `write` wrote. Raises InputError for any other file, and for one whose tables claim more than its size."""
+    import xarray as xr  # here, because it takes a quarter of a second to import
+
     check(path, what)
     try:
         _check_sizes(path)
@@ -137,6 +138,8 @@ def read(path: Path, what: str = "a file") -> xr.Dataset:
 
 def attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of a file that `write` wrote; return an empty dictionary for any other file."""
+    import xarray as xr
+
     try:
         check(path)
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import numbers
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.conversion import as_text, has_unit, to_number
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.units import si_base
 
@@ -45,6 +47,8 @@ class Quantity:
         Exclusive and inclusive lower bound, in `unit`.
     infinite : bool
         If True, infinite values and magnitudes above `LARGEST` are allowed.
+    word : str
+        Text that may be given for infinity besides "inf", if `infinite`.
     whole : bool
         If True, only whole numbers up to `LARGEST_WHOLE` in magnitude are allowed, such as an exponent. In a friction law such a
         number is written into the formula and is not a parameter of it.
@@ -55,17 +59,24 @@ class Quantity:
     above: float | None = None
     at_least: float | None = None
     infinite: bool = False
+    word: str = "inf"
     whole: bool = False
 
     def check(self, owner: str, name: str, value: Any) -> float:
-        """Return the value as a float. Raise InputError, which names owner and field, if it is not allowed."""
+        """Return the value in SI as a float. Raise InputError, which names owner and field, if it is not allowed.
+
+        A value is a number in SI, a text with a unit, or a quantity of pint; of the last two the first unit of "Pa or N" to which
+        it converts counts. Whole numbers, fractions, decimals, and numbers and arrays without dimensions of numpy are numbers.
+        """
         where = f"{owner}: {name}"
-        if isinstance(value, bool) or not isinstance(value, numbers.Real):
-            raise InputError(f"{where} must be a number in {self.label}, got {value!r}")
-        number = as_float(value)
+        try:
+            number = value if type(value) is float else to_number(value, self.unit, ("inf", self.word) if self.infinite else ())
+        except InputError as error:
+            raise InputError(f"{where} must be {self.allowed}, got {error}") from None
         for broken, rule in self._rules(number):
             if broken:
-                raise InputError(f"{where} must {rule}, got {number:g}")
+                origin = f" (from {shown(value)})" if isinstance(value, str) else ""
+                raise InputError(f"{where} must {rule}, got {number:g}{origin}")
         return number
 
     def allows(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -94,13 +105,20 @@ class Quantity:
         """The unit as it is shown to people: "(a pure number)" in place of "1"."""
         return "(a pure number)" if self.unit == "1" else self.unit
 
+    @property
+    def allowed(self) -> str:
+        """The values that may be given, in words."""
+        first, several, _ = self.unit.partition(" or ")
+        example = f'a number in {self.unit}{"," * bool(several)} or a text with a unit such as "10 {first.removeprefix("1")}"'
+        return ("a number" if self.unit == "1" else example) + (f' (or "{self.word}")' if self.infinite else "")
 
-def as_float(value: Any) -> float:
-    """Return a number as a float; an integer that is too large for a float becomes infinite, with its sign."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf
+    @property
+    def described(self) -> str:
+        """Meaning, unit and bounds, in words."""
+        parts = [self.meaning, "no unit" if self.unit == "1" else f"in {self.unit}"]
+        parts += [] if self.above is None else [f"above {self.above:g}"]
+        parts += [] if self.at_least is None else [f"at least {self.at_least:g}"]
+        return ", ".join(parts)
 
 
 @dataclass(frozen=True)
@@ -118,8 +136,13 @@ class Series:
         return self.item.meaning
 
     def check(self, owner: str, name: str, value: Any) -> tuple[float, ...]:
-        """Return the numbers as a tuple of floats. Raise InputError that names owner, field and index."""
-        if isinstance(value, str | Mapping) or not isinstance(value, Iterable) or np.ndim(np.asarray(value, object)) != 1:
+        """Return the numbers in SI as a tuple of floats. Raise InputError that names owner, field and index.
+
+        The value is a list, or an array, of what `Quantity.check` takes, or an array of numpy with a unit of pint.
+        """
+        if has_unit(value) and np.ndim(value.magnitude) == 1:
+            value = list(value)
+        if isinstance(value, str | Mapping) or has_unit(value) or not isinstance(value, Iterable) or any(map(_is_list, value)):
             raise InputError(f"{owner}: {name} must be a list of numbers in {self.item.label}, got {type(value).__name__}")
         found = tuple(self.item.check(owner, f"{name}[{i}]", one) for i, one in enumerate(value))
         if not self.least <= len(found) <= LARGEST_SERIES:
@@ -129,6 +152,10 @@ class Series:
                 if not one < following:
                     raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}")
         return found
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
 
 
 @dataclass(frozen=True)
@@ -181,13 +208,24 @@ class Named(NamedTuple):
 
     @classmethod
     def read(cls, name: str, value: Any, where: str) -> Named:
-        """Make one from a number or a text with a unit. Raise InputError, with a message that begins with `where`."""
-        if not isinstance(value, str):
+        """Make one from a number, a text with a unit or a quantity of pint. Raise InputError that begins with `where`."""
+        if not isinstance(value, str) and not has_unit(value):
             return cls(name, value)
         try:
-            return cls(name, *si_base(value))
+            return cls(name, *si_base(value if isinstance(value, str) else as_text(value)))
         except InputError as error:
-            raise InputError(f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}") from None
+            cure = ": write a number without quotes" if _is_number_text(value) else ""
+            raise InputError(
+                f"{where} parameters {ascii(name)[:60]} must be a number or a text with a unit: {error}{cure}"
+            ) from None
+
+
+def _is_number_text(value: Any) -> bool:
+    """Return True for a text that is a number without a unit, such as "0.7"."""
+    try:
+        return isinstance(value, str) and math.isfinite(float(value))
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -210,6 +248,7 @@ class NamedNumbers:
 
 Field = Quantity | Series | Part | Text | Choice | NamedNumbers
 """Every kind of declaration."""
+_Declared = TypeVar("_Declared", bound=Field)
 
 
 def declare(declared: Field, default: Any = dataclasses.MISSING) -> Any:
@@ -224,6 +263,7 @@ def quantity(
     above: float | None = None,
     at_least: float | None = None,
     infinite: bool = False,
+    word: str = "inf",
     whole: bool = False,
     default: Any = dataclasses.MISSING,
 ) -> Any:
@@ -231,7 +271,7 @@ def quantity(
 
     With None as `default` the field is optional.
     """
-    return declare(Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, whole=whole), default)
+    return declare(Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, word=word, whole=whole), default)
 
 
 def fields_of(kind: type) -> dict[str, tuple[Field, Any]]:
@@ -250,50 +290,22 @@ def quantities_of(kind: type) -> dict[str, Quantity]:
     return {name: declared for name, declared in found.items() if isinstance(declared, Quantity)}
 
 
-def check_fields(owner: Any, but: Collection[str] = ()) -> None:
+def check_fields(owner: Any, but: Collection[str] = (), units: Mapping[str, str] = MappingProxyType({})) -> None:
     """Check the declared fields of a frozen dataclass, except those in `but`, and store the converted values.
 
-    A field that is None is left as it is if None is its default. Raise InputError for a value that is not allowed.
+    `units` replaces declared units such as "Pa or N" by the one that applies here. A field that is None is left as it is if None
+    is its default. Raise InputError for a value that is not allowed.
     """
     for name, (declared, default) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if name not in but and (value is not None or default is not None):
-            object.__setattr__(owner, name, declared.check(type(owner).__name__, name, value))
+            object.__setattr__(owner, name, in_units(declared, units).check(type(owner).__name__, name, value))
 
 
-def document_fields(kind: type, source: str = "") -> None:
-    """Append the declared fields, as the section Parameters, and the source to the docstring of a class that is being defined.
-
-    Call it in `__init_subclass__`, where the fields of the class itself are still plain attributes. A class without a docstring, or
-    with a section Parameters of its own, is left as it is.
-    """
-    text = kind.__doc__
-    if not text or "Parameters\n" in text:
-        return
-    declared: dict[str, dataclasses.Field[Any]] = {}
-    for base in reversed(kind.__mro__[1:]):
-        declared |= {name: field for name, field in getattr(base, "__dataclass_fields__", {}).items() if field.metadata}
-    declared |= {name: value for name, value in vars(kind).items() if isinstance(value, dataclasses.Field)}
-    sections = [text.rstrip()]
-    lines = [f"    {name}\n        {_described(one.metadata['declared'])}" for name, one in declared.items() if one.metadata]
-    if lines:
-        sections.append("    Parameters\n    ----------\n" + "\n".join(lines))
-    if source:
-        sections.append(f"    Notes\n    -----\n    Source: {source}.")
-    kind.__doc__ = "\n\n".join(sections) + "\n    "
-
-
-def _described(declared: Field) -> str:
-    """Return meaning, unit and bounds of a field as a sentence."""
-    item = declared.item if isinstance(declared, Series) else declared
-    parts = [declared.meaning]
-    if isinstance(item, Quantity):
-        parts.append("no unit" if item.unit == "1" else f"in {item.unit}")
-        parts += [f"greater than {item.above:g}"] if item.above is not None else []
-        parts += [f"at least {item.at_least:g}"] if item.at_least is not None else []
-    if isinstance(declared, Series):
-        parts += [f"{declared.least} or more numbers"] + ["ascending"] * declared.ascending
-    if isinstance(declared, Choice):
-        parts.append(" or ".join(f'"{word}"' for word in declared.allowed))
-    text = ", ".join(parts)
-    return f"{text[:1].upper()}{text[1:]}."
+def in_units(declared: _Declared, units: Mapping[str, str]) -> _Declared:
+    """Return a declaration with its unit, or that of its items, replaced as `units` says."""
+    if isinstance(declared, Series) and declared.item.unit in units:
+        return dataclasses.replace(declared, item=dataclasses.replace(declared.item, unit=units[declared.item.unit]))
+    if isinstance(declared, Quantity) and declared.unit in units:
+        return dataclasses.replace(declared, unit=units[declared.unit])
+    return declared

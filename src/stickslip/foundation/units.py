@@ -1,6 +1,7 @@
 """Conversion of text such as "10 km" to a number in SI units.
 
-Only a number, unit names and small powers are accepted; nothing is evaluated.
+Only a number, unit names and small powers are accepted; nothing is evaluated. Common units are in `unit_table`, all others
+in pint.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from functools import cache
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.unit_table import UNIT, tabulated
 
 LONGEST = 64
 """Largest number of characters in a quantity; a limit is needed because units come from untrusted files."""
@@ -20,11 +22,7 @@ COMMON_UNITS = (
 )
 """Units among which the nearest one to an unknown name is looked for; every unit of the unit library is accepted."""
 
-_NAME = r"[A-Za-zµ][A-Za-zµ_]*"
-_FACTOR = rf"{_NAME}(?:\s*(?:\^|\*\*)\s*-?[1-9])?"
-_QUANTITY = re.compile(
-    rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)\s*(?P<unit>(?:/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*)\s*"
-)
+_QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)\s*(?P<unit>{UNIT})\s*")
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:
@@ -51,6 +49,11 @@ def _read_unit(unit: str, hint: str = "") -> tuple[Fraction, dict[str, Any]]:
 
     Raises InputError for a unit that is unknown, and for one that cannot be read, with `hint` at the end of the message.
     """
+    return tabulated(unit) or _looked_up(unit, hint)
+
+
+def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
+    """Return the same as `_read_unit`, from the library of units."""
     import pint
 
     registry = _registry()
@@ -99,6 +102,6 @@ def si_base(text: str) -> tuple[float, str]:
 
 @cache
 def _registry() -> Any:
-    import pint  # takes 0.3 s to load, which only a scenario with units should cost
+    import pint  # takes half a second to load and to build, which only a unit that is not in the table should cost
 
     return pint.UnitRegistry(non_int_type=Fraction)

@@ -1,11 +1,15 @@
 """Export the friction laws of the contact.
 
 To add a law, add one file to `laws` (docs/adding-a-law.md), and here its import, its place in `LAWS` and its name in `__all__`.
-`FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users.
+`FromExpression`, `FromFunction` and `FromTable` make laws from formulas, functions and measured points of users;
+`smooth` and `fit` make laws from noisy points.
 """
 
+from stickslip.friction.custom.fit import Fit, fit, fit_each
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
+from stickslip.friction.custom.measured import Points
+from stickslip.friction.custom.smooth import Smooth, smooth
 from stickslip.friction.custom.table import FromTable
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.coulomb import Coulomb
@@ -51,6 +55,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
 """Every friction law by its name in scenario files."""
 
 __all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
+__all__ += ["Fit", "Points", "Smooth", "fit", "fit_each", "smooth"]
 __all__ += ["Coulomb", "HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
 __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerStribeck", "SinusoidalSlip", "SlipPlusRate", "SlipTimesRate"]

@@ -62,8 +62,8 @@ class CompositeLaw(LawOfParts):
     has a state, and at most one of them has knots.
     """
 
-    slip: FrictionLaw = declare(Part("a law of slip"))  # noqa: RUF009 - makes a dataclass field
-    rate: FrictionLaw = declare(Part("a law of slip rate"))  # noqa: RUF009
+    slip: FrictionLaw = declare(Part("a law of slip"))
+    rate: FrictionLaw = declare(Part("a law of slip rate"))
 
     @staticmethod
     @abstractmethod

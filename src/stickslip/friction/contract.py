@@ -13,8 +13,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields, document_fields
+from stickslip.foundation.field_docs import document_fields
+from stickslip.foundation.quantities import check_fields
 
 Formula = Callable[..., Any]
 """A function that returns mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s).
@@ -116,7 +118,7 @@ class LawContract(ABC):
     def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
         """Return the parameter, and its value in SI, at which Z v + S mu(v) first has a falling part.
 
-        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `stickslip.parameters`. Return None without a
+        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `problem.parameters`. Return None without a
         closed form, or if Z v + S mu(v) never falls. On one side of the value several slip rates solve the contact equation
         (paper, section 3).
         """
@@ -155,6 +157,8 @@ class LawContract(ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         document_fields(cls, vars(cls).get("source", ""))
+        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
+            cls.__repr__ = brief_repr  # type: ignore[method-assign]
 
     def __post_init__(self) -> None:
         check_fields(self)

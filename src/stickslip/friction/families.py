@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.law import FrictionLaw
@@ -59,7 +60,7 @@ class SlipWeakening(RemembersSlip):
 
     static: float = quantity("1", "friction coefficient before slip", at_least=0)
     dynamic: float = quantity("1", "friction coefficient after much slip", at_least=0)
-    distance: float = quantity("m", "slip over which friction falls (often Dc)", above=0)
+    distance: Number = quantity("m", "slip over which friction falls (often Dc)", above=0)
 
     @staticmethod
     def weakened(law: Any, u: Any, v: Any) -> Any:
@@ -80,9 +81,9 @@ class Stribeck(FrictionLaw):
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient at high slip rate, without the viscous term", at_least=0)
-    rate: float = quantity("m/s", "slip rate v_s over which friction falls", above=0)
+    rate: Number = quantity("m/s", "slip rate v_s over which friction falls", above=0)
     exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True)
-    viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
+    viscosity: Number = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
 
     @abstractmethod
     def steepness(self) -> float:

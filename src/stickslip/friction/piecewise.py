@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import override
 
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, warn
 from stickslip.friction.contract import Formula
 from stickslip.friction.law import FrictionLaw
+from stickslip.friction.noise import noise_in
 
 
 def _line(law: Any, step: Any) -> Any:
@@ -62,6 +63,9 @@ class PiecewiseLaw(FrictionLaw):
         places, values = self.points
         if len(places) != len(values):
             raise InputError(f"{type(self).__name__}: {len(places)} places but {len(values)} friction coefficients")
+        noise = noise_in(places, values)
+        if noise is not None:
+            warn(f"{type(self).__name__}: {noise.warning()}")
 
     @property
     def _before(self) -> bool:

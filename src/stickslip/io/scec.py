@@ -18,6 +18,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.io.sampling import Floats, Sampling, Series, sample
 from stickslip.problem.problem import Problem
+from stickslip.scenarios.entries import to_table
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.window import Window
 
@@ -103,8 +104,8 @@ def _about(run: Readings, series: Series, problem: str, station: str, meanings: 
     yield f"problem={problem}"
     yield "code=stickslip"
     yield f"code_version={stickslip.__version__}"
-    yield f"body={run.problem.body!r}"
-    yield f"friction={run.problem.friction!r}"
+    yield f"body={to_table(run.problem.body)}"
+    yield f"friction={to_table(run.problem.friction)}"
     yield from (f"{name}={text}" for name, text in run.problem.loading_texts.items())
     yield f"initial_load={run.problem.load!r} {run.problem.load_unit}"
     yield f"selection_rule={run.problem.rule}"

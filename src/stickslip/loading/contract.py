@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
 from dataclasses import is_dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,8 +13,11 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields, document_fields
+from stickslip.foundation.field_docs import document_fields
+from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
 
 VARYING = "m/s or Pa"
 """Unit of the varying quantity: m/s for a pull rate, Pa for a far stress."""
@@ -83,9 +87,26 @@ class LoadingHistory(ABC):
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         document_fields(cls, vars(cls).get("source", ""))
+        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
+            cls.__repr__ = LoadingHistory.__repr__  # type: ignore[method-assign]
+
+    unit: str = VARYING
+    """Unit of the values, "m/s" or "Pa", if they were given with one; plain numbers fit both."""
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        units = [unit for value in self._varying() if (unit := unit_among(value, VARYING))]
+        object.__setattr__(self, "unit", units[0] if units else VARYING)
+        check_fields(self, units={VARYING: self.unit})
+
+    def _varying(self) -> Iterator[Any]:
+        """Yield the values as they were given, those of a series one by one."""
+        for name, (declared, _) in fields_of(type(self)).items():
+            item, value = declared.item if isinstance(declared, Series) else declared, getattr(self, name)
+            if isinstance(item, Quantity) and item.unit == VARYING:
+                yield from value if isinstance(declared, Series) and isinstance(value, list | tuple) else (value,)
+
+    def __repr__(self) -> str:
+        return brief_repr(self, {VARYING: self.unit})
 
     @property
     @abstractmethod

@@ -1,11 +1,11 @@
 """Define slides with holds between them, as in laboratory slide-hold-slide tests of how friction heals."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
 
@@ -18,10 +18,10 @@ class HoldAndSlide(LoadingHistory):
     source = "Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests)"
     example: ClassVar = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
 
-    slide: float = quantity(VARYING, "value during a slide")
-    slide_time: float = quantity("s", "duration of the slide before each hold", above=0)
-    hold_times: Sequence[float] = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
-    hold: float = quantity(VARYING, "value during a hold", default=0.0)
+    slide: Number = quantity(VARYING, "value during a slide")
+    slide_time: Number = quantity("s", "duration of the slide before each hold", above=0)
+    hold_times: Numbers = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
+    hold: Number = quantity(VARYING, "value during a hold", default=0.0)
 
     @property
     @override

@@ -1,12 +1,12 @@
 """Define a loading history that is linear between given points: ramps, and measured histories."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, declare
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment
@@ -20,8 +20,8 @@ class PiecewiseLinear(LoadingHistory):
     example: ClassVar = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
     columns: ClassVar = {"time": "times", "value": "values"}
 
-    times: Sequence[float] = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
-    values: Sequence[float] = declare(Series(Quantity(VARYING, "values at these times")))
+    times: Numbers = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
+    values: Numbers = declare(Series(Quantity(VARYING, "values at these times")))
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.loading.contract import VARYING, LoadingHistory, Segment, Tone
 
@@ -17,10 +18,10 @@ class Sinusoidal(LoadingHistory):
     kind = "sinusoidal"
     example: ClassVar = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}
 
-    mean: float = quantity(VARYING, "mean value")
-    amplitude: float = quantity(VARYING, "amplitude of the oscillation")
-    period: float = quantity("s", "period of the oscillation", above=0)
-    phase: float = quantity("rad", "phase of the oscillation at the start", default=0.0)
+    mean: Number = quantity(VARYING, "mean value")
+    amplitude: Number = quantity(VARYING, "amplitude of the oscillation")
+    period: Number = quantity("s", "period of the oscillation", above=0)
+    phase: Number = quantity("rad", "phase of the oscillation at the start", default=0.0)
 
     @property
     @override

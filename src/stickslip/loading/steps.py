@@ -1,10 +1,10 @@
 """Define a loading history of jumps between constant values, such as velocity steps."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, declare
 from stickslip.loading.contract import VARYING, Segment
@@ -17,10 +17,8 @@ class Steps(PiecewiseLinear):
 
     kind = "steps"
 
-    times: Sequence[float] = declare(
-        Series(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True)
-    )
-    values: Sequence[float] = declare(Series(Quantity(VARYING, "the values")))
+    times: Numbers = declare(Series(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True))
+    values: Numbers = declare(Series(Quantity(VARYING, "the values")))
 
     def __post_init__(self) -> None:
         super().__post_init__()

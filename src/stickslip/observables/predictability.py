@@ -18,6 +18,7 @@ import numpy as np
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
@@ -47,6 +48,8 @@ class Predictability:
     time: Floats
     amplification: Floats
     error: float
+
+    __repr__ = brief_repr
 
     @property
     def horizon(self) -> float:

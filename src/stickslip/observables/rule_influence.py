@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, branches
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.trajectory.history import Floats, History, Side
-from stickslip.trajectory.tables import shocks_table
+from stickslip.trajectory.tables import shock_columns
 
 Regime = Literal["regular", "irregular", "continuum"]
 
@@ -46,6 +47,9 @@ class RuleInfluence:
     shocks: NDArray[np.bool_]
     since: float | None = None
     folds_move: bool = False
+
+    units: ClassVar = {"since": "s"}
+    __repr__ = brief_repr
 
     @property
     def note(self) -> str:
@@ -82,15 +86,15 @@ def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floa
     The search for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
     """
     problem = history.problem
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     if contact.resistance is None or not problem.friction.depends_on_rate:
         return RuleInfluence(problem.rule, contact.regime, np.zeros(0, bool))
     if problem.friction.depends_on_slip:
         return RuleInfluence(problem.rule, _regime_on_the_way(history, contact), np.zeros(0, bool), folds_move=True)
-    table = shocks_table(history)
+    shocks = shock_columns(history)
+    time, cause = shocks["time"], np.array(shocks["cause"], object)
     if contact.window is None:
-        return RuleInfluence(problem.rule, contact.regime, np.zeros(len(table), bool))
-    time, cause = table.time.to_numpy(float), table.cause.to_numpy()
+        return RuleInfluence(problem.rule, contact.regime, np.zeros(len(time), bool))
     before, after = (_side_of_folds(contact, _load(history, time, side)) == 0.0 for side in ("left", "right"))
     decided = (cause == "fold") | (before & (cause != "start")) | after
     return RuleInfluence(problem.rule, contact.regime, decided, _first_between(history, contact, *load_curve()))

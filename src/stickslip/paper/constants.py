@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from stickslip.bodies import as_block, as_slab
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import problem, typed
@@ -56,7 +56,7 @@ def constants() -> list[Constant]:
         Constant("G", "shear modulus ρc²", slab.shear_modulus, None, "Pa"),
         Constant("Z", "impedance ρc", slab.impedance, None, "Pa s/m"),
         Constant("R", "two-way travel time 2h/c", slab.two_way_time, None, "s"),
-        Constant("αc", "critical α, √(ρG)/(S(μS − μD))", uniqueness(rate).critical_value, None, "s/m"),
+        Constant("αc", "critical α, √(ρG)/(S(μS − μD))", uniqueness_of(rate).critical_value, None, "s/m"),
         Constant("uc", "slip of the largest friction, π/(2ω)", _peak(slip), _peak(other_slip), "m"),
         Constant("u0", "initial slip of the slab", slip.initial_slip, other_slip.initial_slip, "m", "uc + 10⁻³ m"),
         Constant("G(D0−u0)/h", "initial load of the slab", slip.load, other_slip.load, "Pa", "reconstructed: D0 is 10⁻³ m larger"),

@@ -6,12 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.figures.contact import hysteresis, laws, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import Runs, problem, typed
-from stickslip.problem.parameters import parameter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,9 +40,9 @@ def _laws(_: Runs) -> xr.Dataset:
 
 def _sets(_: Runs) -> xr.Dataset:
     irregular = problem("fig6-slab")
-    alpha = 0.5 * (uniqueness(irregular).critical_value or 0.0)
-    cases = {"regular": parameter(irregular, "alpha").put(alpha), "irregular": irregular}
-    titles = {name: rf"{name.capitalize()}, $\alpha$ = {parameter(case, 'alpha').value:g} s/m" for name, case in cases.items()}
+    alpha = 0.5 * (uniqueness_of(irregular).critical_value or 0.0)
+    cases = {"regular": irregular.parameters["alpha"].put(alpha), "irregular": irregular}
+    titles = {name: rf"{name.capitalize()}, $\alpha$ = {case.parameters['alpha'].value:g} s/m" for name, case in cases.items()}
     return resistance.data(cases, 6.0, titles)
 
 

@@ -6,13 +6,18 @@ enough if only one name ends with it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
-from stickslip.problem.problem import Problem, check_problem
+
+if TYPE_CHECKING:
+    from stickslip.problem.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,9 @@ class Parameter:
     value: float
     declared: Quantity
     _put: Callable[[float], Problem]
+
+    def __repr__(self) -> str:
+        return f"Parameter({self.name} = {brief(self.value, self.unit)}, {self.declared.meaning})"
 
     @property
     def unit(self) -> str:
@@ -60,63 +68,58 @@ class Parameter:
         return self._put(value)
 
 
-def parameter(problem: Problem, name: str) -> Parameter:
-    """Return the number of a problem that has a given name.
+class Parameters(Mapping[str, Parameter]):
+    """The numbers of a problem by name, those that are None left out: of the friction law and its parts, of the body, of the start.
 
-    Parameters
-    ----------
-    problem
-        The problem.
-    name
-        The full name of the number, such as "friction.alpha", or the end of it, such as "alpha".
-
-    Returns
-    -------
-    Parameter
-        The number, with its value and unit.
-
-    Raises
-    ------
-    InputError
-        If the name fits no number, or several.
+    `parameters["alpha"]` finds "friction.alpha" if no other name ends with ".alpha". It raises InputError if the name fits no
+    number, or several.
     """
-    check_problem("parameter", problem)
-    found = {one.name: one for one in parameters(problem)}
-    if name in found:
-        return found[name]
-    fitting = [full for full in found if full.endswith(f".{name}")]
-    if len(fitting) > 1:
-        raise InputError(f"parameter '{name}' is ambiguous: give one of {', '.join(fitting)}")
-    if not fitting:
-        single = [full for full in found if "[" not in full]
-        hint = nearest(name, [full.rpartition(".")[2] for full in single])
-        raise InputError(f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, single)}")
-    return found[fitting[0]]
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+
+    @cached_property
+    def _found(self) -> dict[str, Parameter]:
+        return {one.name: one for one in _of_problem(self._problem)}
+
+    def __getitem__(self, name: str) -> Parameter:
+        found = self._found
+        if name in found:
+            return found[name]
+        if not isinstance(name, str):
+            raise InputError(f'parameters: a name must be text such as "friction.alpha", got {shown(name)}')
+        fitting = [full for full in found if full.endswith(f".{name}")]
+        if len(fitting) > 1:
+            raise InputError(f"parameter '{name}' is ambiguous: give one of {', '.join(fitting)}")
+        if not fitting:
+            single = [full for full in found if "[" not in full]
+            hint = nearest(name, [full.rpartition(".")[2] for full in single])
+            raise InputError(
+                f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, single)}"
+            )
+        return found[fitting[0]]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{one.name} = {brief(one.value, one.unit)}" for one in self._found.values())
 
 
-def parameters(problem: Problem) -> Iterator[Parameter]:
-    """Iterate over the numbers of a problem.
-
-    Parameters
-    ----------
-    problem
-        The problem.
-
-    Yields
-    ------
-    Parameter
-        The numbers of the friction law and its parts, then those of the body, then the initial slip. Those that are None are left
-        out.
-    """
-    check_problem("parameters", problem)
+def _of_problem(problem: Problem) -> Iterator[Parameter]:
     yield from _of_law(problem.friction, "friction", lambda law: replace(problem, friction=law))
     for name, declared in quantities_of(type(problem.body)).items():
         value = getattr(problem.body, name)
         if value is not None:
-            yield Parameter(
-                f"body.{name}", value, declared, _in_field(problem.body, name, lambda body: replace(problem, body=body))
-            )
-    slip = quantities_of(Problem)["initial_slip"]
+            put = _in_field(problem.body, name, lambda body: replace(problem, body=body))
+            yield Parameter(f"body.{name}", value, declared, put)
+    slip = quantities_of(type(problem))["initial_slip"]
     yield Parameter("initial.slip", problem.initial_slip, slip, lambda value: replace(problem, initial_slip=value))
 
 
@@ -130,7 +133,7 @@ def _of_law(law: Any, place: str, put: Callable[[Any], Problem]) -> Iterator[Par
                 yield Parameter(f"{place}.{name}[{i}]", one, declared.item, _in_series(law, name, i, put))
         elif isinstance(declared, NamedNumbers):
             for i, one in enumerate(value):
-                number = Quantity(one.unit or "1", "")
+                number = Quantity(one.unit or "1", "parameter of the formula")
                 yield Parameter(f"{place}.{declared.key}.{one.name}", one.value, number, _in_names(law, name, i, put))
         elif isinstance(declared, Part):
             yield from _of_law(value, f"{place}.{name}", _in_field(law, name, put))

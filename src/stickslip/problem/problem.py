@@ -3,29 +3,43 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, Body
-from stickslip.foundation.arguments import check_type, shown
+from stickslip.foundation.arguments import check_type, is_number, shown
+from stickslip.foundation.brief_repr import brief_repr, fields_in, shown_fields
+from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
+from stickslip.friction.custom.any_law import as_law
 from stickslip.loading import LoadingHistory
-from stickslip.loading.contract import SILENT
+from stickslip.loading.contract import SILENT, VARYING
+from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
 DAY = 86_400.0
 """A day, s: the length of a row of the history of a block that never sticks."""
+A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
+"""Hint for a value that is no number."""
+LOAD = "Pa or N"
+"""Unit of a load: Pa on a slab, N on a block."""
 LONGEST_ROW = 1e6
 """Largest number of periods of a block in one row of its history (1)."""
+
+
+def _required() -> Any:
+    """Return a field without a default; type checkers read the annotation `Converted` only where a field has a value."""
+    return field()
 
 
 @dataclass(frozen=True)
@@ -37,7 +51,9 @@ class Problem:
     body
         An `ElasticSlab`, whose loads are stresses (Pa), or a `SpringBlock`, whose loads are forces (N).
     friction
-        The friction law of the contact.
+        The friction law of the contact. A Python function of slip `u` (m), of slip rate `v` (m/s) or of both is made a law by
+        `stickslip.friction.FromFunction`, and a text such as "0.3 + 0.5/(1 + v)" by `stickslip.friction.FromExpression`. Its
+        value at v = 0 is then the static strength, divided by the normal stress.
     pull_rate
         Rate V at which the driver is pulled (m/s), or a loading history of it.
     initial_slip
@@ -73,14 +89,19 @@ class Problem:
     """
 
     body: Body
-    friction: FrictionLaw
-    pull_rate: float | LoadingHistory = quantity("m/s", "rate V at which the driver is pulled", default=0.0)
-    initial_slip: float = quantity("m", "slip u0 at the start", default=0.0)
-    initial_load: float | None = quantity("Pa or N", "shear load on the contact at the start", default=None)
-    initial_excess: float | None = quantity("Pa or N", "initial load minus static strength, kept exactly", default=None)
-    initial_state: float | None = field(default=None)  # not declared as a quantity, because the law determines its unit
-    far_stress: float | LoadingHistory | None = quantity("Pa", "shear stress far beyond a driver of finite impedance", default=None)
-    far_stress_rate: float = quantity("Pa/s", "rate of change of the far stress", default=0.0)
+    friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = _required()  # noqa: RUF009 - makes a field
+    pull_rate: Converted[float | LoadingHistory, float | str | WithUnit | LoadingHistory] = quantity(
+        "m/s", "rate V at which the driver is pulled", default=0.0
+    )
+    initial_slip: Number = quantity("m", "slip u0 at the start", default=0.0)
+    initial_load: OptionalNumber = quantity(LOAD, "shear load on the contact at the start", default=None)
+    initial_excess: OptionalNumber = quantity(LOAD, "initial load minus static strength, kept exactly", default=None)
+    # not declared as a quantity, because the law determines its unit
+    initial_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # the annotation is that of a converted value
+    far_stress: Converted[float | LoadingHistory | None, float | str | WithUnit | LoadingHistory | None] = quantity(
+        "Pa", "shear stress far beyond a driver of finite impedance", default=None
+    )
+    far_stress_rate: Number = quantity("Pa/s", "rate of change of the far stress", default=0.0)
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
@@ -89,9 +110,9 @@ class Problem:
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
         check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
-        check_type("Problem: friction", self.friction, FrictionLaw, "a friction law")
+        object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         self._check_varying()
-        check_fields(self, but=self._varying)
+        check_fields(self, but=self._varying, units={LOAD: self.body.load_unit})
         if (self.initial_load is None) == (self.initial_excess is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
@@ -99,12 +120,40 @@ class Problem:
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
+    def _shown(self) -> dict[str, str]:
+        """Return the texts of the fields that have not their default value, by name; those of body and friction come first."""
+        state, shown = self.friction.state, dict(shown_fields(self, {LOAD: self.load_unit}))
+        for name in self._varying:
+            shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
+        if state is not None and self.initial_state is not None:
+            shown["initial_state"] = f"'{brief(self.initial_state, state.unit)}'"
+        return shown | ({"selection": f"'{self.rule}'"} if "selection" in shown else {})
+
+    def __repr__(self) -> str:
+        shown = self._shown()
+        parts = [shown.pop("body"), shown.pop("friction"), ", ".join(f"{name}={text}" for name, text in shown.items())]
+        return "\n".join(["Problem(", *(f"    {part}," for part in parts), ")"])
+
+    def _repr_html_(self) -> str:
+        shown, declared = self._shown(), quantities_of(Problem)
+        rows = []
+        for name, part in (("body", self.body), ("friction", self.friction)):
+            rows += [(name, type(part).__name__, ""), *fields_in(part, f"{name}.")]
+        for name in [name for name in shown if name not in ("body", "friction")]:
+            rows.append((name, shown[name].strip("'"), declared[name].meaning if name in declared else ""))
+        return html_table("stickslip Problem", rows)
+
     def _check_varying(self) -> None:
         for name in MAY_VARY:
-            value, unit = getattr(self, name), quantities_of(Problem)[name].unit
-            if not isinstance(value, Real | LoadingHistory) and (name == "pull_rate" or value is not None):
-                one = f"a number in {unit} or one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
-                raise InputError(f"Problem: {name} must be {one}, got {ascii(value)[:60]}")
+            value, declared = getattr(self, name), quantities_of(Problem)[name]
+            if isinstance(value, LoadingHistory):
+                if value.unit not in (VARYING, declared.unit):
+                    raise InputError(f"Problem: {name} must be in {declared.unit}, got a history of values in {value.unit}")
+            elif value is not None or name == "pull_rate":
+                try:
+                    declared.check("Problem", name, value)
+                except InputError as error:
+                    raise InputError(f"{error}{'' if is_number(value) else A_HISTORY}") from None
         if len(self._varying) > 1:
             raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if isinstance(self.far_stress_rate, LoadingHistory):
@@ -148,7 +197,7 @@ class Problem:
     def loading_texts(self) -> dict[str, str]:
         """Short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
         return {
-            name: f"{value.kind}, {value.first:.6g} {unit} at first" if isinstance(value, LoadingHistory) else f"{value:.6g} {unit}"
+            name: f"{value.kind}, {brief(value.first, unit)} at first" if isinstance(value, LoadingHistory) else brief(value, unit)
             for name, value, unit in (
                 ("pull_rate", self.pull_rate, "m/s"),
                 ("far_stress", self.far_stress, "Pa"),
@@ -187,6 +236,11 @@ class Problem:
         tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
         swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
         return max(period, min(DAY, LONGEST_ROW * period, swing))
+
+    @property
+    def parameters(self) -> Parameters:
+        """The numbers of the problem by name: `problem.parameters["friction.alpha"].value`, in SI."""
+        return Parameters(self)
 
     @property
     def rule(self) -> str:
@@ -249,13 +303,13 @@ class Problem:
         return self.initial_load if self.initial_load is not None else self.strength + self.excess
 
 
-def check_problem(who: str, problem: Any) -> None:
+def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:
     """Raise InputError, beginning with `who`, if what should be a problem is none; hint at what was probably meant."""
     if isinstance(problem, Problem):
         return
     hint = ""
     if isinstance(problem, str):
-        hint = "; a scenario is read by load_scenario, and has a problem"
+        hint = "; a bundled scenario has one: ss.scenarios[name].problem"
     elif isinstance(getattr(problem, "problem", None), Problem):
         hint = "; take its .problem"
-    raise InputError(f"{who}: problem must be a Problem, got {shown(problem)}{hint}")
+    raise InputError(f"{who}: problem must be {wanted}, got {shown(problem)}{hint}")

@@ -8,17 +8,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.foundation.arguments import as_path, is_number, shown
+from stickslip.foundation.arguments import as_path
 from stickslip.foundation.atomic_write import held
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end, stream_of
-from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
+from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY, Status
@@ -27,35 +30,35 @@ from stickslip.trajectory.tables import creep_note
 if TYPE_CHECKING:
     import pandas as pd
 
+    from stickslip.scenarios.scenario import Scenario
+
 CAPACITY = 16_384
 """Pieces of history for which a catalogue has room at first, about 7 MB; it grows only where what must be kept fills half of it."""
 
 
 def catalogue(
-    problem: Problem,
-    duration: float,
+    problem: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None = None,
     path: str | Path | None = None,
     *,
-    rtol: float = RTOL,
+    rtol: float | None = None,
     creep_rtol: float | None = None,
-    shortest_event: float | None = None,
+    shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
-    event_rate: float | None = None,
+    event_rate: float | str | WithUnit | None = None,
     energies: bool = False,
-    progress: Progress | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
+    progress: Progress | bool | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> pd.DataFrame:
-    """Run a problem in bounded memory and return the table of its slip events.
+    """Run a problem, or a scenario, in bounded memory and return the table of its slip events.
 
     History before the previous event is discarded, except waves that are still travelling in the slab.
 
     Parameters
     ----------
-    problem : Problem
-        The body, its friction law, its loading and its initial state.
-    duration : float
-        Latest end of the run, s.
+    problem, duration
+        See `stickslip.simulate`: a problem and its duration, or a scenario, which has one.
     path : str or Path, optional
         File for the table (.csv, .parquet or .nc). NAME.checkpoint.nc beside it is renewed while the run continues, and
         `stickslip.resume` resumes from it. Without a path the rows are kept in memory.
@@ -63,12 +66,12 @@ def catalogue(
         See `stickslip.simulate`.
     max_events : int, optional
         Number of slip events after which the run stops.
-    event_rate : float, optional
-        Slip rate (m/s) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a block sqrt(K m)
-        replaces Z.
+    event_rate : float or str, optional
+        Slip rate (m/s, or a text with a unit) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a
+        block sqrt(K m) replaces Z.
     energies : bool
         Add the energies of each event (slab: J/m^2, block: J). Automatic leaps over creep are then switched off.
-    checkpoint_every : float
+    checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
         Largest number of pieces of history kept at a time, a million by default. An event that needs more, together with what
@@ -86,24 +89,25 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
     """
-    given = RunOptions(
-        duration,
-        rtol,
-        creep_rtol=creep_rtol,
-        shortest_event=shortest_event,
-        max_events=max_events,
-        progress=progress,
-        checkpoint_every=checkpoint_every,
-        max_pieces=max_pieces,
-    )
-    options = given.check("catalogue", problem)
-    if event_rate is not None and not (is_number(event_rate) and event_rate >= 0.0):
-        raise InputError(f"catalogue: event_rate must be a slip rate in m/s, got {shown(event_rate)}")
+    rate = check_event_rate(event_rate, "catalogue")
     file = None if path is None else as_path("catalogue: path", path)
     if file is not None:
         check_catalogue(file)
-    check_energies(creep_rtol, energies, "catalogue")
-    return catalogue_of(problem, options, file, event_rate, energies=energies).read()
+    with told(progress, "catalogue") as report:
+        given, options = problem_and_options(
+            "catalogue",
+            problem,
+            duration=duration,
+            rtol=rtol,
+            creep_rtol=creep_rtol,
+            shortest_event=shortest_event,
+            max_events=max_events,
+            progress=report,
+            checkpoint_every=checkpoint_every,
+            max_pieces=max_pieces,
+        )
+        check_energies(options.creep_rtol, energies, "catalogue")
+        return catalogue_of(given, options, file, rate, energies=energies).read()
 
 
 def catalogue_of(

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.arguments import check_whole, is_number, shown
+from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import LARGEST, as_float
+from stickslip.foundation.quantities import declare
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
+from stickslip.scenarios.source import read_source
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES
 
 if TYPE_CHECKING:
     from stickslip.run.progress import Progress
-    from stickslip.scenarios import Scenario
+    from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
 RTOL = 1e-10
 """Default relative tolerance."""
-SMALLEST_RTOL, LARGEST_RTOL = 1e-15, 1e-2
-"""Bounds of the relative tolerance."""
 CHECKPOINT_EVERY = 30.0
 """Default interval between two checkpoints, s of wall clock: a killed run loses little, and writing costs little."""
 MAX_PIECES = 1_000_000
@@ -37,25 +39,26 @@ class RunOptions:
     history of MAX_PIECES pieces is written to the file only if `max_pieces` was given.
     """
 
-    duration: float
+    duration: Number = declare(DURATION)
     rtol: float = RTOL
     creep_rtol: float | None = None
-    shortest_event: float | None = None
+    shortest_event: OptionalNumber = declare(SHORTEST_EVENT, None)
     max_events: int | None = None
     progress: Progress | None = None
     checkpoint: Path | None = None
-    checkpoint_every: float = CHECKPOINT_EVERY
+    checkpoint_every: Number = declare(CHECKPOINT_INTERVAL, CHECKPOINT_EVERY)
     max_pieces: int | None = None
     title: str = ""
 
     @classmethod
-    def of(cls, scenario: Scenario, **others: Any) -> Self:
-        """Return the options of a scenario, and `others` beside them."""
+    def of(cls, scenario: Scenario, **given: Any) -> Self:
+        """Return the options of a scenario, those in `given` that are not None in their place or beside them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
-        return cls(**{name: getattr(scenario, name) for name in names}, title=scenario.heading, **others)
+        own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading}
+        return cls(**(own | _not_none(given)))
 
     @classmethod
-    def to_continue(cls, stopped: Solution, duration: float | None, max_events: int | None, **others: Any) -> Self:
+    def to_continue(cls, stopped: Solution, duration: float | str | WithUnit | None, max_events: int | None, **others: Any) -> Self:
         """Return the options to continue a stopped run: its own where none are given, and `others` beside them.
 
         A run that has already had its number of events continues without one.
@@ -74,24 +77,17 @@ class RunOptions:
     def check(self, who: str, problem: Problem) -> Self:
         """Return the options if this problem can be run with them. Raises InputError, which begins with `who`, otherwise."""
         check_problem(who, problem)
-        if not (is_number(self.duration) and 0 < as_float(self.duration) <= LARGEST):
-            raise InputError(f"{who}: duration must be a positive time in s up to {LARGEST:g}, got {shown(self.duration)}")
-        if not (is_number(self.rtol) and SMALLEST_RTOL <= self.rtol <= LARGEST_RTOL):
-            raise InputError(f"{who}: rtol must lie between {SMALLEST_RTOL:g} and {LARGEST_RTOL:g}, got {shown(self.rtol)}")
-        for name in ("creep_rtol", "shortest_event"):
-            value = getattr(self, name)
-            if value is not None and not is_number(value):
-                raise InputError(f"{who}: {name} must be a number, or None for automatic, got {shown(value)}")
-        check_creep_rtol(problem, self.creep_rtol, who)
-        check_shortest_event(problem, self.shortest_event, who)
-        if self.progress is not None and not callable(self.progress):
-            raise InputError(f"{who}: progress must be a function, got {shown(self.progress)}")
-        if not (is_number(self.checkpoint_every) and self.checkpoint_every >= 0):
-            raise InputError(f"{who}: checkpoint_every must be a time in s, got {shown(self.checkpoint_every)}")
+        creep_rtol = None if self.creep_rtol is None else CREEP_RTOL.check(who, "creep_rtol", self.creep_rtol)
+        shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
         return replace(
             self,
+            duration=DURATION.check(who, "duration", self.duration),
+            rtol=check_rtol(self.rtol, who),
+            creep_rtol=check_creep_rtol(problem, creep_rtol, who),
+            shortest_event=check_shortest_event(problem, shortest, who),
+            checkpoint_every=CHECKPOINT_INTERVAL.check(who, "checkpoint_every", self.checkpoint_every),
             max_events=None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
             max_pieces=None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces),
         )
@@ -104,3 +100,19 @@ class RunOptions:
     def keeps(self, code: int) -> bool:
         """Return True if a run that ended with this code goes into its file: a full history only if `max_pieces` was given."""
         return code != FULL_HISTORY or self.max_pieces is not None
+
+
+def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:
+    """Return the problem to run and the checked options of its run.
+
+    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Options in `given` that are None are
+    those of the scenario, or the defaults. Raises InputError, for a wrong option with a message that begins with `who`.
+    """
+    found = read_source(who, source)
+    if isinstance(found, Problem):
+        return found, RunOptions(**({"duration": None} | _not_none(given))).check(who, found)
+    return found.problem, RunOptions.of(found, **given).check(who, found.problem)
+
+
+def _not_none(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in given.items() if value is not None}

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, NamedTuple, Self
+
+from stickslip.foundation.formatting import about_time, in_unit, number
 
 if TYPE_CHECKING:
     from stickslip.run.options import RunOptions
@@ -15,7 +18,7 @@ Doing = Literal["stuck", "creeping", "slipping"]
 
 
 class Report(NamedTuple):
-    """The progress of a run.
+    """The progress of a run; as a text it is one line for people.
 
     Attributes
     ----------
@@ -43,6 +46,20 @@ class Report(NamedTuple):
     doing: Doing
     pace: float
     left: float
+
+    def __str__(self) -> str:
+        length, unit = in_unit(self.duration)
+        wanted = f" of {self.max_events}" if self.max_events else ""
+        parts = [
+            f"{number(self.time / length, 6)} of {number(self.duration / length, 6)} {unit}",
+            f"{self.events}{wanted} slip event{'' if self.events == 1 and not wanted else 's'}",
+            self.doing,
+        ]
+        if self.pace > 0.0:
+            parts.append(f"{about_time(self.pace)} a second")
+        if math.isfinite(self.left):
+            parts.append(f"{about_time(self.left)} left")
+        return ", ".join(parts)
 
 
 Progress = Callable[[Report], object]

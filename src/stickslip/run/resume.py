@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.foundation.arguments import as_path
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
@@ -16,6 +17,7 @@ from stickslip.run.catalogue import Catalogue, alone_with, follow
 from stickslip.run.monitor import run_to_end, stream_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
 from stickslip.solution.solution import Solution
@@ -28,12 +30,12 @@ if TYPE_CHECKING:
 
 def resume(
     path: str | Path,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     *,
     max_events: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     checkpoint: str | Path | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
 ) -> Solution | pd.DataFrame:
     """Continue a run or a catalogue where its file left it.
@@ -45,8 +47,8 @@ def resume(
     path : str or Path
         File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
         catalogue's rows in the same folder.
-    duration : float, optional
-        New end of the run, s from its start; the previous one by default.
+    duration : float or str, optional
+        New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
     max_events : int, optional
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.
@@ -76,10 +78,11 @@ def resume(
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave checkpoint away")
     stopped = open_solution(file) if paused is None else paused.stopped
-    others = {"progress": progress, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
-    options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
-    return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
+    with told(progress, "resume") as report:
+        others = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
+        options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
+        return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
 
 
 def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:

@@ -3,62 +3,71 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from stickslip.foundation.arguments import as_path
+from stickslip.foundation.conversion import WithUnit
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
-from stickslip.run.options import CHECKPOINT_EVERY, RTOL, RunOptions
+from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
 from stickslip.run.progress import Progress
+from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY
 
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
 
 def simulate(
-    problem: Problem,
-    duration: float,
-    rtol: float = RTOL,
+    problem: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None = None,
+    rtol: float | None = None,
     *,
     creep_rtol: float | None = None,
-    shortest_event: float | None = None,
+    shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     checkpoint: str | Path | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
     title: str = "",
 ) -> Solution:
-    """Run a problem from t = 0.
+    """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
     Parameters
     ----------
-    problem : Problem
-        The body, its friction law, its loading and its initial state.
-    duration : float
-        Latest end of the run, s.
-    rtol : float
-        Relative tolerance of the run, between 1e-15 and 1e-2.
+    problem : Problem, Scenario, str or Path
+        The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
+        Options that are not given are those of the scenario.
+    duration : float or str
+        Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
+        Other times may be given as texts, too, and as quantities of the library pint.
+    rtol : float, optional
+        Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
     creep_rtol : float, optional
         Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
         Automatic by default (see Notes).
-    shortest_event : float, optional
+    shortest_event : float or str, optional
         Duration (s) below which slip events are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
         default (see Notes).
     max_events : int, optional
         Number of slip events after which the run stops.
-    progress : callable, optional
-        A function that is called with a `stickslip.run.progress.Report` while the run continues.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a
+        `stickslip.run.progress.Report` while the run continues.
     checkpoint : str or Path, optional
         File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
         solution.
-    checkpoint_every : float
+    checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
         million, some 0.4 GB in memory and in a file.
     title : str
-        Title of the run, for figures.
+        Title of the run, for figures; by default that of the scenario.
 
     Returns
     -------
@@ -68,8 +77,8 @@ def simulate(
     Raises
     ------
     InputError
-        If an argument is out of range, if the contact cannot even start, or if creep_rtol or shortest_event is positive for a
-        problem in which there are no such leaps or no lumping.
+        If a scenario cannot be read, an argument is out of range, the contact cannot even start, or creep_rtol or shortest_event is
+        positive for a problem in which there are no such leaps or no lumping.
 
     Notes
     -----
@@ -86,20 +95,22 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    given = RunOptions(
-        duration,
-        rtol,
-        creep_rtol=creep_rtol,
-        shortest_event=shortest_event,
-        max_events=max_events,
-        progress=progress,
-        checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
-        checkpoint_every=checkpoint_every,
-        max_pieces=max_pieces,
-        title=title,
-    )
-    options = given.check("simulate", problem)
-    return run_to_end(Session.begin(problem, options), WholeHistory())
+    with told(progress, "simulate") as report:
+        given, options = problem_and_options(
+            "simulate",
+            problem,
+            duration=duration,
+            rtol=rtol,
+            creep_rtol=creep_rtol,
+            shortest_event=shortest_event,
+            max_events=max_events,
+            progress=report,
+            checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
+            checkpoint_every=checkpoint_every,
+            max_pieces=max_pieces,
+            title=title or None,
+        )
+        return run_to_end(Session.begin(given, options), WholeHistory())
 
 
 class WholeHistory:

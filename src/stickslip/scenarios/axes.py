@@ -6,7 +6,6 @@ import re
 
 from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.values import read_typed, show
 
@@ -22,7 +21,7 @@ def read_axis(problem: Problem, text: str, where: str) -> Axis:
     if parts is None:
         raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {show(text)}')
     try:
-        found = parameter(problem, parts["name"].strip())
+        found = problem.parameters[parts["name"].strip()]
         ends = [read_typed(parts[end], found.declared, where, found.name) for end in ("low", "high")]
         return Axis(found.name, ends[0], ends[1], int(parts["points"] or 40), bool(parts["log"]))
     except InputError as error:

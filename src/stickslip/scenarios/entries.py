@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Field, Named, NamedNumbers, Part, Quantity, Series, Text, fields_of
-from stickslip.scenarios.values import describe as describe_quantity
-from stickslip.scenarios.values import read_quantity, show
+from stickslip.scenarios.values import show
 
 
 class Source(NamedTuple):
@@ -48,12 +47,12 @@ def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, 
     """
     file = place.source.file
     if isinstance(entry, Quantity):
-        return read_quantity(value, entry, file, str(place))
+        return entry.check(file, str(place), value)
     if isinstance(entry, Series):
         if not isinstance(value, list):
             unit = entry.item.label
             raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {show(value)}")
-        return tuple(read_quantity(one, entry.item, file, f"{place}[{i}]") for i, one in enumerate(value))
+        return tuple(entry.item.check(file, f"{place}[{i}]", one) for i, one in enumerate(value))
     if isinstance(entry, NamedNumbers):
         return _named(value, place)
     if isinstance(entry, Part):
@@ -78,9 +77,9 @@ def _named(value: Any, place: Place) -> tuple[Named, ...]:
 def describe(entry: Field) -> str:
     """Return the meaning, the unit and the range of a field as text for users."""
     if isinstance(entry, Quantity):
-        return describe_quantity(entry)
+        return entry.described
     if isinstance(entry, Series):
-        return f"{describe_quantity(entry.item)}, a list" + (", ascending" if entry.ascending else "")
+        return f"{entry.item.described}, a list" + (", ascending" if entry.ascending else "")
     if isinstance(entry, Choice):
         return f"{entry.meaning}: {' or '.join(entry.allowed)}"
     if isinstance(entry, Text):

@@ -9,18 +9,21 @@ from typing import Any
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
 from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length, lumps_by_itself
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
+from stickslip.friction.composite import LawOfParts
+from stickslip.friction.noise import noise_in
+from stickslip.friction.piecewise import PiecewiseLaw
 from stickslip.loading import LoadingHistory
-from stickslip.problem.parameters import parameter
+from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.schema import in_unit, quantities_in
+from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
 LARGE_STRAIN = 0.01
@@ -55,7 +58,7 @@ class Examination:
 def examine(scenario: Scenario) -> Examination:
     """Examine a scenario without running it. Raises InputError as `contact.uniqueness` does."""
     problem = scenario.problem
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     return Examination(
         given=_given(scenario),
         derived=_derived(problem),
@@ -109,7 +112,7 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
     """
     facts: list[Fact] = []
     for name, (entry, _) in fields_of(type(law)).items():
-        declared = in_unit(entry, varying)
+        declared = in_units(entry, {VARYING: varying})
         value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
         if isinstance(declared, Quantity) and value is not None:
             facts.append(Fact(place, value, declared.unit, declared.meaning))
@@ -191,7 +194,7 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     facts = []
     for name, value in named.items():
         if name is not None and value is not None:
-            one = parameter(problem, name)
+            one = problem.parameters[name]
             side = "at" if one.value == value else "above" if one.value > value else "below"
             proof = _proof(contact) if one.name == "body.normal_stress" else ""
             facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {one.value:.9g}{proof}"))
@@ -215,7 +218,7 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
 
 
 def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
-    problem, found = scenario.problem, []
+    problem, found = scenario.problem, _noise(scenario.problem.friction, contact)
     steady = math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
@@ -227,6 +230,14 @@ def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
         found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
     return found
+
+
+def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
+    """Return a warning for a law, or a part of one, that joins noisy points exactly."""
+    parts = law.parts.values() if isinstance(law, LawOfParts) else (law,)
+    noises = [noise_in(*part.points) for part in parts if isinstance(part, PiecewiseLaw)]
+    folds = f"they make {len(contact.folds)} folds" if contact.folds else ""
+    return [noise.warning(folds) for noise in noises if noise is not None]
 
 
 def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -> list[str]:

@@ -15,12 +15,17 @@ from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.brief_repr import shown_fields
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import html_table
+from stickslip.foundation.quantities import check_fields, declare
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import KINDS, check_rtol, read_document, read_part, read_table, without_owner
+from stickslip.scenarios.schema import KINDS, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
@@ -47,7 +52,7 @@ class Scenario:
     problem : Problem
         The body, its friction law, its loading and its initial state.
     duration : float
-        Latest end of the run, s.
+        Latest end of the run, s; a text with a unit is converted.
     rtol : float
         Relative tolerance.
     title, description : str
@@ -63,7 +68,7 @@ class Scenario:
     """
 
     problem: Problem
-    duration: float
+    duration: Number = declare(DURATION)
     rtol: float = 1e-10
     title: str = ""
     description: str = ""
@@ -72,6 +77,19 @@ class Scenario:
     shortest_event: float | None = None
     name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    def __repr__(self) -> str:
+        shown = dict(shown_fields(self))
+        problem, head = shown.pop("problem"), [self.name, *([self.title] if self.title else [])]
+        others = ", ".join(f"{name}={text}" for name, text in shown.items() if name not in ("name", "title", "description"))
+        return f"stickslip Scenario {': '.join(head)}\n{problem}\n{others}"
+
+    def _repr_html_(self) -> str:
+        shown = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
+        return html_table(f"stickslip Scenario {self.name}", shown) + self.problem._repr_html_()
 
     @property
     def heading(self) -> str:
@@ -92,13 +110,13 @@ class Scenario:
             name=name,
         )
 
-    def run(self, progress: Progress | None = None, **keep: Any) -> Solution:
+    def run(self, progress: Progress | bool | None = None, **keep: Any) -> Solution:
         """Simulate the scenario.
 
         Parameters
         ----------
-        progress : callable, optional
-            A function that is called with the progress of the run (see `stickslip.simulate`).
+        progress : bool or callable, optional
+            True shows the progress in one line; a function is called with it (see `stickslip.simulate`).
         **keep
             Further arguments of `stickslip.simulate`, such as `checkpoint`.
 
@@ -109,9 +127,7 @@ class Scenario:
         """
         from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
-        names = ("creep_rtol", "shortest_event", "max_events")
-        how: dict[str, Any] = {"title": self.heading, **{name: getattr(self, name) for name in names}}
-        return simulate(self.problem, self.duration, self.rtol, progress=progress, **how, **keep)
+        return simulate(self, progress=progress, **keep)
 
     def to_toml(self) -> str:
         """Return the scenario as TOML text, with every value in SI and to the last digit."""

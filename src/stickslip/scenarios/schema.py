@@ -6,21 +6,23 @@ A new law or body enters the schema by being registered. pydantic checks names a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, replace
+from dataclasses import MISSING
 from functools import cache, partial
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, create_model
 
 from stickslip.bodies import BODIES
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
-from stickslip.foundation.quantities import Part, Quantity, Series, fields_of, quantities_of
+from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.loading.contract import VARYING
-from stickslip.problem.problem import MAY_VARY, Problem
+from stickslip.problem.problem import LOAD, MAY_VARY, Problem
+from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry
 from stickslip.scenarios.points import read_points
@@ -32,12 +34,8 @@ REGISTERED = KINDS | {"loading": HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
-DURATION = Quantity("s", "how long to simulate", above=0)
-RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
-CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
-SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
-LARGEST_RTOL = 1e-2
-"""Largest relative tolerance of a run, as in `stickslip.simulate`."""
+MOST_EVENTS = 10**12
+"""Number of slip events that no run reaches."""
 STATE = Quantity("1", "state variable of the friction law, if it has one")
 """Declaration of the initial state for a law that has no state, and for which none may be given."""
 
@@ -68,7 +66,8 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
         automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
         return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
-    found = {name.removeprefix("initial_"): (_of_body(declared, kind), default) for name, (declared, default) in ours.items()}
+    units = {LOAD: getattr(kind, "load_unit", LOAD)}
+    found = {name.removeprefix("initial_"): (in_units(declared, units), default) for name, (declared, default) in ours.items()}
     remembered = Quantity(state.unit, state.meaning) if state else STATE
     return found | {"state": (remembered, None)} if table == "initial" else found
 
@@ -79,7 +78,7 @@ def entries_in(table: str, kind: type, state: StateVariable | None = None) -> di
         return dict(quantities_in(table, kind, state))
     of = table.partition(".")[2]
     unit = _declared(Problem)[of][0].unit if of in MAY_VARY else ""
-    return {key_of(name, entry): (in_unit(entry, unit), default) for name, (entry, default) in fields_of(kind).items()}
+    return {key_of(name, entry): (in_units(entry, {VARYING: unit}), default) for name, (entry, default) in fields_of(kind).items()}
 
 
 def has_kind(table: str) -> bool:
@@ -87,22 +86,8 @@ def has_kind(table: str) -> bool:
     return table in KINDS or "." in table
 
 
-def in_unit(entry: Declared, unit: str) -> Declared:
-    """Return the declaration of a field with the unit of the quantity that varies, if it is a value of a loading history."""
-    if isinstance(entry, Series) and entry.item.unit == VARYING:
-        return replace(entry, item=replace(entry.item, unit=unit))
-    return replace(entry, unit=unit) if isinstance(entry, Quantity) and entry.unit == VARYING else entry
-
-
 def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
     return {name: (entry, default) for name, (entry, default) in fields_of(kind).items() if isinstance(entry, Quantity)}
-
-
-def _of_body(declared: Quantity, body: type) -> Quantity:
-    """Return the declaration of a load with the body's own unit: that of its normal stress (Pa) or normal force (N)."""
-    if declared.unit != "Pa or N":
-        return declared
-    return replace(declared, unit=next(q.unit for name, q in quantities_of(body).items() if name.startswith("normal_")))
 
 
 @cache
@@ -178,18 +163,12 @@ def read_duration(text: str, where: str, name: str = "duration") -> float:
     return read_typed(text, DURATION, where, name)
 
 
-def check_rtol(value: float, where: str, name: str = "rtol") -> float:
-    """Return a relative tolerance if `simulate` accepts it. Raises InputError otherwise."""
-    if RTOL.check(where, name, value) > LARGEST_RTOL:
-        raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {value:g}")
-    return value
-
-
 def check_events(value: Any, where: str, name: str = "events") -> int:
     """Return a number of slip events if a run can stop after it. Raises InputError otherwise."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 < value < 10**12:
-        raise InputError(f"{where}: {name} must be a whole number above 0, got {show(value)}")
-    return value
+    found = check_whole(f"{where}: {name}", value)
+    if found >= MOST_EVENTS:
+        raise InputError(f"{where}: {name} must be below {MOST_EVENTS:g}, got {show(value)}")
+    return found
 
 
 def check_rule(value: Any, where: str, name: str) -> str:

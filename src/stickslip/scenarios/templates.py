@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Sequence
 from dataclasses import MISSING
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import clean
 from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source, describe, key_of
+from stickslip.scenarios.entries import Source, describe, key_of, to_table
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
 STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
@@ -75,6 +77,46 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     return library.text(name)
 
 
+def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
+    """Return a starter or a bundled scenario with another friction law, as commented TOML text.
+
+    Parameters
+    ----------
+    name : str
+        One of `template_names()`.
+    law : FrictionLaw
+        The law, which has no state.
+    about : sequence of str
+        Lines of comments for the head of the text; the first one becomes the title.
+
+    Returns
+    -------
+    str
+        The TOML text, with every number of the law to the last digit.
+
+    Raises
+    ------
+    InputError
+        For an unknown name.
+    """
+    if name not in template_names():
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+    example = tomllib.loads(library.text(STARTERS.get(name, name)))
+    former = kind_of("friction", example["friction"], name)
+    if former.state is not None:  # type: ignore[attr-defined] # registered
+        example["initial"] = {"excess": 0.0}
+    example |= {"title": about[0], "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
+    return _written(example, "".join(f"# {clean(line)}".rstrip() + "\n" for line in about))
+
+
+def _listed(table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table with lists in place of tuples."""
+    made = {}
+    for key, value in table.items():
+        made[key] = _listed(value) if isinstance(value, dict) else list(value) if isinstance(value, tuple) else value
+    return made
+
+
 def _starter(example: dict[str, Any], friction: str | None, pull: str | None) -> str:
     if friction is not None:
         law: type[FrictionLaw] = kind_of("friction", {"kind": friction}, "new")
@@ -84,19 +126,26 @@ def _starter(example: dict[str, Any], friction: str | None, pull: str | None) ->
     if pull is not None:
         kind_of("loading", {"kind": pull}, "new")
         example["loading"] = {"pull_rate": {"kind": pull, **HISTORIES[pull].example}}
+    return _written(example | {"title": "", "description": ""})
+
+
+def _written(example: dict[str, Any], about: str = "") -> str:
+    """Return a scenario as text in which every key is explained, after `about`, some lines of comments."""
     kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
-    parts = [_HEADER, 'title = ""\n']
+    texts = [f"{key} = {_toml(example[key])}\n" for key in ("title", "description") if key == "title" or example[key]]
+    parts = [about + "#\n" * bool(about) + _HEADER, "".join(texts)]
     for table in TABLES:
         kind = kinds.get(table, kinds["body"])
         lines = [f"# {_ABOUT[table]}"]
-        if table == "friction":
+        if table == "friction" and not about:
             lines += ["# Other laws, shown in full by `stickslip new slab --friction KIND`:", "#"]
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
         if table == "loading":
             lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
         lines += _table(table, kind, example[table], kinds["friction"].state)  # type: ignore[attr-defined] # registered
         if table == "run":
-            lines.append(f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}')
+            given = [f"{key} = {_toml(example[table][key])}" for key in ("events", "selection") if key in example[table]]
+            lines += given or [f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}']
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
 
@@ -133,7 +182,7 @@ def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable
             lines.append(f"# {name} = {shown}  # {describe(entry)}".replace("=   #", "=  #"))
     columns = columns_of(table, kind)
     if columns:
-        lines.append(f'# file = "points.csv"  # instead of lists: a header line, then columns {", ".join(columns)} in SI')
+        lines.append(f'# file = "points.csv"  # instead of lists: columns {", ".join(columns)}, in SI or with units as in (mm/s)')
     return lines + inner
 
 

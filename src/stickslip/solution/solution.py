@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief, html_table
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -60,14 +63,14 @@ class Solution(Exports):
         """The slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
         return self.catalogue()
 
-    def catalogue(self, event_rate: float | None = None, *, energies: bool = False) -> pd.DataFrame:
+    def catalogue(self, event_rate: float | str | WithUnit | None = None, *, energies: bool = False) -> pd.DataFrame:
         """Return the slip events as a table, one row each.
 
         Parameters
         ----------
-        event_rate : float, optional
-            Slip rate (m/s) that defines an event: an event is a maximal interval in which |v| is larger. The default is 1e-6
-            S (range of mu) / Z, for the block 1e-6 S (range of mu) / sqrt(K m); 0 takes every slip.
+        event_rate : float or str, optional
+            Slip rate (m/s, or a text with a unit) that defines an event: an event is a maximal interval in which |v| is larger. The
+            default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of mu) / sqrt(K m); 0 takes every slip.
         energies : bool
             If true, add the energies of each event (J/m^2; block: J), which take longer to compute.
 
@@ -79,11 +82,12 @@ class Solution(Exports):
         """
         return events_table(self.history, self._rate(event_rate), energies)
 
-    def _rate(self, event_rate: float | None) -> float:
+    def _rate(self, event_rate: float | str | WithUnit | None) -> float:
         """Return the slip rate (m/s) that defines an event: the given one, or the default of the problem."""
-        return default_event_rate(self.problem) if event_rate is None else event_rate
+        given = check_event_rate(event_rate, "Solution")
+        return default_event_rate(self.problem) if given is None else given
 
-    def energetics(self, event_rate: float | None = None) -> pd.DataFrame:
+    def energetics(self, event_rate: float | str | WithUnit | None = None) -> pd.DataFrame:
         """Return the energy budget of the slip events as seismologists define it, one row per event.
 
         The columns are the parts of the energy (J/m^2; block: J), static and dynamic stress drop, overshoot, apparent stress and
@@ -91,8 +95,8 @@ class Solution(Exports):
 
         Parameters
         ----------
-        event_rate : float, optional
-            Slip rate (m/s) that defines an event, as in `catalogue`.
+        event_rate : float or str, optional
+            Slip rate (m/s, or a text with a unit) that defines an event, as in `catalogue`.
 
         Returns
         -------
@@ -103,15 +107,15 @@ class Solution(Exports):
 
         return energetics_table(self.history, self._rate(event_rate))
 
-    def pulses(self, event_rate: float | None = None) -> pd.DataFrame:
+    def pulses(self, event_rate: float | str | WithUnit | None = None) -> pd.DataFrame:
         """Return the pulses of the slip events, one row each.
 
         The columns are times, slip, largest slip rate, smallest traction and fracture energy.
 
         Parameters
         ----------
-        event_rate : float, optional
-            Slip rate (m/s) that defines an event, as in `catalogue`.
+        event_rate : float or str, optional
+            Slip rate (m/s, or a text with a unit) that defines an event, as in `catalogue`.
 
         Returns
         -------
@@ -142,17 +146,22 @@ class Solution(Exports):
         """One line on the leaps over creep; empty if there are none."""
         return creep_note(self.history.creep)
 
-    def window(self, event: int | pd.Series = 0, before: float | None = None, after: float | None = None) -> Window:
+    def window(
+        self,
+        event: int | pd.Series = 0,
+        before: float | str | WithUnit | None = None,
+        after: float | str | WithUnit | None = None,
+    ) -> Window:
         """Return the run around one slip event, in seconds since the event began.
 
         Parameters
         ----------
         event : int or pandas.Series
             Row number in `events` (negative ones count from the last), or a row of any `catalogue`.
-        before : float, optional
-            Time to show before the start of the event, s. The default is a tenth of its duration.
-        after : float, optional
-            Time to show after the start of the event, s. The default is its duration and a tenth of it.
+        before : float or str, optional
+            Time to show before the start of the event (s, or a text with a unit). The default is a tenth of its duration.
+        after : float or str, optional
+            Time to show after the start of the event (s, or a text with a unit). The default is its duration and a tenth of it.
 
         Returns
         -------
@@ -214,12 +223,13 @@ class Solution(Exports):
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
-        largest = f", largest slip {events.slip.max():.6g} m, peak rate {events.peak_rate.max():.6g} m/s" if len(events) else ""
+        most = events[["slip", "peak_rate"]].max()
+        largest = f", largest slip {brief(most.slip, 'm')}, peak rate {most.peak_rate:.6g} m/s" if len(events) else ""
         return [
             ("body", repr(problem.body)),
             ("friction", repr(problem.friction)),
-            ("loading", f"{loading}, initial load {problem.load:.9g} {problem.load_unit}"),
-            ("run", f"{self.duration:.6g} s, rtol {self.rtol:g}, {len(self.history)} pieces"),
+            ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
+            ("run", f"{brief(self.duration, 's')}, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
@@ -264,7 +274,4 @@ class Solution(Exports):
         return "\n".join(["stickslip Solution", *(f"  {name:<10}{text}" for name, text in self._lines())])
 
     def _repr_html_(self) -> str:
-        from html import escape
-
-        rows = "".join(f"<tr><th style='text-align:left'>{name}</th><td>{escape(text)}</td></tr>" for name, text in self._lines())
-        return f"<table><caption>stickslip Solution</caption>{rows}</table>"
+        return html_table("stickslip Solution", self._lines())

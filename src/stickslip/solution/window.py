@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 from stickslip.solution.accessors import Exports
 from stickslip.solution.evaluation import Curve, Floats
@@ -90,14 +91,18 @@ class Window(Exports):
         return f"stickslip Window: {first:g} to {last:g} s from the start of an event, which is {row} rows and {offset:.9g} s"
 
 
-def window_around(solution: Solution, event: pd.Series, before: float | None, after: float | None) -> Window:
+BEFORE = Quantity("s", "time to show before the start of an event", at_least=0)
+AFTER = Quantity("s", "time to show after the start of an event", above=0)
+
+
+def window_around(
+    solution: Solution, event: pd.Series, before: float | str | WithUnit | None, after: float | str | WithUnit | None
+) -> Window:
     """Return the window on an event; see `Solution.window`."""
     lasts = float(event.duration)
     history = solution.history.seen_from(Epoch(int(event.start_row), float(event.start_offset)))
     if math.isnan(lasts):
         lasts = float(history.end[-1])
-    before = MARGIN * lasts if before is None else before
-    after = lasts + MARGIN * lasts if after is None else after
-    if not (0.0 <= before < math.inf and 0.0 < after < math.inf):
-        raise InputError(f"window: before and after must be finite times in s, not negative, after positive; got {before}, {after}")
-    return Window(solution, history, event, before, after)
+    first = BEFORE.check("window", "before", MARGIN * lasts if before is None else before)
+    last = AFTER.check("window", "after", lasts + MARGIN * lasts if after is None else after)
+    return Window(solution, history, event, first, last)

@@ -9,7 +9,6 @@ Source: Campillo et al. 1996, Figs 5-7, who compare both bodies at three points;
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -21,10 +20,12 @@ import pandas as pd
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.problem.run_quantities import DURATION
 from stickslip.run.simulate import simulate
-from stickslip.studies.study import Study, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
 
 Quantity = Literal["slip", "peak_rate", "duration"]
@@ -119,13 +120,13 @@ def block_for(problem: Problem) -> Problem:
 
 def analogy(
     problem: Problem,
-    duration: float,
+    duration: float | str | WithUnit,
     x: Axis,
     y: Axis,
     *,
     rtol: float = RTOL,
     within: float = WITHIN,
-    progress: Callable[[int, int], Any] | None = None,
+    progress: TextProgress | bool | None = None,
 ) -> Analogy:
     """Compare the first slip event of a slab with that of its equivalent block, over two parameters of the problem.
 
@@ -133,16 +134,17 @@ def analogy(
     ----------
     problem : Problem
         Problem whose body is a slab under a rigid driver; everything except the two parameters is fixed.
-    duration : float
-        Longest time to wait for the end of the event (s).
+    duration : float or str
+        Longest time to wait for the end of the event (s, or a text with a unit).
     x, y : Axis
         The two parameters and their values.
     rtol : float
         Relative tolerance of the runs.
     within : float
         Largest difference of the ratios from 1 at which the block represents the slab, between 0 and 1.
-    progress : callable, optional
-        Called with the number of finished points and the number of all points.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text after each
+        point.
 
     Returns
     -------
@@ -159,17 +161,18 @@ def analogy(
     """
     check_problem("analogy", problem)
     names = two_parameters(problem, x, y, "analogy")
+    lasts = DURATION.check("analogy", "duration", duration)
     if not 0.0 < within < 1.0:
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")
     block_for(problem)  # raises InputError if there is no equivalent block
     rows = []
-    for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
-        rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), duration, rtol))
-        if progress is not None:
-            progress(len(rows), x.points * y.points)
+    with telling(progress, "analogy") as tell:
+        for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
+            rows.append({names[0].name: at_x, names[1].name: at_y} | _point(put_both(names, (at_x, at_y)), lasts, rtol))
+            tell(f"{len(rows)} of {x.points * y.points} points")
     table = pd.DataFrame(rows)
     table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES})
-    return Analogy(problem, duration, x, y, within, table.assign(stands=_stands(table, within)))
+    return Analogy(problem, lasts, x, y, within, table.assign(stands=_stands(table, within)))
 
 
 def _point(problem: Problem | None, duration: float, rtol: float) -> dict[str, Any]:

@@ -11,15 +11,16 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.netcdf import PAPER, open_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
+from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.scenarios import Scenario, load_scenario
-from stickslip.scenarios.schema import check_rtol
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents
 from stickslip.trajectory.tables import default_event_rate
 
@@ -117,16 +118,25 @@ class Comparison(Study):
             yield Scenario(solution.problem, solution.duration, solution.rtol, max_events=solution.max_events).to_toml()
 
     def __repr__(self) -> str:
-        return f"stickslip Comparison of {', '.join(self.runs)}\n{self.table.drop(columns='name').T.to_string()}"
+        return f"{super().__repr__()}\n{self._shown_table().to_string(float_format='{:.6g}'.format)}"
+
+    def _lines(self) -> Iterator[str]:
+        yield f"of {', '.join(self.runs)}"
+
+    def _shown_table(self) -> pd.DataFrame:
+        """Return the table with one column for each run and with units."""
+        units = {name: "Pa or N" if unit == "load" else unit for name, (unit, _) in COLUMNS.items()}
+        with_units = {name: f"{name} ({unit})" for name, unit in units.items() if unit}
+        return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
 
 
 def compare(
     *sources: str | Path | Scenario | Solution,
     names: Sequence[str] | None = None,
     event: int | None = None,
-    until: float | None = None,
+    until: float | str | WithUnit | None = None,
     rtol: float | None = None,
-    progress: TextProgress | None = None,
+    progress: TextProgress | bool | None = None,
 ) -> Comparison:
     """Compare two or more runs in one table and one figure.
 
@@ -139,12 +149,13 @@ def compare(
         Names of the runs, in the same order.
     event : int, optional
         Slip event of each run to show in the figure (0 the first, -1 the last), in time since its start.
-    until : float, optional
-        Duration of the runs (s), in place of that of the scenarios.
+    until : float or str, optional
+        Duration of the runs (s, or a text with a unit), in place of that of the scenarios.
     rtol : float, optional
         Relative tolerance, in place of that of the scenarios.
-    progress : callable, optional
-        Called with the name of each run as it begins.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with the name of each run as it
+        begins.
 
     Returns
     -------
@@ -163,16 +174,16 @@ def compare(
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
     if rtol is not None:
         check_rtol(rtol, "compare", "rtol")
-    if until is not None and not until > 0.0:
-        raise InputError(f"compare: until must be a positive time in s, got {until!r}")
-    read = [read_source(source, until, rtol) for source in sources]
+    lasts = None if until is None else DURATION.check("compare", "until", until)
+    read = [read_source(source, lasts, rtol) for source in sources]
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):
         raise InputError(f"compare: names: {len(read)} are needed, got {len(called)}")
-    tell, runs = progress or say_nothing, {}
-    for name, source in zip(called, read, strict=True):
-        tell(name)
-        runs[name] = source.solution(None)
+    runs = {}
+    with telling(progress, "compare") as tell:
+        for name, source in zip(called, read, strict=True):
+            tell(name)
+            runs[name] = source.solution(None)
     return Comparison(runs, event)
 
 

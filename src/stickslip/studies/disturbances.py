@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import Floats
@@ -35,12 +36,10 @@ def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:
 
     Their magnitudes lie between size/2 and size times the static strength, or the initial load for a law that never sticks.
     """
-    if not (isinstance(members, int) and 1 <= members <= MOST_MEMBERS):
-        raise InputError(f"ensemble: members must be a whole number from 1 to {MOST_MEMBERS}, got {members!r}")
+    check_whole("ensemble: members", members, 1, MOST_MEMBERS)
     if not SMALLEST <= size <= LARGEST:
         raise InputError(f"ensemble: size must lie between {SMALLEST:g} and {LARGEST:g}, got {size!r}")
-    if not (isinstance(seed, int) and seed >= 0):
-        raise InputError(f"ensemble: seed must be a whole number, 0 or more, got {seed!r}")
+    check_whole("ensemble: seed", seed, 0)
     scale = abs(problem.strength if problem.friction.sticks else problem.load)
     if scale == 0.0:
         raise InputError("ensemble: there is neither a strength nor an initial load of which a share could disturb it")

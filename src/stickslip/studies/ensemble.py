@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.netcdf_file import write
 from stickslip.io.netcdf import origin
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
 
 MAX_TOTAL = 2_000_000
@@ -222,17 +224,9 @@ class Ensemble(RunsCompared):
         lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
 
-    def save(self, path: str | Path) -> Path:
-        """Write the table of events (.csv), or all data of the figure with their provenance (.nc), and return the path.
-
-        Raises InputError if the name ends otherwise, or if an .nc file cannot be written.
-        """
-        ending = Path(path).suffix.lower()
-        if ending not in (".csv", ".nc"):
-            raise InputError(f"ensemble: {path}: the name must end in .csv or .nc")
-        if ending == ".csv":
-            return super().save(path)
-        return write(self.dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write all data of the figure with their provenance, and return the path. Raises InputError if that fails."""
+        return write(self.to_dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
 
     def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"
@@ -241,15 +235,15 @@ class Ensemble(RunsCompared):
 
 def ensemble(
     problem: Problem,
-    duration: float,
+    duration: float | str | WithUnit,
     members: int = 8,
     size: float = 1e-12,
     rtol: float = 1e-10,
     *,
     max_events: int | None = None,
     seed: int = 0,
-    event_rate: float | None = None,
-    progress: TextProgress | None = None,
+    event_rate: float | str | WithUnit | None = None,
+    progress: TextProgress | bool | None = None,
     max_pieces: int | None = None,
 ) -> Ensemble:
     """Run a problem once undisturbed and n times with a disturbed initial load, and compare the runs.
@@ -258,8 +252,8 @@ def ensemble(
     ----------
     problem : Problem
         Problem to disturb.
-    duration : float
-        Duration of each run (s).
+    duration : float or str
+        Duration of each run (s, or a text with a unit).
     members : int
         Number n of disturbed runs.
     size : float
@@ -270,10 +264,11 @@ def ensemble(
         Number of slip events after which each run ends.
     seed : int
         Seed of the random numbers from which signs and sizes of the disturbances are drawn.
-    event_rate : float, optional
-        Slip rate (m/s) above which slip counts as an event, as in `Solution.catalogue`.
-    progress : callable, optional
-        Called with a line of text as each run begins.
+    event_rate : float or str, optional
+        Slip rate (m/s, or a text with a unit) above which slip counts as an event, as in `Solution.catalogue`.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text as each run
+        begins.
     max_pieces : int, optional
         Largest number of pieces of history of one run; default 200 000, and 2 000 000 for all runs together. A run that needs more
         ends early, and all runs are compared up to that time.
@@ -297,30 +292,29 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
+    options = RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
     pushes = drawn(problem, members, size, seed)
-    if event_rate is not None and not event_rate >= 0.0:
-        raise InputError(f"ensemble: event_rate must be a slip rate in m/s, got {event_rate!r}")
-    tell = progress or say_nothing
+    rate = check_event_rate(event_rate, "ensemble")
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
-    tell("undisturbed")
-    reference = _run(problem, duration, rtol, max_events, most)
+    options = replace(options, max_pieces=most)
     runs: list[Solution] = []
-    try:
-        for i, push in enumerate(pushes.tolist()):
-            tell(f"member {i + 1} of {members}")
-            runs.append(_run(disturbed(problem, push), duration, rtol, max_events, most))
-    except KeyboardInterrupt:
-        if not runs:
-            raise
-    return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, event_rate)
+    with telling(progress, "ensemble") as tell:
+        tell("undisturbed")
+        reference = _run(problem, options)
+        try:
+            for i, push in enumerate(pushes.tolist()):
+                tell(f"member {i + 1} of {members}")
+                runs.append(_run(disturbed(problem, push), options))
+        except KeyboardInterrupt:
+            if not runs:
+                raise
+    return Ensemble(reference, tuple(runs), pushes[: len(runs)], size, members, rate)
 
 
-def _run(problem: Problem, duration: float, rtol: float, max_events: int | None, max_pieces: int) -> Solution:
+def _run(problem: Problem, options: RunOptions) -> Solution:
+    limits: dict[str, Any] = {"max_events": options.max_events, "max_pieces": options.max_pieces}
     # leaps over creep and lumped events would hide the small differences between the runs
-    return uninterrupted(
-        simulate(problem, duration, rtol, max_events=max_events, max_pieces=max_pieces, creep_rtol=0.0, shortest_event=0.0)
-    )
+    return uninterrupted(simulate(problem, options.duration, options.rtol, creep_rtol=0.0, shortest_event=0.0, **limits))
 
 
 def _time(seconds: float) -> str:

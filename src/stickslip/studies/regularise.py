@@ -17,14 +17,17 @@ import numpy as np
 import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity, Series
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, say_nothing, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
 
@@ -34,6 +37,10 @@ RESOLVED = 100.0
 """Differences below this multiple of rtol times the range of slip count as numerical error."""
 FIRST_JUMPS = 12
 """Largest number of jumps that are timed."""
+
+
+SIZES = Series(Quantity("s", "time in which the slip rate settles", above=0), least=3)
+"""Sizes of regularisations."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -204,13 +211,13 @@ def default_sizes(two_way_time: float) -> tuple[float, ...]:
 
 def regularise(
     problem: Problem,
-    duration: float,
+    duration: float | str | WithUnit,
     by: str = "contact-mass",
-    sizes: Sequence[float] | None = None,
+    sizes: Sequence[float | str | WithUnit] | WithUnit | None = None,
     rules: Sequence[str] = SELECTION_RULES,
     *,
     rtol: float = 1e-10,
-    progress: TextProgress | None = None,
+    progress: TextProgress | bool | None = None,
     max_pieces: int = MAX_PIECES,
 ) -> Regularisation:
     """Run a massless contact under each selection rule, and with regularisations of decreasing size, and compare the runs.
@@ -219,19 +226,20 @@ def regularise(
     ----------
     problem : Problem
         Problem with a slab without contact mass and a law without a state.
-    duration : float
-        Duration of each run (s).
+    duration : float or str
+        Duration of each run (s, or a text with a unit).
     by : str
         Kind of regularisation: "contact-mass" (Z size), "lag" (LaggedFriction of time `size`) or "direct-effect" (the same with
         direct = variation of mu * size / R).
-    sizes : sequence of float, optional
-        Three or more different times (s); R/30 to R/491 520 by default.
+    sizes : sequence of float or str, optional
+        Three or more different times (s, or texts with units); R/30 to R/491 520 by default.
     rules : sequence of str
         Selection rules to compare with.
     rtol : float
         Relative tolerance of the runs.
-    progress : callable, optional
-        Called with a line of text as each run begins.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text as each run
+        begins.
     max_pieces : int
         Largest number of pieces of history of one run. A run that needs more ends early, and all runs are compared up to that time.
 
@@ -249,19 +257,19 @@ def regularise(
         If the user presses Ctrl-C.
     """
     slab = check_massless(problem)
+    lasts = DURATION.check("regularise", "duration", duration)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
-    tell = progress or say_nothing
     softened = [regularised(problem, by, size) for size in times.tolist()]
-    exact = {}
-    for rule in _known(rules):
-        tell(f"exact answer, {rule}")
-        exact[rule], _ = _run(replace(problem, selection=rule), duration, rtol, max_pieces)
-    runs, seconds = [], []
-    for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
-        tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
-        run, spent = _run(one, duration, rtol, max_pieces)
-        runs.append(run)
-        seconds.append(spent)
+    exact, runs, seconds = {}, [], []
+    with telling(progress, "regularise") as tell:
+        for rule in _known(rules):
+            tell(f"exact answer, {rule}")
+            exact[rule], _ = _run(replace(problem, selection=rule), lasts, rtol, max_pieces)
+        for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
+            tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
+            run, spent = _run(one, lasts, rtol, max_pieces)
+            runs.append(run)
+            seconds.append(spent)
     return Regularisation(problem, by, times, rtol, exact, tuple(runs), tuple(seconds))
 
 
@@ -273,10 +281,11 @@ def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tup
     return solution, time.perf_counter() - start
 
 
-def _checked(sizes: Sequence[float]) -> Floats:
-    times = np.sort(np.asarray(sizes, float).ravel())[::-1]
-    if len(times) < 3 or not (np.isfinite(times).all() and (times > 0.0).all() and (np.diff(times) < 0.0).all()):
-        raise InputError(f"regularise: sizes must be three or more different positive times in s, got {list(sizes)}")
+def _checked(sizes: Sequence[float | str | WithUnit] | WithUnit) -> Floats:
+    times = np.sort(SIZES.check("regularise", "sizes", sizes))[::-1]
+    twice = times[1:][np.diff(times) == 0.0]
+    if twice.size:
+        raise InputError(f"regularise: sizes must be different times, got {twice[0]:g} s twice")
     return times
 
 

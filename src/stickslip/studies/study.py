@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
+from stickslip.run.progress_line import told
 from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
 
@@ -20,12 +24,17 @@ if TYPE_CHECKING:
 
 MAX_PIECES = 200_000
 """Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""
+MOST_ROWS = 20
+"""Largest number of rows of a table that a notebook shows."""
 TextProgress = Callable[[str], Any]
 """A function that is called with a line of text on the progress of a study."""
 
 
-def say_nothing(text: str) -> None:
-    """Report no progress."""
+@contextmanager
+def telling(progress: TextProgress | bool | None, what: str) -> Iterator[TextProgress]:
+    """Provide the function that receives the progress of a study, as `told` does; it does nothing if nobody wants to know."""
+    with told(progress, what) as tell:
+        yield tell or (lambda text: None)
 
 
 def uninterrupted(solution: Solution) -> Solution:
@@ -44,14 +53,14 @@ class Study:
     table: Any
     """Results as a pandas.DataFrame; its columns are described in each study."""
 
-    def save(self, path: str | Path) -> Path:
+    def to_csv(self, path: str | Path) -> Path:
         """Write the table as CSV and return its path; comment lines (#) before it, if there are any, say where it comes from."""
         return write_table(Path(path), self.table, self._about())
 
     def _about(self) -> Iterable[str]:
         return ()
 
-    def dataset(self) -> xr.Dataset:
+    def to_dataset(self) -> xr.Dataset:
         """Return what `plot` draws, in SI units."""
         return self._figure().data(self)  # type: ignore[no-any-return]
 
@@ -67,11 +76,15 @@ class Study:
         -------
         matplotlib.figure.Figure
         """
-        figure: Figure = self._figure().draw(self.dataset(), **place)
+        figure: Figure = self._figure().draw(self.to_dataset(), **place)
         return known_to_pyplot(figure, place)
 
     def _figure(self) -> Any:
         return figure_of_study(self)
+
+    def _shown_table(self) -> pd.DataFrame:
+        """Return the table that a notebook shows."""
+        return self.table  # type: ignore[no-any-return]
 
     def _lines(self) -> Iterable[str]:
         """Return what `repr` shows below the name; empty lines are left out."""
@@ -79,6 +92,11 @@ class Study:
 
     def __repr__(self) -> str:
         return "\n".join([f"stickslip {type(self).__name__}", *(f"  {line}" for line in self._lines() if line)])
+
+    def _repr_html_(self) -> str:
+        lines = "".join(f"<div>{escape(line)}</div>" for line in self._lines() if line)
+        table = self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
+        return f"<div><b>stickslip {type(self).__name__}</b>{lines}{table}</div>"
 
 
 class RunsCompared(Study):

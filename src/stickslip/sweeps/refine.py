@@ -16,8 +16,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.run.progress_line import told
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
@@ -47,7 +49,7 @@ def refine(
     vary: Any,
     quantity: str,
     *,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     depth: int = DEPTH,
     factor: float | None = None,
     most: int = MOST_MEMBERS,
@@ -57,7 +59,7 @@ def refine(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk: int | None = None,
-    progress: ProgressCallback | None = None,
+    progress: ProgressCallback | bool | None = None,
 ) -> xr.Dataset:
     """Run a coarse grid, then halve its cells up to `depth` times wherever a quantity differs around them.
 
@@ -103,8 +105,8 @@ def refine(
         found = search.there(place)
         shutil.rmtree(_rounds_of(place), ignore_errors=True)  # left by a search that was killed after the store was complete
         return found
-    with runner_of(threads, workers, scheduler) as (run, _):
-        return search.carried_out(place, run, progress)
+    with runner_of(threads, workers, scheduler) as (run, _), told(progress, "refine") as tell:
+        return search.carried_out(place, run, tell)
 
 
 def _with(quantities: Iterable[Wanted], name: str) -> tuple[Summary, ...]:

@@ -11,11 +11,14 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import about_time, number
 from stickslip.problem.problem import Problem
+from stickslip.run.progress_line import told
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.design import check_whole
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
 from stickslip.sweeps.execution.chunk import ChunkResult, Work, run_chunk
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
@@ -27,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class SweepProgress(NamedTuple):
-    """The progress of a sweep.
+    """The progress of a sweep; as a text it is one line for people.
 
     `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
     number. `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the
@@ -40,6 +43,12 @@ class SweepProgress(NamedTuple):
     rate: float
     left: float
 
+    def __str__(self) -> str:
+        parts = [f"{self.done} of {self.members} members"]
+        if self.rate > 0.0:
+            parts += [f"{number(self.rate, 3)} a second", f"{about_time(self.left)} left"]
+        return ", ".join([*parts, *([f"{self.failed} failed"] if self.failed else [])])
+
 
 ProgressCallback = Callable[[SweepProgress], object]
 Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
@@ -50,7 +59,7 @@ def sweep(
     scenario: Problem | Scenario | str | Path,
     vary: Any,
     *,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     design: str = "grid",
     members: int | None = None,
     seed: int = 0,
@@ -62,7 +71,7 @@ def sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk: int | None = None,
-    progress: ProgressCallback | None = None,
+    progress: ProgressCallback | bool | None = None,
 ) -> xr.Dataset:
     """Run a scenario with varied parameters and collect summary quantities of every run in a dataset with units.
 
@@ -75,8 +84,8 @@ def sweep(
         an array, a list or a pint quantity array of their values. Numbers are in SI. A list may also hold texts with units
         ("10 km"), or words ("run.selection": ["minimal", "maximal"]). A DataFrame, or the `Path` of a CSV file, has one member in
         each row.
-    duration : float, optional
-        Latest end of the runs (s). A problem needs it; a scenario has its own.
+    duration : float or str, optional
+        Latest end of the runs (s, or a text with a unit). A problem needs it; a scenario has its own.
     design : {"grid", "random", "lhs"}
         "grid" runs every combination, with one dimension for each parameter. "random" and "lhs" (Latin hypercube) draw members:
         a tuple (LOW, HIGH) in place of values stands for all numbers between the two, (LOW, HIGH, "log") for the same spread
@@ -102,8 +111,9 @@ def sweep(
         Run the chunks on the dask.distributed cluster whose scheduler has this address (or scheduler file).
     chunk : int, optional
         Number of members in a chunk: at most this many, because a chunk is a block of the design.
-    progress : callable, optional
-        Function that is called with a `SweepProgress` after each chunk.
+    progress : bool or callable, optional
+        True shows the progress in one line, on a terminal or in a notebook. A function is called with a `SweepProgress` after each
+        chunk.
 
     Returns
     -------
@@ -128,8 +138,8 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    with runner_of(threads, workers, scheduler) as (run, _):
-        return carry_out(plan, out, run, progress)
+    with runner_of(threads, workers, scheduler) as (run, _), told(progress, "sweep") as tell:
+        return carry_out(plan, out, run, tell)
 
 
 @contextmanager
@@ -187,7 +197,7 @@ def on_threads(threads: int | None) -> Runner:
     Raises InputError.
     """
     if threads is not None:
-        check_whole(threads, 1, "sweep: threads must be a whole number above 0")
+        check_whole("sweep: threads", threads)
     return lambda work, chunks: ((chunk, run_chunk(work, values, threads)) for chunk, values in chunks)
 
 

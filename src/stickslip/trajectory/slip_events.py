@@ -53,7 +53,7 @@ def turning_points(table: Integers, begin: int, length: int, threshold: float, t
         for k in range(TERMS):
             p[k] = sign * its_rate[k]
         contiguous = n > begin and mode == pieces[n - 1].mode
-        begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and p[1:].any() and _rises(p)))
+        begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and _rises(p)))
         if above and not (begins and contiguous):
             found = _note(turns, found, (n - 1, 1.0), 0.0, -1)
             above = False
@@ -124,9 +124,15 @@ def _note(turns: Turns, n: int, place: tuple[int, float], rate: float, kind: int
 
 @kernel
 def highest(values: Floats, begin: Integers, past: Integers, found: Integers) -> None:
-    """Find the index of the largest of values[begin:past] (the first, if several are equal) for each of several ranges."""
+    """Find the index of the largest of values[begin:past] (the first, if several are equal) for each of several ranges.
+
+    Not with `np.argmax`: machine code with such reductions makes numba load scipy and its linear algebra at every start.
+    """
     for n in range(len(begin)):
-        found[n] = begin[n] + np.argmax(values[begin[n] : past[n]])
+        found[n] = begin[n]
+        for k in range(begin[n] + 1, past[n]):
+            if values[k] > values[found[n]]:
+                found[n] = k
 
 
 @kernel

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.problem.problem import Problem
@@ -15,6 +15,9 @@ from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
 
 if TYPE_CHECKING:
     import pandas as pd
+
+Columns = dict[str, Any]
+"""Arrays or lists of one length, by name: a table that needs no pandas, which takes a fifth of a second to import."""
 
 EVENT_COLUMNS = {
     "start": ("s", "when |v| rises above the threshold"),
@@ -66,23 +69,23 @@ def events_table(history: History, threshold: float, energies: bool = False) -> 
 
 def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
     """Return a table with one row per event, including the energies if they are wanted."""
+    import pandas as pd
+
     from stickslip.observables.energy.balance import event_energies
 
-    table = event_rows(history, events)
+    table = pd.DataFrame(event_columns(history, events))
     return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
 
 
-def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
-    """Return a table with one row per event and the columns of EVENT_COLUMNS."""
-    import pandas as pd
-
+def event_columns(history: History, events: SlipEvents) -> Columns:
+    """Return the columns of EVENT_COLUMNS, with one row per event."""
     begin, peak, end = events.begin, events.peak, events.end
     row, offset = history.placed(begin)
     lasts, slip = history.lasting(begin, end), np.abs(history.slipped_within(begin, end))
     before, after = friction_before(history, begin), friction_after(history, events)
     since = np.full(len(row), np.nan)
     since[1:] = np.diff(row) * history.round_trip_time + np.diff(offset)
-    columns = {
+    return {
         "start": history.seconds(row, offset),
         "end": np.where(events.is_over, history.seconds(*history.placed(end)), np.nan),
         "duration": np.where(events.is_over, lasts, np.nan),
@@ -101,7 +104,6 @@ def event_rows(history: History, events: SlipEvents) -> pd.DataFrame:
         "start_row": row,
         "start_offset": offset,
     }
-    return pd.DataFrame(columns)
 
 
 def friction_before(history: History, begin: Positions) -> Floats:
@@ -130,10 +132,16 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
     """Return a table with one row per jump of the slip rate between two times (s)."""
     import pandas as pd
 
+    columns = shock_columns(history, first, last)
+    return pd.DataFrame(columns).assign(rule=rule_in_force(history.problem) if columns["cause"] else "")
+
+
+def shock_columns(history: History, first: float = -np.inf, last: float = np.inf) -> Columns:
+    """Return the columns of `shocks_table` but the last one."""
     piece = np.flatnonzero((history.store.cause > 0) & (history.start >= first) & (history.start <= last))
     before, after = history.just_before(piece), Positions.inside(piece, 0.0)
     reference = history.problem.strength
-    columns = {
+    return {
         "time": history.start[piece],
         "cause": [CAUSES[cause] for cause in history.store.cause[piece]],
         "rate_before": history.rate(before),
@@ -141,7 +149,6 @@ def shocks_table(history: History, first: float = -np.inf, last: float = np.inf)
         "traction_before": reference + history.friction(before),
         "traction_after": reference + history.friction(after),
     }
-    return pd.DataFrame(columns).assign(rule=rule_in_force(history.problem) if len(piece) else "")
 
 
 def creep_table(history: History) -> pd.DataFrame:
@@ -167,5 +174,5 @@ def rule_in_force(problem: Problem) -> str:
     """Return the selection rule if the contact equation has several solutions at some load (and slip), else an empty string."""
     if not is_algebraic(problem):
         return ""
-    several = folds_move(problem) or uniqueness(problem).regime != "regular"
+    several = folds_move(problem) or uniqueness_of(problem).regime != "regular"
     return problem.rule if several else ""

@@ -67,15 +67,13 @@ def analogy(
 
 
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
     from stickslip.scenarios.axes import read_axis
     from stickslip.studies.analogy import analogy as study
 
     x, y = (read_axis(scenario.problem, text, "analogy: --map") for text in typed)
-    with progress_to(f"{scenario.name}:") as report:
-        return study(
-            scenario.problem, scenario.duration, x, y, within=within, progress=lambda done, of: report(f"{done} of {of} points")
-        )
+    with progress_line(f"{scenario.name}:") as report:
+        return study(scenario.problem, scenario.duration, x, y, within=within, progress=report)
 
 
 def _save(path: Path, scenario: Scenario, found: Analogy) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from stickslip.cli.options import AXIS, Dpi, ScenarioName, Size, option
 from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, InputWarning
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -49,7 +50,9 @@ def check(
     look = Look(dpi, size)
     check_target(figure, "--figure")
     look.check(figure)
-    loaded, axes = load_scenario(scenario), map_axes or []
+    with warnings.catch_warnings(action="ignore", category=InputWarning):  # the examination has these
+        loaded = load_scenario(scenario)
+    axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
     drawn = None if figure is None else _map(loaded, axes) if axes else _set(loaded)
@@ -67,12 +70,12 @@ def _set(loaded: Scenario) -> Callable[..., object]:
 
 def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     """Return the function that draws the regimes of a scenario over two numbers."""
-    from stickslip.cli.output.show import progress_to
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
+    from stickslip.run.progress_line import progress_line
     from stickslip.scenarios.axes import read_axis
 
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
-    with progress_to("map:") as report:
+    with progress_line("map:") as report:
         found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
     return partial(regimes.draw, regimes.data(loaded.problem, found, loaded.heading))

@@ -54,7 +54,7 @@ def compare(
     look.check(figure)
     found = _compared(runs, until, rtol, event)
     show_comparison(found)
-    announce(*write_files((out, found.save), (figure, drawing(found.plot, look))))
+    announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
     if not all(solution.status.ok for solution in found.runs.values()):
         raise typer.Exit(1)
 
@@ -63,7 +63,8 @@ def _compared(names: list[str], until: str | None, rtol: float | None, event: in
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.long_run import progress
     from stickslip.cli.overrides import read
-    from stickslip.scenarios.schema import check_rtol, read_duration
+    from stickslip.problem.run_quantities import check_rtol
+    from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 
     if len(names) < 2:

@@ -60,16 +60,17 @@ def ensemble(
     chosen = load_with("ensemble", scenario, until=until, events=events, rtol=rtol)
     study = _study(chosen, members, size, seed)
     show_ensemble(chosen, study)
-    announce(*write_files((out, study.save), (figure, drawing(study.plot, look))))
+    save = study.to_netcdf if out is not None and out.suffix.lower() == ".nc" else study.to_csv
+    announce(*write_files((out, save), (figure, drawing(study.plot, look))))
     if len(study.runs) < study.wanted:
         raise KeyboardInterrupt
     raise typer.Exit(0 if study.ok else 1)
 
 
 def _study(scenario: Scenario, members: int, size: float, seed: int) -> Ensemble:
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
     from stickslip.studies.ensemble import ensemble as study
 
-    with progress_to(f"{scenario.name}:") as report:
+    with progress_line(f"{scenario.name}:") as report:
         run = scenario.problem, scenario.duration, members, size, scenario.rtol
         return study(*run, max_events=scenario.max_events, seed=seed, progress=report)

@@ -30,9 +30,9 @@ def new(
       stickslip new block --friction exponential-stribeck
       stickslip new slab --pull hold-and-slide
       stickslip new fig6-slab
-      stickslip new --list
+      stickslip new              (lists the names, as --list does)
     """
-    if show_list:
+    if show_list or (name is None and friction is None and pull is None):
         _print_list()
     elif name is None:
         raise InputError("new: which scenario? `stickslip new --list` lists them")
@@ -43,8 +43,6 @@ def new(
 
 
 def _print_list() -> None:
-    import tomllib
-
     from stickslip.cli.output.show import console, table
     from stickslip.friction import LAWS
     from stickslip.loading import HISTORIES
@@ -53,9 +51,8 @@ def _print_list() -> None:
     listing = table("name", "what it shows")
     listing.add_row("slab", "starter: an elastic slab, every key explained")
     listing.add_row("block", "starter: a block on a spring, every key explained")
-    for name in library.names():
-        content = tomllib.loads(library.text(name))
-        listing.add_row(name, f"{content['title']}. {content['description']}")
+    for name, entry in library.entries().items():
+        listing.add_row(name, f"{entry.title}. {entry.description}")
     console().print(listing)
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))
     for option_name, what, kinds in registered:

@@ -24,10 +24,10 @@ def paper(
     \b
       stickslip paper --out paper
     """
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
 
     check_folder(out, "--out")
     from stickslip.paper import make
 
-    with progress_to("paper") as report:
+    with progress_line("paper") as report:
         announce(make(out, report))

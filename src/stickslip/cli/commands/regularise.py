@@ -59,7 +59,7 @@ def regularise(
     chosen = load_with("regularise", scenario, duration=duration, rtol=rtol)
     study = _study(chosen, by, _sizes(chosen, largest, smallest, count))
     show_regularisation(chosen, study)
-    announce(*write_files((out, study.save), (figure, drawing(study.plot, look))))
+    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))
 
 
 def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count: int) -> list[float]:
@@ -80,8 +80,8 @@ def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count:
 
 
 def _study(scenario: Scenario, by: str, sizes: list[float]) -> Regularisation:
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
     from stickslip.studies.regularise import regularise as study
 
-    with progress_to(f"{scenario.name}:") as report:
+    with progress_line(f"{scenario.name}:") as report:
         return study(scenario.problem, scenario.duration, by, sizes, rtol=scenario.rtol, progress=report)

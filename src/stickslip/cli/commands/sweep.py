@@ -168,13 +168,13 @@ def _losses() -> Iterator[None]:
 
 
 def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
-    from stickslip.cli.output.show import progress_to
     from stickslip.cli.output.sweep_summary import show_estimate
+    from stickslip.run.progress_line import progress_line
     from stickslip.sweeps.estimate import estimate
     from stickslip.sweeps.sweep import runner_of
 
     with runner_of(**resources) as (run, at_once):
-        with progress_to(f"{plan.scenario.name}: timing a sample"):
+        with progress_line(f"{plan.scenario.name}: timing a sample"):
             found = estimate(plan, run, at_once)
         show_estimate(plan, found)
 
@@ -182,10 +182,10 @@ def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
 @contextmanager
 def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
     """Provide a function that shows the progress of a sweep in one line."""
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
 
-    with progress_to(f"{plan.scenario.name}:") as tell:
-        yield lambda progress: tell(so_far(progress))
+    with progress_line(f"{plan.scenario.name}:") as tell:
+        yield tell
 
 
 def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> xr.Dataset:
@@ -212,13 +212,3 @@ def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: Look) -> None:
     from stickslip.figures.sweeps.sweep import plot_sweep
 
     drawing(partial(plot_sweep, dataset, quantity), look)(figure)
-
-
-def so_far(progress: SweepProgress) -> str:
-    """Format the progress of a sweep in one line."""
-    from stickslip.cli.output.show import about_time, number
-
-    parts = [f"{progress.done} of {progress.members} members"]
-    if progress.rate > 0.0:
-        parts += [f"{number(progress.rate, 3)} a second", f"{about_time(progress.left)} left"]
-    return ", ".join([*parts, *([f"{progress.failed} failed"] if progress.failed else [])])

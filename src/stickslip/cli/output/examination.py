@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from stickslip.cli.output.show import clean, table, titled, with_unit
+from stickslip.cli.output.show import table, titled
+from stickslip.foundation.formatting import clean, with_unit
 
 if TYPE_CHECKING:
     from stickslip.contact.enclosed_folds import Fold

@@ -51,9 +51,9 @@ class Pictures:
         if inside and not problem.body.has_waves:
             raise InputError(f"run: {inside[0]} needs a slab: a block is rigid and has no interior field")
         if self.path is not None:
-            from stickslip.contact.uniqueness import uniqueness
+            from stickslip.contact.uniqueness import uniqueness_of
 
-            if uniqueness(problem).resistance is None:
+            if uniqueness_of(problem).resistance is None:
                 what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"run: --path needs {what}")
 
@@ -71,7 +71,7 @@ class Pictures:
 
 
 def _animate(solution: Solution, target: Path) -> Path:
-    from stickslip.cli.output.show import progress_to
+    from stickslip.run.progress_line import progress_line
 
-    with progress_to(f"{target}:") as report:
+    with progress_line(f"{target}:") as report:
         return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

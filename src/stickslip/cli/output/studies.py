@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.show import clean, console, number, print_sentences, table, titled, with_unit
+from stickslip.cli.output.show import console, print_sentences, table, titled
+from stickslip.foundation.formatting import clean, number, with_unit
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:

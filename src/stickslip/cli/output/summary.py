@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import number, table, titled, with_unit
+from stickslip.cli.output.show import table, titled
 from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.foundation.formatting import number, with_unit
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
     from rich.console import Console
 
     from stickslip.run.catalogue import Catalogue
@@ -27,13 +28,17 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary of a run on standard output."""
-    screen, force = titled(scenario), scenario.problem.load_unit
+    from stickslip.trajectory.slip_events import SlipEvents
+    from stickslip.trajectory.tables import default_event_rate, event_columns, shock_columns
+
+    screen, force, history = titled(scenario), scenario.problem.load_unit, solution.history
     _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
     screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
     units = ("s", "s", "s", "m", "m/s", force, force, "")
     shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
-    _print(screen, "slip event", solution.events[shown], units)
-    _print(screen, "shock", solution.shocks.drop(columns="rule"), ("s", "", "m/s", "m/s", force, force))
+    events = event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem)))
+    _print(screen, "slip event", {name: events[name] for name in shown}, units)
+    _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", force, force))
     notes = (solution.trapped_note, solution.horizon_note, solution.rounding_note)
     for what, note in zip(("trapped energy", "predictability", "rounding"), notes, strict=True):
         if note:
@@ -66,19 +71,20 @@ def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lu
         screen.print(f"creep_rtol {tolerance:g} (automatic; 0 runs every round trip): {creep}", soft_wrap=True)
 
 
-def _print(screen: Console, what: str, rows: DataFrame, units: Sequence[str]) -> None:
-    if rows.empty:
+def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], units: Sequence[str]) -> None:
+    rows = len(next(iter(columns.values())))
+    if not rows:
         screen.print(f"no {what}\n")
         return
-    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(rows.columns, units, strict=True)]
+    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(columns, units, strict=True)]
     for digits in (8, 5):  # use fewer digits if the terminal is too narrow
         shown = table(*headings, numbers=True)
-        for row in rows.head(FIRST).itertuples(index=False):
+        for row in islice(zip(*columns.values(), strict=True), FIRST):
             shown.add_row(*(_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)))
         if screen.measure(shown).maximum < screen.width:
             break
-    more = f", the first {FIRST} of them" if len(rows) > FIRST else ""
-    screen.print(f"{len(rows)} {what}{'s' if len(rows) > 1 else ''}{more}")
+    more = f", the first {FIRST} of them" if rows > FIRST else ""
+    screen.print(f"{rows} {what}{'s' if rows > 1 else ''}{more}")
     screen.print(shown)
     screen.print()
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import about_time, clean, console, number, table, titled, with_unit
+from stickslip.cli.output.show import console, table, titled
+from stickslip.foundation.formatting import about_time, clean, number, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr

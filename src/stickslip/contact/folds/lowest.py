@@ -70,7 +70,7 @@ def _lowest(bounds: SlopeBounds, tolerance: float) -> Lowest:
         i = int(np.argmin(here))
         if here[i] < most:
             most, place = float(here[i]), (float(cells.low[i]), float(cells.high[i]))
-        least, final = _least(seen)
+        least, final = least_on(seen)
         slack = tolerance * max(bounds.g.impedance, abs(most))
         done = (least >= most - slack) | final
         settled = min(settled, float(least[done].min(initial=math.inf)))
@@ -83,7 +83,7 @@ def _lowest(bounds: SlopeBounds, tolerance: float) -> Lowest:
     return Lowest("proven" if near else "not decided", least_of_all, most, *place)
 
 
-def _least(seen: Looks) -> tuple[Floats, NDArray[np.bool_]]:
+def least_on(seen: Looks) -> tuple[Floats, NDArray[np.bool_]]:
     """Return a lower bound of g' on each cell, and True for cells whose bound would not rise by subdivision."""
     monotone = (seen.second[0] > 0.0) | (seen.second[1] < 0.0)
     ends = np.minimum(seen.at_low[0], seen.at_high[0])
@@ -101,7 +101,7 @@ def proven_regime(g: Resistance) -> Literal["regular", "irregular"] | None:
             seen = bounds.look(cells)
             if min(float(one[1].min()) for one in (seen.at_low, seen.at_high, seen.at_middle)) < 0.0:
                 return "irregular"
-            least, final = _least(seen)
+            least, final = least_on(seen)
             open_.append(cells[(least <= 0.0) & final])
             cells = cells[(least <= 0.0) & ~final]
             if spent + 4 * cells.parts * len(cells) > MOST_EVALUATIONS:

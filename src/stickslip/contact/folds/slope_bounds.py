@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import override
 
 from stickslip.contact.equation import Resistance
 from stickslip.friction.formula import interval as iv
@@ -98,34 +100,15 @@ class Looks:
     hopeless: NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class SlopeBounds:
-    """Bounds of g' and g'' of one resistance by interval arithmetic; impedance, normal stress and parameters count as exact."""
+class Bounds(ABC):
+    """Bounds of g' and g'' by interval arithmetic; impedance, normal stress and parameters count as exact."""
 
-    g: Resistance
-
-    @cached_property
-    def _values(self) -> Floats:
-        law = self.g.law
-        return np.array([law.piece_values(i) for i in range(len(self.g.trees))])
-
+    @abstractmethod
     def __call__(self, cells: Cells) -> tuple[Floats, Floats]:
         """Return lower and upper bounds of g' (Pa s/m) and of g'' (Pa s^2/m^2) on n cells, each of shape (2, n).
 
         Raises NotEnclosedError for a law whose formula has no guaranteed bounds.
         """
-        first, second = np.empty((2, len(cells))), np.empty((2, len(cells)))
-        trees = self.g.trees
-        used = np.unique(cells.piece).tolist()
-        for tree in dict.fromkeys(trees[i] for i in used):
-            own = [i for i in used if trees[i] == tree]
-            chosen = np.isin(cells.piece, own) if len(own) < len(used) else np.ones(len(cells), bool)
-            some = cells[chosen]
-            values = self._values[own[0]] if len(own) == 1 else self._values[some.piece].T
-            numbers = dict(zip(self.g.law.parameters(), values, strict=True))
-            _, one, two = enclose(tree, numbers, self.g.law_slip, some.low, some.high)
-            first[:, chosen], second[:, chosen] = self._stress(one, self.g.impedance), self._stress(two, 0.0)
-        return first, second
 
     def look(self, cells: Cells) -> Looks:
         """Return bounds of g' and g'' on cells, and of g' at their ends and in their middle, in one evaluation.
@@ -145,11 +128,32 @@ class SlopeBounds:
             hopeless = (reach <= _NOISE * (at_middle[1] - at_middle[0])) | cells.at_rounding
         return Looks(np.stack((least, most)), at_low, at_high, at_middle, second, hopeless)
 
-    def _stress(self, friction: Floats, added: float) -> Floats:
-        """Return bounds of `added` plus the normal stress times a derivative of friction."""
-        with np.errstate(invalid="ignore", over="ignore"):
-            product = iv.multiply(iv.exact(self.g.normal), iv.interval(*friction))
-            return np.stack(iv.ends(iv.add(iv.exact(added), product) if added else product))
+
+@dataclass(frozen=True)
+class SlopeBounds(Bounds):
+    """Bounds for one resistance."""
+
+    g: Resistance
+
+    @cached_property
+    def _values(self) -> Floats:
+        law = self.g.law
+        return np.array([law.piece_values(i) for i in range(len(self.g.trees))])
+
+    @override
+    def __call__(self, cells: Cells) -> tuple[Floats, Floats]:
+        first, second = np.empty((2, len(cells))), np.empty((2, len(cells)))
+        trees = self.g.trees
+        used = np.unique(cells.piece).tolist()
+        for tree in dict.fromkeys(trees[i] for i in used):
+            own = [i for i in used if trees[i] == tree]
+            chosen = np.isin(cells.piece, own) if len(own) < len(used) else np.ones(len(cells), bool)
+            some = cells[chosen]
+            values = self._values[own[0]] if len(own) == 1 else self._values[some.piece].T
+            numbers = dict(zip(self.g.law.parameters(), values, strict=True))
+            _, one, two = enclose(tree, numbers, self.g.law_slip, some.low, some.high)
+            first[:, chosen], second[:, chosen] = stress(one, self.g.normal, self.g.impedance), stress(two, self.g.normal)
+        return first, second
 
     def first_cells(self) -> Cells:
         """Return cells that cover the slip rates from 0 to `FASTEST`: geometric over the scales of the contact, cut at knots."""
@@ -163,3 +167,10 @@ class SlopeBounds:
     def piece_from(self, rates: Floats) -> NDArray[np.intp]:
         """Return the piece of the law that applies at each rate; at a knot, the one above it."""
         return np.broadcast_to(self.g.law.piece_at(self.g.law_slip, rates), rates.shape)
+
+
+def stress(friction: Floats, normal: float | Floats, added: float | Floats | None = None) -> Floats:
+    """Return bounds of the normal stress times a derivative of friction, with bounds (2, n), plus `added`."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        product = iv.multiply(iv.exact(normal), iv.interval(*friction))
+        return np.stack(iv.ends(product if added is None else iv.add(iv.exact(added), product)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.rules.maxwell import area
 from stickslip.contact.rules.selection import selection_table
+from stickslip.foundation.brief_repr import brief_repr
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionTable
 
@@ -31,6 +32,12 @@ class Jump:
     traction_before: float
     traction_after: float
 
+    units: ClassVar = {
+        **dict.fromkeys(("rate_before", "rate_after"), "m/s"),
+        **dict.fromkeys(("load", "traction_before", "traction_after"), "Pa"),
+    }
+    __repr__ = brief_repr
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -45,6 +52,9 @@ class Loop:
     branches: tuple[int, ...]
     jumps: tuple[Jump, ...]
     area: float
+
+    units: ClassVar = {"area": "Pa m/s"}
+    __repr__ = brief_repr
 
 
 def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> tuple[Jump, ...]:

@@ -8,16 +8,24 @@ which the areas between g and the load line are equal. Loads are excesses over t
 from __future__ import annotations
 
 import math
+from functools import cache
 from itertools import combinations, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance
 from stickslip.contact.roots import bracketed_newton
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
+
+
+@cache
+def _gauss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return nodes on [-1, 1] and weights; not when the module is loaded, because numpy's polynomials take a while to load."""
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    return nodes, weights
 
 
 def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[float, float]]:
@@ -82,5 +90,6 @@ def area(g: Resistance, start: float, end: float, excess: float) -> float:
     kinks = [knot for knot in g.rate_knots if start < knot < end]
     edges = np.unique(np.concatenate(([start], inner, kinks)))
     half = 0.5 * np.diff(edges)
-    rates = edges[:-1, None] + half[:, None] * (1.0 + _NODES)
-    return float(np.sum(half * ((g.excess(rates) - excess) @ _WEIGHTS)))
+    nodes, weights = _gauss()
+    rates = edges[:-1, None] + half[:, None] * (1.0 + nodes)
+    return float(np.sum(half * ((g.excess(rates) - excess) @ weights)))

@@ -5,8 +5,9 @@ Machine code and pickles from the cache folder are executed. The folder must the
 file that numba writes carries a checksum; a damaged file counts as missing, and its function is compiled again. Formulas are
 executed from the text in memory, never from the file.
 
-The name of the folder contains a hash of every source file that is compiled, so that an edited kernel never meets its old machine
-code. This is needed because numba itself compares only the file of a function, not the files of the functions that it calls.
+The name of the folder contains a hash of all code that is compiled (`sources.py`), so that an edited kernel never meets its old
+machine code. Numba's own comparison does not suffice: it looks at the date of a function's file, and not at the files of the
+functions that it calls.
 """
 
 from __future__ import annotations
@@ -29,51 +30,19 @@ import numba
 import platformdirs
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
 from numba.core.ccallback import CFunc
+from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
 from stickslip.engine.codegen.private_folder import private_folder
+from stickslip.engine.codegen.sources import remembered_key
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.atomic_write import write_atomically
 
-NOT_COMPILED = ("cache.py", "private_folder.py")
-"""Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
 
-
-COMPILED_FOLDERS = ("engine", "batch/kernels")
-"""Folders of the package whose files all enter the hash, because they hold compiled functions."""
-COMPILED_FILES = (
-    "engine_input/branch_table.py",
-    "friction/formula/expression.py",
-    "trajectory/history.py",
-    "trajectory/phase_index.py",
-    "trajectory/slip_events.py",
-    "trajectory/status.py",
-)
-"""Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
-
-
-def compiled_sources() -> list[Path]:
-    """Return the paths of all files whose content is compiled, sorted."""
-    package = Path(__file__).parents[2]
-    folders = [path for folder in COMPILED_FOLDERS for path in (package / folder).rglob("*.py")]
-    inside = [path for path in folders if path.name not in NOT_COMPILED]
-    return sorted([*inside, *(package / name for name in COMPILED_FILES)])
-
-
-def _sources_hash() -> str:
-    """Return a hash of the versions of numba and Python and of all compiled sources, as 16 hexadecimal digits."""
-    digest = hashlib.sha256(f"{numba.__version__} {sys.version}".encode())
-    for path in compiled_sources():
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
-SOURCES = _sources_hash()
-"""Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
 
 
 @cache
@@ -82,16 +51,28 @@ def tell(message: str) -> None:
     sys.stderr.write(f"stickslip: {' '.join(message.split())}\n")
 
 
-def cache_folder() -> Path:
-    """Return the folder of compiled code.
-
-    It lies in STICKSLIP_CACHE_DIR if that is set, otherwise in the user's cache folder. If it cannot be made there, or would not be
-    private, a temporary folder is returned.
-    """
+def cache_root() -> Path:
+    """Return the folder of all caches: STICKSLIP_CACHE_DIR if that is set, otherwise one in the user's cache folder."""
     chosen = os.environ.get("STICKSLIP_CACHE_DIR")
-    root = Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
+    return Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
+
+
+def sources_key() -> str:
+    """Return the key of the code that is compiled, kept in the cache if there is a private folder for it."""
     try:
-        return private_folder(root / f"compiled-{SOURCES}")
+        return remembered_key(private_folder(cache_root() / "keys"))
+    except OSError:
+        return remembered_key(None)
+
+
+SOURCES = sources_key()
+"""Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
+
+
+def cache_folder() -> Path:
+    """Return the folder of compiled code in `cache_root`, or a temporary one if it cannot be made there or would not be private."""
+    try:
+        return private_folder(cache_root() / f"compiled-{SOURCES}")
     except OSError as error:
         reason = f"{error.filename}: {error.strerror}" if error.strerror else str(error)
     tell(
@@ -170,6 +151,10 @@ class _Locator(UserProvidedCacheLocator):
     def from_function(cls, function: Any, file: str) -> _Locator:
         return cls(function, file)
 
+    def get_source_stamp(self) -> str:
+        """Return the key of all code in place of the date of one file, which an edited comment would change."""
+        return SOURCES
+
 
 class _Files(CompileResultCacheImpl):
     """The cache implementation of numba, restricted to the one locator above."""
@@ -189,9 +174,14 @@ class SealedCache(FunctionCache):
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Return the compiled function, or None if it must be compiled; announce the compilation if it takes long (see SLOW)."""
+        """Return the compiled function, or None if it must be compiled; announce the compilation if it takes long (see SLOW).
+
+        numba's own method first makes ready all that it needs to compile (`context.refresh()`), which takes half a second. Machine
+        code from the disk needs the run-time functions only. The compiler calls `refresh` itself before it compiles anything.
+        """
         try:
-            found = super().load_overload(signature, context)
+            rtsys.initialize(context)
+            found = self._load_overload(signature, context)
         except Exception as error:  # unpickling may raise anything, and must not make every later start fail
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_part, kernel
+from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact.append_segment import note_jump, record
 from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
@@ -16,10 +16,9 @@ from stickslip.engine.contact.contact_equation import (
     rest_limit,
     towards,
 )
-from stickslip.engine.contact.stiffness import forgotten
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats, Task
+from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
@@ -102,9 +101,6 @@ def heal(run: Run, load: float) -> None:
 @kernel
 def stick(run: Run, xi_to: float) -> None:
     """Stay at rest up to the place xi_to, or until the load exceeds what friction can hold."""
-    if run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run):
-        call_part(run.implicit_steps, run, Task.STICK, xi_to)
-        return
     width, load = xi_to - run.state.xi, run.history[run.counts.length].load
     restrict(run.load, run.state.xi, width, load)
     onset, direction = end_of_rest(run, load)

@@ -238,21 +238,19 @@ class Part(IntEnum):
 class Task(IntEnum):
     """Name what a part of the engine that is compiled apart (`on_demand`) is asked to do."""
 
-    SLIP = 0
-    """Take an implicit step of slip."""
-    STICK = 1
-    """Take a step at rest in which the state of the law evolves."""
-    TAKE_LOADING = 2
+    COLLOCATE = 0
+    """Make the polynomials of an implicit step."""
+    TAKE_LOADING = 1
     """Cut the piece of load where the loading breaks, and add the loading to it."""
-    COUNT_TRIPS_AT_REST = 3
+    COUNT_TRIPS_AT_REST = 2
     """Find for how many round trips a contact at rest withstands the loading."""
-    NEXT_ECHO = 4
+    NEXT_ECHO = 3
     """Find the next echo that must be met."""
-    END_TRIP = 5
+    END_TRIP = 4
     """Close a round trip in which only such echoes are met."""
-    BUILD_QUEUE = 6
+    BUILD_QUEUE = 5
     """Build the queue of echoes."""
-    LOOK_FOR_FOLD = 7
+    LOOK_FOR_FOLD = 6
     """Find the way to the moving fold into which the series runs."""
 
 

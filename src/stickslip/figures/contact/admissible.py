@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import FuncFormatter
 
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import set_title
 from stickslip.figures.sheet import Place, one_panel, result
@@ -85,7 +85,7 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "")
     -----
     If friction depends on slip, the set moves as the contact slips: at each moment the run is on the set of its own slip.
     """
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     g = contact.resistance
     if g is None:
         why = "the slip rate does not follow from the load alone (inertia or a state variable)"

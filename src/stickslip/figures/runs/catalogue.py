@@ -28,7 +28,6 @@ from stickslip.figures.style import (
     Floats,
     curve_label,
     curve_quantity,
-    length_unit,
     quantity,
     spans_decades,
     styled,
@@ -159,7 +158,7 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
 def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
     for axes, (name, (_, curve, clock)) in zip(panels, ZOOMS.items(), strict=True):
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), length_unit(float(np.ptp(slip)))
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), unit_of("m", np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Converted, WithUnit
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Choice, NamedNumbers, Text, declare, quantity
+from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.custom.sampled import check_samples
 from stickslip.friction.families import RemembersSlip
@@ -32,6 +34,9 @@ class FromExpression(RemembersSlip):
     For example `FromExpression("mu_d + (mu_s - mu_d) / (1 + alpha*v)", {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"})`. `values` has
     the parameters by name, as numbers in SI or as texts with a unit. The text is never evaluated as Python.
 
+    The static friction coefficient is the value at v = 0, unless `static` gives a higher one: friction then drops by the difference
+    as soon as the contact slips.
+
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
     samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
     """
@@ -44,7 +49,9 @@ class FromExpression(RemembersSlip):
     }
 
     expression: str = declare(Text("friction coefficient in u (slip, m), v (slip rate, m/s) and parameters", LONGEST))
-    values: Any = declare(NamedNumbers("values of the parameters", "parameters"), ())  # noqa: RUF009 - makes a field
+    values: Converted[tuple[Named, ...], Mapping[str, float | str | WithUnit] | Sequence[Named]] = declare(
+        NamedNumbers("values of the parameters", "parameters"), ()
+    )
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user

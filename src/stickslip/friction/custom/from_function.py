@@ -4,33 +4,66 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any
+from numbers import Real
+from typing import Any, Literal, overload
 
+import numpy as np
+
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
 from stickslip.friction.formula.text import to_text
 
+VARIABLES = {"u": SLIP, "v": RATE}
+"""Symbols of the arguments of which friction may be a function."""
 OPTIONS = ("static", "counts", "memory")
 """Options of the law itself, given together with the values of the function's parameters."""
+NUMPY = "sin, cos, exp, log, sqrt, tanh, arcsinh"
+"""The functions of numpy that a message names."""
+_NAMED = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+"""Kinds of arguments that have a name each: not *args, not **named."""
 
 
-def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
-    """Make a friction law from a Python function mu(u, v, **parameters).
+@overload
+def FromFunction(
+    function: Callable[..., Any],
+    /,
+    *,
+    static: float | str | None = None,
+    counts: Literal["net", "path"] = "net",
+    memory: Literal["all", "since-arrest"] = "all",
+    **parameters: float | str | WithUnit,
+) -> FromExpression: ...
+@overload
+def FromFunction(
+    function: None = None,
+    /,
+    *,
+    static: float | str | None = None,
+    counts: Literal["net", "path"] = "net",
+    memory: Literal["all", "since-arrest"] = "all",
+    **parameters: float | str | WithUnit,
+) -> Callable[[Callable[..., Any]], FromExpression]: ...
+def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
+    """Make a friction law from a Python function of slip u, of slip rate v, or of both, with named parameters.
 
         law = ss.friction.FromFunction(my_function, mu_s=0.8, mu_d=0.3)
 
-        @ss.friction.FromFunction(mu_s=0.8, mu_d=0.3)
-        def law(u, v, mu_s, mu_d): return mu_d + (mu_s - mu_d) * np.exp(-v / 0.1)
+        @ss.friction.FromFunction
+        def law(v, mu_s=0.8, mu_d=0.3, v_c="0.1 m/s"):
+            return mu_d + (mu_s - mu_d) * np.exp(-v / v_c)
 
     Parameters
     ----------
     function
-        A function of slip u (m), slip rate v >= 0 (m/s) and named parameters that returns the friction coefficient (no unit).
-        Leave it out to use `FromFunction` as a decorator.
+        A function that returns the friction coefficient (no unit). Its argument named u is the slip (m), its argument named v the
+        magnitude of the slip rate (m/s, never negative); all others are parameters. Leave it out to use `FromFunction` as a
+        decorator with values.
     **given
-        Values of the function's parameters: numbers in SI, or texts with a unit. `static`, `counts` and `memory` are options of
-        the law (see `FromExpression`), unless the function has a parameter of that name.
+        Values of the function's parameters: numbers in SI, or texts with a unit. The others have their defaults. `static`,
+        `counts` and `memory` are options of the law (see `FromExpression`), unless the function has a parameter of that name.
 
     Returns
     -------
@@ -44,57 +77,89 @@ def FromFunction(function: Callable[..., Any] | None = None, **given: Any) -> An
 
     Notes
     -----
+    The static friction coefficient is the value at v = 0, the limit from v > 0. A higher one is given as `static`: friction then
+    drops by the difference as soon as the contact slips.
+
     The function is called once, with symbols for u, v and the parameters. Ordinary operators, numpy's sin, cos, exp, log, sqrt,
-    tanh and arcsinh, and numpy functions composed of these are recorded. Branches on values cannot be recorded.
+    tanh and arcsinh, and numpy functions composed of these are recorded. Branches on values cannot be recorded: a law with a kink
+    is `PiecewiseLinearRate`, `PiecewiseLinearSlip`, `LinearSlipWeakening` or `FromTable`.
     """
     if function is None:
         return lambda decorated: FromFunction(decorated, **given)
-    values = _values(function, given)
-    options = {name: value for name, value in given.items() if name in OPTIONS and name not in values}
     try:
-        tree = _traced(function, tuple(values))
+        signature = _signature(function)
+        values = _values(signature, given)
+        options = {name: value for name, value in given.items() if name in OPTIONS and name not in values}
+        tree = _traced(function, signature)
         used = {node.name for node in nodes_of(tree) if node.operation == "parameter"}
         return FromExpression(to_text(tree), {name: value for name, value in values.items() if name in used}, **options)
     except InputError as error:
-        fault = str(error).removeprefix("formula: ").removeprefix("FromExpression: ")
+        fault = str(error).removeprefix("formula: ").removeprefix("FromExpression: ").removeprefix("expression: ")
         raise InputError(f"FromFunction: {_name(function)}: {fault}") from None
 
 
-def _values(function: Callable[..., Any], given: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of the function's parameters other than u and v, from its defaults and the given values."""
-    name = _name(function)
+def _signature(function: Callable[..., Any]) -> inspect.Signature:
+    """Return the signature of a function of u, of v or of both. Raises InputError for anything else."""
+    if isinstance(function, type):
+        raise InputError(f"it is a class: a law is made with its parameters, {function.__name__}(...)")
+    if isinstance(function, str):
+        raise InputError("it is a text: a formula as text makes a law with FromExpression")
     try:
-        signature = inspect.signature(function).parameters.values()
+        signature = inspect.signature(function)
     except (TypeError, ValueError):
-        raise InputError(f"FromFunction: {name} is not a Python function whose parameters can be read") from None
-    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-    first, rest = list(signature)[:2], list(signature)[2:]
-    if len(first) < 2 or any(p.kind not in kinds for p in rest):
-        raise InputError(f"FromFunction: {name} must be a function of u and v, then named parameters")
-    names = [p.name for p in rest]
+        raise InputError("it is not a Python function whose arguments can be read; wrap it: lambda v: ...") from None
+    if any(one.kind not in _NAMED for one in signature.parameters.values()):
+        raise InputError("it must name each of its arguments: u, v and parameters, without *args and **named")
+    if not set(VARIABLES) & set(signature.parameters):
+        found = ", ".join(signature.parameters) or "none"
+        raise InputError(f"it must have an argument named u (slip, m) or v (slip rate, m/s), or both; its arguments are: {found}")
+    return signature
+
+
+def _values(signature: inspect.Signature, given: dict[str, Any]) -> dict[str, Any]:
+    """Return the values of the function's parameters other than u and v, from its defaults and the given values."""
+    parameters = [one for one in signature.parameters.values() if one.name not in VARIABLES]
+    names = [one.name for one in parameters]
     for extra in given:
+        if extra in VARIABLES:
+            raise InputError(f"{extra} is the {'slip' if extra == 'u' else 'slip rate'}, and no parameter that could have a value")
         if extra not in names and extra not in OPTIONS:
-            raise InputError(f"FromFunction: {name} has no parameter {extra}; {nearest(extra, [*names, *OPTIONS])}")
-    values = {p.name: given.get(p.name, p.default) for p in rest}
-    missing = [p for p, value in values.items() if value is inspect.Parameter.empty]
-    if missing:
-        raise InputError(f"FromFunction: {name}: parameter {missing[0]} has no value")
+            raise InputError(f"it has no parameter {extra}; {nearest(extra, [*names, *OPTIONS])}")
+    values = {one.name: given.get(one.name, one.default) for one in parameters}
+    for name, value in values.items():
+        if value is inspect.Parameter.empty:
+            raise InputError(f"parameter {name} has no value: give it a default, or FromFunction(..., {name}=...)")
     return values
 
 
-def _traced(function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
+def _traced(function: Callable[..., Any], signature: inspect.Signature) -> Expression:
     """Return the formula that the function records when it is called with symbols."""
+    symbols = {name: VARIABLES[name] if name in VARIABLES else Parameter(name) for name in signature.parameters}
+    call = inspect.BoundArguments(signature, symbols)
     try:
-        return as_expression(function(SLIP, RATE, **{name: Parameter(name) for name in names}))
+        value = function(*call.args, **call.kwargs)
     except InputError:
         raise
     except Exception as error:  # a user's function may raise anything when it is called with symbols
         said = " ".join(str(error).split())[:120]
         raise InputError(
-            f"it cannot be traced ({type(error).__name__}: {said}); "
-            "use + - * / ** and numpy's sin, cos, exp, log, sqrt, tanh, arcsinh"
+            f"it cannot be traced ({type(error).__name__}: {said}); use + - * / ** and numpy's {NUMPY}; points make a FromTable"
         ) from None
+    return _formula(value)
+
+
+def _formula(value: Any) -> Expression:
+    """Return what the function returned as a formula. Raises InputError if it is neither a formula nor a number."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, Expression) or (isinstance(value, Real) and not isinstance(value, bool)):
+        return as_expression(value)
+    if value is None:
+        raise InputError("it returns nothing: end it with return and the friction coefficient")
+    what = "an array" if isinstance(value, np.ndarray) else shown(value) if isinstance(value, str | bool) else type(value).__name__
+    raise InputError(f"it must return one number, the friction coefficient, and returns {what}: it is called with one u and one v")
 
 
 def _name(function: Any) -> str:
-    return str(getattr(function, "__name__", type(function).__name__))
+    name = getattr(function, "__name__", None)
+    return ascii(name or shown(function))[1:-1]

@@ -36,7 +36,11 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
         worst = int(np.argmin(values)) if finite.all() else int(np.argmin(finite))
         if not values[worst] >= -TOLERANCE or not finite[worst]:
             what = f"is {values[worst]:.3g}" if finite[worst] else "is not a finite number"
-            raise InputError(f"friction must be a number >= 0, but at u = {u[worst]:.4g} m, v = {v[worst]:.4g} m/s it {what}")
+            place = f"at u = {u[worst]:.4g} m, v = {v[worst]:.4g} m/s it {what}"
+            cure = "; slip begins at v = 0, and friction there is the static strength" if v[worst] == 0.0 else ""
+            if u[worst] < 0.0:
+                cure = '; with counts="path" u is the length of the slip path, which is never negative'
+            raise InputError(f"friction must be a number >= 0, but {place}{cure}")
     for node in found:
         if node.operation in ("sqrt", "log", "pow") and np.ndim(found[node.arguments[0]]):
             _check_argument(node, found[node.arguments[0]], u, v)

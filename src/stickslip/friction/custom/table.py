@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import override
 
+from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity, Series, declare
+from stickslip.friction.custom.measured import read_table
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class FromTable(RemembersSlip, PiecewiseLaw):
     """mu through measured points of slip or of slip rate: monotone cubic between them, constant outside (no extrapolation).
 
-    Give either `slip` or `rate`, with as many points as `friction`. Slips must not be negative where the path is counted.
+    Give the points as a CSV file, a DataFrame or `Points`, as in `FromTable("data.csv")`, with what `Points.read` understands. Or
+    give either `slip` or `rate`, with as many points as `friction`. Slips must not be negative where the path is counted.
 
-    The cubic passes through the points without overshoot. Its slope is continuous between the first and the last point.
+    The cubic passes through the points without overshoot. Its slope is continuous between the first and the last point. Through
+    noisy points it turns at almost every one of them, and an `InputWarning` says so: see `smooth` and `fit`.
     """
 
     kind = "table"
@@ -31,13 +35,33 @@ class FromTable(RemembersSlip, PiecewiseLaw):
     columns: ClassVar = {"slip": "slip", "slip_rate": "rate", "friction": "friction"}
 
     friction: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
-    slip: Sequence[float] | None = declare(
-        Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None
-    )
-    rate: Sequence[float] | None = declare(
+    slip: OptionalNumbers = declare(Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None)
+    rate: OptionalNumbers = declare(
         Series(Quantity("m/s", "slip rates of the points; give either slip or rate", at_least=0), ascending=True), None
     )
     counts: Literal["net", "path"] = declare(Choice("slip that a table of slip sees", ("path", "net")), "path")  # type: ignore[misc] # here a choice of the user
+
+    def __init__(
+        self,
+        source: Any = None,
+        /,
+        *,
+        friction: Iterable[Any] | None = None,
+        slip: Iterable[Any] | None = None,
+        rate: Iterable[Any] | None = None,
+        counts: Literal["net", "path"] = "path",
+        memory: Literal["all", "since-arrest"] = "all",
+    ) -> None:
+        if source is not None:
+            if not (friction is slip is rate is None):
+                raise InputError("FromTable: give a source of points or lists of numbers, not both")
+            slip, rate, friction = _read(source)
+        elif friction is None:
+            raise InputError("FromTable: friction is missing: give a file, a DataFrame, or friction with slip or rate")
+        given = {"friction": friction, "slip": slip, "rate": rate, "counts": counts, "memory": memory}
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+        self.__post_init__()
 
     @override
     def check(self) -> None:
@@ -66,6 +90,15 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         second = (3.0 * secant - 2.0 * left - right) / width
         third = (left + right - 2.0 * secant) / width**2
         return np.column_stack((values[:-1], left, second, third))
+
+
+def _read(source: Any) -> tuple[Any, Any, Any]:
+    """Return slips or None, slip rates or None, and friction coefficients of a source of points. Raises InputError."""
+    try:
+        variable, places, friction = read_table(source)
+    except InputError as error:
+        raise InputError(f"FromTable: {error}") from None
+    return (places, None, friction) if variable == "slip" else (None, places, friction)
 
 
 def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -33,13 +33,13 @@ class _Node:
 
 
 def difference(
-    tree: Expression, parameters: Mapping[str, float], slip: float, slip_step: ArrayLike, rate: ArrayLike
+    tree: Expression, parameters: Mapping[str, ArrayLike], slip: float | Array, slip_step: ArrayLike, rate: ArrayLike
 ) -> tuple[Array, Array]:
     """Return mu(slip + slip_step, rate) - mu(slip, 0), and dmu/drate (s/m) at the end point.
 
-    `slip` and `slip_step` are in m, `rate` >= 0 in m/s; `slip_step` and `rate` broadcast. `tree` is one piece of a law's formula
-    and `parameters` holds the law's numbers by name. A state variable is 0, healed, at both points. Raise KeyError for a parameter
-    without a value.
+    `slip` and `slip_step` are in m, `rate` >= 0 in m/s. `tree` is one piece of a law's formula and `parameters` holds the law's
+    numbers by name. All of them broadcast to the shape of `slip_step` and `rate` together. A state variable is 0,
+    healed, at both points. Raise KeyError for a parameter without a value.
     """
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}

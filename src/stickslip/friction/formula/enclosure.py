@@ -32,7 +32,7 @@ class NotEnclosedError(Exception):
 
 
 def enclose(
-    tree: Expression, parameters: Mapping[str, ArrayLike], slip: float, low: ArrayLike, high: ArrayLike
+    tree: Expression, parameters: Mapping[str, ArrayLike], slip: float | Array, low: ArrayLike, high: ArrayLike
 ) -> tuple[Array, Array, Array]:
     """Bound a formula and its derivatives by the slip rate on cells of slip rates.
 
@@ -43,7 +43,7 @@ def enclose(
     parameters
         Values of its parameters by name, taken as exact: numbers, or one for each cell, shape (n,).
     slip
-        Slip (m).
+        Slip (m): a number, or one for each cell.
     low, high
         Ends of the cells of slip rates (m/s), shape (n,).
 

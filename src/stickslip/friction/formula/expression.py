@@ -105,6 +105,8 @@ class Expression:
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Expression:
         """Return an expression for a numpy function of expressions, such as np.exp(v) in a user's function."""
         rule = _UFUNCS.get(ufunc.__name__)
+        if ufunc.__name__ in _KINKED:
+            raise InputError(f"formula: np.{ufunc.__name__} has a kink or a jump and cannot be traced; {_instead(*inputs)}")
         if rule is None or method != "__call__" or options:
             allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *_EXTRA))
             raise InputError(f"formula: np.{ufunc.__name__} cannot be traced; allowed: {allowed} and + - * / **")
@@ -112,23 +114,38 @@ class Expression:
             raise InputError("formula: an array cannot be traced: u and v are single numbers")
         return as_expression(rule(*inputs))
 
-    def _refuse(self, *_: Any) -> NoReturn:
-        raise InputError(
-            "formula: a branch on the value of u, v or a parameter cannot be traced; "
-            "use a smooth function such as np.tanh, or a piecewise or table law"
-        )
+    def __array_function__(self, function: Callable[..., Any], types: Any, arguments: Any, options: Any) -> NoReturn:
+        """Refuse functions of numpy that are not elementary, such as np.where and np.interp."""
+        raise InputError(f"formula: np.{function.__name__} cannot be traced; {_instead(self, *arguments)}")
+
+    def _refuse(self, *others: Any) -> NoReturn:
+        raise InputError(f"formula: a branch on the value of u, v or a parameter cannot be traced; {_instead(self, *others)}")
 
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
 
     def __abs__(self) -> Expression:
         if self == RATE:  # the slip rate in a formula is never negative
             return self
+        if self == SLIP:
+            raise InputError('formula: abs has a kink and cannot be traced; counts="path" makes u a length that is never negative')
         raise InputError("formula: abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth")
 
     def __float__(self) -> float:
-        raise InputError("formula: math functions and float() cannot be traced; use numpy's: np.exp instead of math.exp")
+        cure = "use numpy's: np.exp instead of math.exp; points make a FromTable law"
+        raise InputError(f"formula: math functions and float() cannot be traced; {cure}")
 
     __int__ = __float__
+
+
+def _instead(*parts: Any) -> str:
+    """Return the laws to use in place of a formula with a kink, by the variable on which the given parts of it depend."""
+    nodes = [part for part in parts if isinstance(part, Expression)]
+    found = {variable.name for variable in (SLIP, RATE) for node in nodes if depends_on(node, variable)}
+    laws = {
+        "u": "for a kink or a jump in u use PiecewiseLinearSlip, LinearSlipWeakening or FromTable(slip=..., friction=...)",
+        "v": "for a kink or a jump in v use PiecewiseLinearRate or FromTable(rate=..., friction=...)",
+    }
+    return "; ".join([laws[name] for name in sorted(found, reverse=True)] + ["for a smooth step np.tanh"])
 
 
 SLIP = Expression("slip", name="u")
@@ -194,6 +211,8 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
     "pow": lambda a, b: a**b,
 } | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh), strict=True))
 """Function of each operation, for numbers and for expressions."""
+_KINKED = ("maximum", "minimum", "fmax", "fmin", "sign", "heaviside", "floor", "ceil", "rint", "trunc", "fabs", "copysign")
+"""Functions of numpy with kinks or jumps, which have no Taylor series there."""
 
 _UFUNCS: dict[str, Callable[..., Any]] = (
     {name: OPERATIONS[name] for name in FUNCTIONS}

@@ -38,6 +38,12 @@ RESERVED = ("u", "v", "pi", *FUNCTIONS)
 """Names that a parameter cannot have because they mean something else in an expression."""
 ALLOWED = f"allowed are numbers, u, v, pi, declared parameters, + - * / ** and {', '.join(FUNCTIONS)}"
 """End of a message about a part that is not allowed."""
+KINKED = ("abs", "min", "max", "where", "minimum", "maximum", "sign", "heaviside", "clip", "floor", "ceil")
+"""Functions with kinks or jumps that users try, which have no Taylor series there."""
+KINKS = "for a kink or a jump use a law such as piecewise-linear-rate, piecewise-linear-slip or table; for a smooth step tanh"
+"""End of a message about a formula with a kink."""
+UNDECLARED = "is neither u, v, pi nor a declared parameter"
+"""Part of the message about a name that an expression must not use."""
 
 _BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.Div: "div", ast.Pow: "pow"}
 """Operations of nodes for the operators of Python's syntax tree."""
@@ -68,6 +74,10 @@ def _syntax(text: str) -> ast.expr:
     except (RecursionError, MemoryError):
         raise InputError("nested too deeply") from None
     except (SyntaxError, ValueError) as error:
+        if "=" in text and not set("<>!") & set(text) and "==" not in text:
+            raise InputError(
+                f"{_shown(text)} is not an expression, because of its sign =; write only what comes after it"
+            ) from None
         where = f" at character {error.offset}" if isinstance(error, SyntaxError) and error.offset else ""
         raise InputError(f"{_shown(text)} is not an expression: mistake{where}; {ALLOWED}") from None
 
@@ -92,6 +102,10 @@ class _Reader:
             return self.binary(node, depth)
         if isinstance(node, ast.Call):
             return self.call(node, depth)
+        if isinstance(node, ast.IfExp | ast.Compare):
+            raise InputError(f"{self.part(node)} is not allowed, because it is a branch; {KINKS}")
+        if isinstance(node, ast.Tuple):
+            raise InputError(f"{self.part(node)} is not allowed, because of its comma; a decimal point is written as in 0.5")
         raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
 
     def number(self, node: ast.Constant) -> Expression:
@@ -112,9 +126,7 @@ class _Reader:
             return {"u": SLIP, "v": RATE, "pi": as_expression(math.pi)}[node.id]
         if node.id in FUNCTIONS:
             raise InputError(f"{self.part(node)} is a function: write {node.id}(...)")
-        raise InputError(
-            f"{self.part(node)} is neither u, v, pi nor a declared parameter; {nearest(node.id, [*self.names, 'u', 'v'])}"
-        )
+        raise InputError(f"{self.part(node)} {UNDECLARED}; {nearest(node.id, [*self.names, 'u', 'v'])}")
 
     def signed(self, node: ast.UnaryOp, depth: int) -> Expression:
         inner = self.read(node.operand, depth + 1)
@@ -138,9 +150,13 @@ class _Reader:
             raise InputError(f"the exponent of {self.part(node)} must be within {LARGEST_EXPONENT:g}")
 
     def call(self, node: ast.Call, depth: int) -> Expression:
+        if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *KINKED):
+            raise InputError(f"{self.part(node.func)} is written {node.func.attr}, without the name of a library")
         if not isinstance(node.func, ast.Name):
             raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
         name = node.func.id
+        if name in KINKED:
+            raise InputError(f"the function {self.part(node.func)} has a kink or a jump; {KINKS}")
         if name not in FUNCTIONS:
             raise InputError(f"the function {self.part(node.func)} is unknown; {nearest(name, FUNCTIONS)}")
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):

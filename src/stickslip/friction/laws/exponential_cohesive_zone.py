@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import SlipWeakening
 from stickslip.friction.formula.expression import exp
@@ -27,8 +28,8 @@ class ExponentialCohesiveZone(SlipWeakening):
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "distance": "0.2 m", "offset": "0.1 m"}
 
     static: float = quantity("1", "largest friction coefficient, at y = 1", at_least=0)
-    distance: float = quantity("m", "slip d2, counted from -offset, at which friction is largest", above=0)
-    offset: float = quantity("m", "slip d1 by which the curve is shifted back", at_least=0, default=0.0)
+    distance: Number = quantity("m", "slip d2, counted from -offset, at which friction is largest", above=0)
+    offset: Number = quantity("m", "slip d1 by which the curve is shifted back", at_least=0, default=0.0)
 
     @staticmethod
     @override

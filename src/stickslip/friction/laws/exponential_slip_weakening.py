@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import SlipWeakening
 from stickslip.friction.formula.expression import exp
@@ -22,7 +23,7 @@ class ExponentialSlipWeakening(SlipWeakening):
     many = True
     example: ClassVar = {"static": 0.7, "dynamic": 0.2, "distance": "0.5 m"}
 
-    distance: float = quantity("m", "slip over which the excess over dynamic falls by a factor e", above=0)
+    distance: Number = quantity("m", "slip over which the excess over dynamic falls by a factor e", above=0)
 
     @staticmethod
     @override

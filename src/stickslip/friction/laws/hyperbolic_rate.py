@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import hull
 from stickslip.friction.law import FrictionLaw
@@ -22,7 +23,7 @@ class HyperbolicRate(FrictionLaw):
 
     static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient muD at high slip rate", at_least=0)
-    alpha: float = quantity("s/m", "weakening parameter alpha: inverse of the slip rate at half of the change", at_least=0)
+    alpha: Number = quantity("s/m", "weakening parameter alpha: inverse of the slip rate at half of the change", at_least=0)
 
     @staticmethod
     @override

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Part, declare, quantity
 from stickslip.friction.composite import LawOfParts, PartNumbers
@@ -35,10 +36,10 @@ class LaggedFriction(LawOfParts):
     state = StateVariable("w", "m/s", "lagged slip rate")
     example: ClassVar = {"rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}, "time": "10 ms"}
 
-    rate: FrictionLaw = declare(Part("a law of slip rate"))  # noqa: RUF009 - makes a dataclass field
-    time: float = quantity("s", "time in which friction catches up with the slip rate", above=0)
+    rate: FrictionLaw = declare(Part("a law of slip rate"))
+    time: Number = quantity("s", "time in which friction catches up with the slip rate", above=0)
     direct: float = quantity("1", "immediate increase of friction per factor e of slip rate", at_least=0, default=0.0)
-    direct_rate: float = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)
+    direct_rate: Number = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)
 
     @override
     def check(self) -> None:

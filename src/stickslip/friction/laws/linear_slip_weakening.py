@@ -34,4 +34,4 @@ class LinearSlipWeakening(SlipWeakening):
     @property
     @override
     def knots(self) -> tuple[float, ...]:
-        return (self.distance,)
+        return (self.distance,)  # type: ignore[return-value] # mypy reads an inherited field of a frozen class as it is given

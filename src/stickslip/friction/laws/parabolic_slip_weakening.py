@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.families import SlipWeakening, hull
@@ -28,8 +29,8 @@ class ParabolicSlipWeakening(SlipWeakening):
 
     static: float = quantity("1", "friction coefficient at the onset", at_least=0)
     dynamic: float = quantity("1", "friction coefficient after onset + distance of slip", at_least=0)
-    distance: float = quantity("m", "slip d2 over which friction falls", above=0)
-    onset: float = quantity("m", "slip d1 at which it begins to fall", at_least=0, default=0.0)
+    distance: Number = quantity("m", "slip d2 over which friction falls", above=0)
+    onset: Number = quantity("m", "slip d1 at which it begins to fall", at_least=0, default=0.0)
 
     @staticmethod
     @override

@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Numbers
 from stickslip.foundation.quantities import Quantity, Series, declare
 from stickslip.friction.piecewise import PiecewiseLinearLaw
 
@@ -21,7 +22,7 @@ class PiecewiseLinearRate(PiecewiseLinearLaw):
     example: ClassVar = {"rates": [0.0, "1 cm/s", "1 m/s"], "coefficients": [0.6, 0.5, 0.3]}
     columns: ClassVar = {"slip_rate": "rates", "friction": "coefficients"}
 
-    rates: Sequence[float] = declare(Series(Quantity("m/s", "slip rates of the points", at_least=0), ascending=True))
+    rates: Numbers = declare(Series(Quantity("m/s", "slip rates of the points", at_least=0), ascending=True))
     coefficients: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
 
     @property

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Numbers
 from stickslip.foundation.quantities import Quantity, Series, declare
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLinearLaw
@@ -24,7 +25,7 @@ class PiecewiseLinearSlip(RemembersSlip, PiecewiseLinearLaw):
     example: ClassVar = {"slips": [0.0, "5 cm", "0.2 m", "0.5 m"], "coefficients": [0.55, 0.6, 0.45, 0.4]}
     columns: ClassVar = {"slip": "slips", "friction": "coefficients"}
 
-    slips: Sequence[float] = declare(Series(Quantity("m", "slips of the points", at_least=0), ascending=True))
+    slips: Numbers = declare(Series(Quantity("m", "slips of the points", at_least=0), ascending=True))
     coefficients: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
 
     @property

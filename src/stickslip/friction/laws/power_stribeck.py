@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import Stribeck
 
@@ -23,7 +24,7 @@ class PowerStribeck(Stribeck):
     many = True
     example: ClassVar = {"static": 0.6, "dynamic": 0.4, "rate": "0.1 m/s", "exponent": 2}
 
-    rate: float = quantity("m/s", "slip rate v_s at which half of the decrease is complete", above=0)
+    rate: Number = quantity("m/s", "slip rate v_s at which half of the decrease is complete", above=0)
     exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True, default=2.0)
 
     @staticmethod

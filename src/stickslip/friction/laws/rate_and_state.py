@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
@@ -45,8 +46,8 @@ class RateAndState(FrictionLaw):
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
     a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
     b: float = quantity("1", "evolution effect b: decrease of friction as the state falls by a factor e", at_least=0)
-    distance: float = quantity("m", "slip over which the state renews itself (Dc)", above=0)
-    rate: float = quantity("m/s", "reference slip rate", above=0, default=1e-6)
+    distance: Number = quantity("m", "slip over which the state renews itself (Dc)", above=0)
+    rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")
 
     @override

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.expression import sin
@@ -24,7 +25,7 @@ class SinusoidalSlip(RemembersSlip):
 
     mean: float = quantity("1", "mean friction coefficient mu0", at_least=0)
     amplitude: float = quantity("1", "amplitude a of the oscillation")
-    wavenumber: float = quantity("1/m", "wavenumber omega of the oscillation along slip")
+    wavenumber: Number = quantity("1/m", "wavenumber omega of the oscillation along slip")
 
     @staticmethod
     @override

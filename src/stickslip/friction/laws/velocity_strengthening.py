@@ -6,6 +6,7 @@ from typing import Any, ClassVar
 
 from typing_extensions import override
 
+from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.expression import log
 from stickslip.friction.law import FrictionLaw
@@ -21,8 +22,8 @@ class VelocityStrengthening(FrictionLaw):
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     a: float = quantity("1", "increase of friction per factor e of slip rate beyond `rate`", at_least=0, default=0.0)
-    rate: float = quantity("m/s", "slip rate at which the logarithm sets in", above=0, default=1e-6)
-    viscosity: float = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
+    rate: Number = quantity("m/s", "slip rate at which the logarithm sets in", above=0, default=1e-6)
+    viscosity: Number = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
 
     @staticmethod
     @override

@@ -9,9 +9,9 @@ tests the run, and is not an identity.
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_slab
@@ -19,6 +19,9 @@ from stickslip.observables.energy.kinetic import kinetic
 from stickslip.observables.quadrature import Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Epoch, Floats, History, Positions
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LONG_NAMES = {
     "work": "work of the driver",
@@ -64,6 +67,8 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in
     waves.
     """
+    import xarray as xr  # here, because it takes a quarter of a second to import
+
     time = np.atleast_1d(np.asarray(t, float))
     begin = history.span[0] if origin is None else origin
     parts = energies(history, history.find(np.append(begin, time), "right"))

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.bodies import as_slab
-from stickslip.contact.uniqueness import uniqueness
+from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -75,8 +74,8 @@ def irregular_regime(runs: Runs) -> Verdict:
     critical, duration = _critical(slab), 1.5 * slab.round_trip_time
     shares, block_shocks = {}, 0
     for alpha in (critical + 1e-6, *(factor * critical for factor in SCAN)):
-        shares[f"α/αc = {alpha / critical:.6g}"] = shock_share(runs(parameter(slab, "alpha").put(alpha), duration))
-        block_shocks += len(runs(parameter(block, "alpha").put(alpha), 4.0).shocks)
+        shares[f"α/αc = {alpha / critical:.6g}"] = shock_share(runs(slab.parameters["alpha"].put(alpha), duration))
+        block_shocks += len(runs(block.parameters["alpha"].put(alpha), 4.0).shocks)
     least = min(shares.values())
     outcome = Outcome.NOT if least <= 0.5 or block_shocks else Outcome.PRINTED if least > 0.9 else Outcome.QUALIFIED
     why = (
@@ -104,7 +103,7 @@ def shock_share(solution: Solution) -> float:
 
 
 def _critical(case: Problem) -> float:
-    return typed(uniqueness(case).critical_value, float)
+    return typed(uniqueness_of(case).critical_value, float)
 
 
 @claim(
@@ -144,7 +143,7 @@ def like_coulomb(runs: Runs) -> Verdict:
     rate = coulomb.slip_rate(0.5 * back)
     ratios = {}
     for factor in (1.5, 3.0, 5.0, 10.0, 30.0, 100.0):
-        run = runs(parameter(slab, "alpha").put(factor * _critical(slab)), 2.0 * back)
+        run = runs(slab.parameters["alpha"].put(factor * _critical(slab)), 2.0 * back)
         ratios[factor] = float(run.slip_rate(0.5 * back) / rate)
     outcome = Outcome.PRINTED if ratios[3.0] > LIKE_COULOMB else Outcome.QUALIFIED if ratios[100.0] > LIKE_COULOMB else Outcome.NOT
     why = (

@@ -8,12 +8,11 @@ import numpy as np
 
 from stickslip.bodies import as_slab
 from stickslip.contact.roots import sign_change
-from stickslip.contact.uniqueness import Uniqueness, uniqueness
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.solution.solution import Solution
@@ -27,9 +26,9 @@ def critical_value(_: Runs) -> Verdict:
     """Measure the critical alpha of the contact analysis against the formula, and the regime on both sides of it."""
     slab = problem("fig6-slab")
     law, body = typed(slab.friction, HyperbolicRate), as_slab(slab.body)
-    found = uniqueness(slab).critical_value or math.nan
+    found = uniqueness_of(slab).critical_value or math.nan
     formula = math.sqrt(body.density * body.shear_modulus) / (body.normal_stress * (law.static - law.dynamic))
-    below, above = (uniqueness(parameter(slab, "alpha").put(found * factor)) for factor in (1 - 1e-6, 1 + 1e-6))
+    below, above = (uniqueness_of(slab.parameters["alpha"].put(found * factor)) for factor in (1 - 1e-6, 1 + 1e-6))
     agree = abs(found / 0.196 - 1.0) < 1e-9 and abs(found / formula - 1.0) < 1e-9
     why = (
         "The contact equation has one solution as long as g(v) = Zv + Sμ(v) rises everywhere. Under law (15) it falls fastest "
@@ -49,7 +48,7 @@ def critical_value(_: Runs) -> Verdict:
 @claim(8, "An irregular contact has three solutions between the folds, two at them, one elsewhere.")
 def three_solutions(_: Runs) -> Verdict:
     """Measure the number of admissible slip rates on a grid of loads that contains both folds."""
-    contact = uniqueness(problem("fig6-slab"))
+    contact = uniqueness_of(problem("fig6-slab"))
     lower, upper = fold_loads(contact)
     expected = {
         "below the lower fold": (1, np.linspace(0.0, lower, 201)[:-1]),
@@ -84,12 +83,12 @@ def fold_loads(contact: Uniqueness) -> tuple[float, float]:
 def one_solution(_: Runs) -> Verdict:
     """Measure the number of solutions on a grid of loads, under a regular rate law and under the slip law."""
     slab = problem("fig6-slab")
-    half = 0.5 * (uniqueness(slab).critical_value or math.nan)
-    cases = {f"α = {half:g} s/m": parameter(slab, "alpha").put(half), "slip law": problem("fig5-slab-printed")}
+    half = 0.5 * (uniqueness_of(slab).critical_value or math.nan)
+    cases = {f"α = {half:g} s/m": slab.parameters["alpha"].put(half), "slip law": problem("fig5-slab-printed")}
     numbers: list[Number] = []
     good = True
     for name, case in cases.items():
-        contact = uniqueness(case)
+        contact = uniqueness_of(case)
         counts = [len(contact.admissible(load)) for load in (case.strength * np.linspace(-2.0, 2.0, 801)).tolist()]
         good &= contact.regime == "regular" and set(counts) == {1} and not contact.folds
         numbers.append((f"most solutions of any load, {name}", max(counts), ""))
@@ -146,7 +145,7 @@ def waiting_time(solution: Solution) -> float:
 
 def stick_ends(case: Problem) -> float:
     """Return the load (Pa) at which the rule leaves stick as the load slowly rises."""
-    return next(jump.load for jump in uniqueness(case).jumps if jump.direction == "up" and jump.rate_before == 0.0)
+    return next(jump.load for jump in uniqueness_of(case).jumps if jump.direction == "up" and jump.rate_before == 0.0)
 
 
 @claim(17, "Accelerating and decelerating paths differ (hysteresis).")
@@ -155,7 +154,7 @@ def hysteresis(runs: Runs) -> Verdict:
     solution = runs.case("fig4-loop")
     (time, load), (_, rate) = solution.curve("load"), solution.curve("slip_rate")
     turn = int(np.argmax(load))
-    middle = 0.5 * sum(fold_loads(uniqueness(solution.problem)))
+    middle = 0.5 * sum(fold_loads(uniqueness_of(solution.problem)))
     up, down = (rate_at_load(solution, middle, float(time[n]), float(time[turn])) for n in (0, -1))
     shocks = dict(enumerate(solution.shocks.time, start=1))
     area = float(abs(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(rate))))

@@ -10,7 +10,6 @@ import numpy as np
 from stickslip.friction import SinusoidalSlip
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
-from stickslip.problem.parameters import parameter
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -150,7 +149,7 @@ def _with_wavenumber(start: Problem, wavenumber: float) -> Problem:
     beyond = start.initial_slip - math.pi / (2.0 * typed(start.friction, SinusoidalSlip).wavenumber)
     slip = math.pi / (2.0 * wavenumber) + beyond
     same_load = replace(start, initial_slip=slip, initial_load=start.load, initial_excess=None)
-    return parameter(same_load, "wavenumber").put(wavenumber)
+    return same_load.parameters["wavenumber"].put(wavenumber)
 
 
 def pulse_period(case: Problem) -> float:

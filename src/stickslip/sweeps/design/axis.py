@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
-from stickslip.foundation.units import to_si
 from stickslip.scenarios.values import show
 from stickslip.sweeps.design.parameter_paths import ParameterPath
 
@@ -42,7 +42,7 @@ class Axis:
         Raises InputError, whose message begins with `where`.
         """
         if isinstance(values, str | Mapping) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) != 1:
-            hint = ": LOW..HIGH:POINTS is for the command line, here use numpy.linspace" if isinstance(values, str) else ""
+            hint = ": use a list or numpy.linspace" if isinstance(values, str) else ""
             shown = " ".join(show(values).split())
             raise InputError(f"{where}: {parameter.name} must be a one-dimensional array or a list of values, got {shown}{hint}")
         found = read_values(parameter, values, where)
@@ -75,7 +75,8 @@ class Axis:
 def read_values(parameter: ParameterPath, values: Iterable[Any], where: str, most: float = LARGEST_AXIS) -> Values:
     """Return values in SI. Raises InputError for the first that the parameter cannot have, for none, and for more than `most`."""
     values = _without_unit(parameter, values, where)
-    if isinstance(values, np.ndarray) and values.dtype.kind in "iuf" and values.size and _takes_an_interval(parameter):
+    # no subclass of the array: those of other libraries may carry a unit
+    if type(values) is np.ndarray and values.dtype.kind in "iuf" and values.size and _takes_an_interval(parameter):
         for extreme in (values.min(), values.max()):  # both are NaN if any of the values is
             parameter.read(extreme, where)
         read = values.astype(float)
@@ -101,14 +102,12 @@ def check_size(parameter: ParameterPath, size: int, where: str, most: float = LA
 
 def _without_unit(parameter: ParameterPath, value: Any, where: str) -> Any:
     """Return the magnitude in SI of a number or an array with a unit of pint; anything else as it is. Raises InputError."""
-    if not hasattr(value, "magnitude"):
+    if not has_unit(value):
         return value
     if not parameter.unit:
         raise InputError(f"{where}: {parameter.name} takes words, got a quantity in {value.units:D}")
     try:
-        unit = "dimensionless" if parameter.unit == "1" else parameter.unit
-        magnitude: Any = np.asarray(value.magnitude, float)[()]
-        return to_si(magnitude, f"{value.units:D}", unit)
+        return without_unit(value, parameter.unit)
     except InputError as error:
         raise InputError(f"{where}: {parameter.name}: {error}") from None
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.scenario import Scenario
@@ -178,22 +179,13 @@ def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, whe
     `kind` "random" draws members independently. "lhs" is a Latin hypercube: every axis is divided into as many equal intervals as
     there are members, with one member in each (McKay, Beckman & Conover 1979, Technometrics 21, 239). Raises InputError.
     """
-    members = check_whole(members, 1, f"sweep: members must be a whole number above 0 for the design {kind}")
-    seed = check_whole(seed, 0, "sweep: seed must be a whole number, 0 or above")
+    members = check_whole(f"sweep: the design {kind}: members", members, 1, LARGEST_AXIS)
+    seed = check_whole("sweep: seed", seed, 0)
     for axis in axes:
         if axis.ends is not None and len(axis.values):
             raise InputError(f"{where}: {axis.parameter.name} takes no number of points in the design {kind}: give LOW..HIGH")
-    if members > LARGEST_AXIS:
-        raise InputError(f"sweep: members must be at most {LARGEST_AXIS} for the design {kind}, got {members}")
     shares = _shares(kind, members, len(axes), seed)
     return _design(kind, axes, [axis.at(shares[:, i]) for i, axis in enumerate(axes)], seed)
-
-
-def check_whole(value: int | None, least: int, refusal: str, most: float = math.inf) -> int:
-    """Return a whole number within limits. Raises InputError with the text `refusal` and the value for anything else."""
-    if not isinstance(value, int) or not least <= value <= most:
-        raise InputError(f"{refusal}, got {value!r}")
-    return value
 
 
 def _shares(kind: str, members: int, axes: int, seed: int) -> NDArray[np.float64]:

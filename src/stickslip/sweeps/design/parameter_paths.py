@@ -11,15 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.problem.selection_rule import names as rules
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import entries_in
-from stickslip.scenarios.values import read_quantity, show
+from stickslip.scenarios.values import show
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
@@ -48,7 +46,7 @@ class ParameterPath:
         value = value.strip() if isinstance(value, str) else value
         if isinstance(self.declared, Choice):
             return self.declared.check(where, self.name, value)
-        return read_quantity(value.item() if isinstance(value, np.generic) else value, self.declared, where, self.name)
+        return self.declared.check(where, self.name, value)
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
         """Write a value (SI) into the document of a scenario, in place of the one that is there."""

@@ -101,9 +101,9 @@ def _slip(solution: Solution) -> float:
 
 
 def _uniqueness(solution: Solution) -> Uniqueness:
-    from stickslip.contact.uniqueness import uniqueness
+    from stickslip.contact.uniqueness import uniqueness_of
 
-    return uniqueness(solution.problem)
+    return uniqueness_of(solution.problem)
 
 
 IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.evaluation import CURVES
 from stickslip.solution.solution import Solution
-from stickslip.sweeps.design.design import Design, check_whole
+from stickslip.sweeps.design.design import Design
 
 Floats = NDArray[np.float64]
 PREFIX = "series_"
@@ -60,7 +61,7 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
             raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")
     if len(set(curves)) < len(curves):
         raise InputError("sweep: a series is given twice")
-    check_whole(samples, 2, f"sweep: samples must be a whole number from 2 to {LARGEST}", LARGEST)
+    check_whole("sweep: samples", samples, 2, LARGEST)
     durations = dict(zip(design.names, design.columns, strict=True)).get("run.duration")
     last = scenario.duration if durations is None else float(durations.max())
     return Series(tuple(curves), np.linspace(0.0, last, samples))

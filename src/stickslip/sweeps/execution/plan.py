@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.schema import DURATION
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.design import GRID, Design, check_whole, read_design
+from stickslip.sweeps.design.design import GRID, Design, read_design
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
 from stickslip.sweeps.design.series import read_series
 from stickslip.sweeps.execution.chunk import Work
@@ -70,7 +72,7 @@ def make_plan(
     scenario: Problem | Scenario | str | Path,
     vary: Any,
     *,
-    duration: float | None = None,
+    duration: float | str | WithUnit | None = None,
     design: str = GRID,
     members: int | None = None,
     seed: int = 0,
@@ -88,7 +90,7 @@ def make_plan(
     return Plan(chosen, members_of, work, tile_of(members_of.shape, _chunk_size(members_of.size, chunk, work)))
 
 
-def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | None = None) -> Scenario:
+def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | str | WithUnit | None = None) -> Scenario:
     """Return the scenario that is meant: a problem with a duration (s), a scenario, a scenario file, or a bundled name.
 
     Raises InputError, also for a problem that no scenario file can describe: members are read from such files.
@@ -105,7 +107,7 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | N
 def _chunk_size(members: int, chunk: int | None, work: Work) -> int:
     if chunk is None:
         return min(max(members // CHUNKS, SMALLEST_CHUNK), LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH)
-    return check_whole(chunk, 1, "sweep: chunk must be a whole number of members above 0")
+    return check_whole("sweep: chunk", chunk)
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:

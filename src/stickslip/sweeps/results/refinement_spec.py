@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
@@ -42,8 +43,8 @@ class RefinementSpec:
     def __post_init__(self) -> None:
         if self.factor is not None and not self.factor > 1.0:
             raise InputError(f"refine: factor must be above 1, got {self.factor!r}")
-        if not (isinstance(self.depth, int) and isinstance(self.most, int)):
-            raise InputError(f"refine: depth and most must be whole numbers, got {self.depth!r} and {self.most!r}")
+        check_whole("refine: depth", self.depth)
+        check_whole("refine: most", self.most)
         _ = self.lattice
 
     @classmethod
@@ -54,7 +55,7 @@ class RefinementSpec:
         """
         for axis in axes:
             if not axis.parameter.unit or len(axis.values) < 2 or not (axis.values[1:] > axis.values[:-1]).all():
-                raise InputError(f"refine: {axis.parameter.name} needs two or more numbers in ascending order: LOW..HIGH:POINTS")
+                raise InputError(f"refine: {axis.parameter.name} needs two or more numbers in ascending order")
         columns = {axis.parameter.name: axis.values.tolist() for axis in axes}
         return cls(quantity, factor, depth, most, columns, [axis.log for axis in axes], kept)
 

@@ -1,22 +1,24 @@
-"""Take one implicit step: of slip, or at rest while the state of the law evolves."""
+"""Take one implicit step: of slip, or at rest while the state of the law evolves.
+
+The polynomials of the step come from a part of the engine that is compiled when a run first needs it (`on_demand`).
+"""
 
 from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.codegen.compiler import ahead, call_part, kernel
 from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
-from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, settling_rate
+from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, forgotten, settling_rate
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.step_events import cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.contact_step.verify import NEGLIGIBLE
-from stickslip.engine.implicit_step.radau_step import collocate
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Stop
+from stickslip.engine.state.layout import Stop, Task
 from stickslip.engine.state.workspace import Run
 
 
@@ -25,7 +27,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     """Slip for one implicit step, or up to what ends it: arrest, a knot of the law, or the place xi_to."""
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
-    guess = collocate(run, xi_to - run.state.xi)
+    guess = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
     note_shock(run)
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
@@ -64,12 +66,18 @@ def note_negative_friction(run: Run) -> None:
 
 
 @kernel
+def evolves_at_rest(run: Run) -> bool:
+    """Return True if the law has a state that still changes the strength of a contact at rest."""
+    return run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run)
+
+
+@kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
     """Take one step at rest in which the state, and with it the strength, changes.
 
     The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
     """
-    width = collocate(run, xi_to - run.state.xi)
+    width = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
     if not math.isfinite(run.jet[0]):
         run.state.rate_now = math.nan
         note_negative_friction(run)

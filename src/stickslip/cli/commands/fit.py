@@ -1,0 +1,170 @@
+"""`stickslip fit`: make a friction law from measured points, and a scenario with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stickslip.cli.names import complete_fitted, complete_table, complete_template
+from stickslip.cli.options import Dpi, FigureFile, Size, option
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.friction import Fit, Points, Smooth
+
+DataFile = Annotated[
+    str, typer.Argument(help="A CSV file with columns friction and slip, slip_rate or both.", autocompletion=complete_table)
+]
+
+
+def fit(
+    data: DataFile,
+    *,
+    law: Annotated[
+        str | None, option("The law to fit; two names joined by + or * too.", "--law", "-l", autocompletion=complete_fitted)
+    ] = None,
+    smooth: Annotated[str | None, option("Smooth the points: auto (cross-validation), or a strength such as 1e-5.")] = None,
+    monotone: Annotated[bool, typer.Option("--monotone", help="Smooth to a curve that only rises or only falls.")] = False,
+    along: Annotated[str | None, option("slip or slip_rate: which one to smooth along, if the file has both.")] = None,
+    fix: Annotated[list[str] | None, option('A parameter that is known: NAME=VALUE, as "alpha=10 s/m".')] = None,
+    start: Annotated[list[str] | None, option("Where the search for a parameter begins: NAME=VALUE.")] = None,
+    body: Annotated[
+        str, typer.Option(help="The scenario that lends --out its body and loading.", autocompletion=complete_template)
+    ] = "slab",
+    out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
+    figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
+) -> None:
+    r"""Make a friction law from measured points.
+
+    The file is a CSV with a heading over each column: friction (or mu), and
+    slip (or u), slip_rate (or v), or both. Units belong into the headings:
+    "v (mm/s)", "slip [mm]". Other columns are ignored.
+
+    Without --law and --smooth, every law that suits the points is fitted and
+    compared: the smallest BIC fits best for its number of parameters. With
+    --law the parameters are shown with their standard uncertainties and with
+    what the points do not determine. --smooth draws a smooth curve through the
+    points instead.
+
+    --out writes a scenario that can be run as it is. Its body and loading are
+    those of --body: edit them.
+
+    \b
+      stickslip fit data.csv
+      stickslip fit data.csv --law hyperbolic-rate --figure fit.png
+      stickslip fit data.csv --law exponential-stribeck --fix viscosity=0
+      stickslip fit data.csv --smooth auto --out mine.toml --body slab
+    """
+    from stickslip import friction
+    from stickslip.cli.output.fits import show_result
+    from stickslip.friction import Points
+
+    check_target(out, "--out", (".toml",))
+    look = Look(dpi, size)
+    check_target(figure, "--figure")
+    look.check(figure)
+    _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
+    if out is not None:
+        from stickslip.scenarios.templates import template
+
+        template(body)  # refuses an unknown name before the work
+    points = Points.read(data)
+    if law is not None:
+        result: Fit | Smooth = friction.fit(points, law, start=_values(start, "--start"), fixed=_values(fix, "--fix"))
+    elif smooth is not None:
+        result = friction.smooth(points, _strength(smooth), monotone=monotone, along=along)
+    else:
+        result = _best(points)
+    show_result(result)
+    text = None if out is None else _scenario(result, body, data)
+    if text is not None:
+        _print_uniqueness(result, text, str(out))
+    announce(
+        *write_files(
+            (out, lambda path: _write_text(path, text or "")),
+            (figure, drawing(lambda **place: _draw(result, **place), look)),
+        )
+    )
+    if out is not None:
+        typer.echo(f"edit [body], [loading] and [run] in it, then: stickslip check {out}; stickslip run {out}")
+
+
+def _check_options(
+    law: str | None, smooth: str | None, monotone: bool, along: str | None, given: dict[str, list[str] | None]
+) -> None:
+    """Refuse options that do not go together. Raises InputError."""
+    if law is not None and smooth is not None:
+        raise InputError("fit: --law and --smooth exclude each other: run the command twice")
+    for name, wanted in (("--monotone", monotone), ("--along", along is not None)):
+        if wanted and smooth is None:
+            raise InputError(f"fit: {name} belongs to --smooth")
+    for name, values in given.items():
+        if values and law is None:
+            raise InputError(f"fit: {name} belongs to --law")
+
+
+def _values(given: Sequence[str] | None, name: str) -> dict[str, str]:
+    """Return typed values of parameters by name. Raises InputError for one without "="."""
+    found = {}
+    for text in given or ():
+        key, mark, value = text.partition("=")
+        if not (mark and key.strip() and value.strip()):
+            raise InputError(f"fit: {name} must be NAME=VALUE, as static=0.6, got {ascii(text)[:60]}")
+        found[key.strip()] = value.strip()
+    return found
+
+
+def _best(points: Points) -> Fit:
+    """Fit all laws that suit the points, print a comparison, and return the best fit. Raises InputError if there is none."""
+    from stickslip import friction
+    from stickslip.cli.output.fits import show_comparison
+
+    fits = friction.fit_each(points)
+    if not fits:
+        raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
+    show_comparison(points, fits)
+    return fits[0]
+
+
+def _strength(text: str) -> Any:
+    """Return a typed strength as a number, or "auto". Raises InputError."""
+    if text == "auto":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"fit: --smooth must be auto or a number such as 1e-5, got {ascii(text)[:60]}") from None
+
+
+def _scenario(result: Fit | Smooth, body: str, data: str) -> str:
+    """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
+    from stickslip.scenarios.templates import with_law
+
+    rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
+    return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes])
+
+
+def _print_uniqueness(result: Fit | Smooth, text: str, name: str) -> None:
+    """Print whether the slip rate is unique in the new scenario, with the folds before and after."""
+    from stickslip.cli.output.fits import show_uniqueness
+    from stickslip.scenarios.scenario import read_scenario
+
+    show_uniqueness(result, read_scenario(text, name).problem)
+
+
+def _write_text(path: Path, text: str) -> Path:
+    from stickslip.foundation.atomic_write import write_atomically
+
+    return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8"))
+
+
+def _draw(result: Fit | Smooth, **place: Any) -> object:
+    from stickslip.figures.contact import measured
+
+    return measured.draw(measured.data(result), **place)

@@ -1,0 +1,79 @@
+"""Show a dataclass briefly: numbers with 6 digits and their unit, and only what differs from the defaults."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from numbers import Real
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.formatting import brief
+from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, in_units
+
+MOST = 6
+"""Largest number of entries of a series that are all shown."""
+
+
+def brief_repr(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return a dataclass as the call that makes it, to 6 digits: "ElasticSlab(density='2800 kg/m^3', thickness='10 km', ...)".
+
+    Fields with their default value are left out. The unit of a field is that of its declaration, or of its name in the class
+    attribute `units`; `units` here replaces declared units such as "Pa or N".
+    """
+    return f"{type(owner).__name__}({', '.join(f'{name}={text}' for name, text in shown_fields(owner, units))})"
+
+
+def shown_fields(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> Iterator[tuple[str, str]]:
+    """Yield name and text of each field of a dataclass that differs from its default."""
+    plain = getattr(type(owner), "units", {})
+    for field in dataclasses.fields(owner):
+        value, declared = getattr(owner, field.name), field.metadata.get("declared")
+        if not field.repr or (field.default is not dataclasses.MISSING and _same(value, field.default)):
+            continue
+        if declared is None and field.name in plain:
+            declared = Quantity(plain[field.name], "")
+        yield field.name, _text(value, in_units(declared, units) if declared else None)
+
+
+def fields_in(owner: Any, place: str) -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and meaning of each declared field of a body, a law or a history; names begin with `place`."""
+    for name, (declared, _) in fields_of(type(owner)).items():
+        value = getattr(owner, name)
+        if isinstance(declared, Part):
+            yield from ((f"{place}{name}", type(value).__name__, declared.meaning), *fields_in(value, f"{place}{name}."))
+        elif value is not None:
+            yield f"{place}{name}", _text(value, declared).strip("'"), declared.meaning
+
+
+def _same(value: Any, default: Any) -> bool:
+    return value is default or (isinstance(value, Real | str | tuple) and bool(value == default))
+
+
+def _text(value: Any, declared: Any) -> str:
+    """Return a value of a field as text; quantities that have a unit are quoted, as they are given."""
+    if isinstance(declared, NamedNumbers):
+        return f"{{{', '.join(f'{one.name!r}: {_number(one.value, one.unit)}' for one in value)}}}"
+    item = declared.item if isinstance(declared, Series) else declared
+    unit = item.unit if isinstance(item, Quantity) and " or " not in item.unit else ""
+    if isinstance(value, np.ndarray) and value.ndim:
+        return f"<array of shape {value.shape}>"
+    if isinstance(value, Real) and not isinstance(value, bool | np.bool_ | int):
+        return _number(float(value), unit)
+    if isinstance(value, tuple) and type(value) is tuple:
+        return _several(value, declared)
+    return repr(value)
+
+
+def _several(values: tuple[Any, ...], declared: Any) -> str:
+    texts = [_text(one, declared) for one in (values if len(values) <= MOST else (values[0], values[-1]))]
+    if len(values) > MOST:
+        return f"<{len(values)} values, {texts[0]} to {texts[1]}>"
+    return f"[{', '.join(texts)}]" if isinstance(declared, Series) else f"({', '.join(texts)}{',' * (len(texts) == 1)})"
+
+
+def _number(value: float, unit: str) -> str:
+    return brief(value, "") if unit in ("", "1") or not math.isfinite(value) else f"'{brief(value, unit)}'"

@@ -1,0 +1,250 @@
+"""Read named columns of numbers, with units in their headings, from delimited text and from tables in memory.
+
+No message repeats a text that a file holds, because scenarios from somebody else may name files: messages name lines and columns.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.conversion import has_unit
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.units import si_factor, split_quantity
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that may be looked for: the SI unit of its numbers, other headings for it, and whether they may be negative."""
+
+    unit: str
+    others: tuple[str, ...] = ()
+    signed: bool = False
+
+
+COLUMNS: Mapping[str, Column] = {
+    "slip": Column("m", ("u", "displacement", "slip distance", "cumulative slip"), signed=True),
+    "slip_rate": Column("m/s", ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed")),
+    "friction": Column("1", ("mu", "μ", "friction coefficient", "coefficient of friction", "cof")),
+    "time": Column("s", ("t",)),
+    "pull_rate": Column("m/s", signed=True),
+    "far_stress": Column("Pa", signed=True),
+}
+"""The columns that are known, by their plain heading. Capitals, spaces, - and _ make no difference."""
+PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
+"""What people write in place of a unit for a pure number."""
+DECIMAL_COMMA = (
+    "decimal commas are not read, write points: `tr , . < OLD.csv > NEW.csv` replaces them, "
+    "or hand pandas.read_csv(FILE, sep=';', decimal=',') over in Python"
+)
+"""The cure for decimal commas in a file whose columns are not separated by commas."""
+_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+_HEADING = re.compile(r"\s*(?P<name>[^()\[\]]*?)\s*(?:[(\[]\s*(?P<unit>[^()\[\]]*?)\s*[)\]])?\s*")
+_SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1", "²": "2", "³": "3", "−": "-"})
+_POWER = re.compile(r"(?<=[A-Za-zµ])(-?\d)")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers in SI by their plain heading, and the lines (or rows) from which they come."""
+
+    columns: dict[str, Floats]
+    place: str
+    lines: NDArray[np.intp] = field(repr=False)
+    counted: str = "line"
+    """What `lines` counts: the lines of a file, or the rows of a table in memory."""
+
+    def at(self, i: int) -> str:
+        """Return the place of row i for a message."""
+        return f"{self.place}, {self.counted} {self.lines[i]}"
+
+    def check_ascending(self, column: str) -> None:
+        """Raise InputError, with the cure, unless the numbers of a column ascend."""
+        numbers = self.columns[column]
+        wrong = np.flatnonzero(np.diff(numbers) <= 0.0)
+        if len(wrong):
+            before, here = numbers[wrong[0] : wrong[0] + 2]
+            cure = "sort the rows" if here < before else "keep one row of each, or their mean"
+            raise InputError(f"{self.at(int(wrong[0]) + 1)}: {column} must ascend, but {here:g} follows {before:g}; {cure}")
+
+
+def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
+    """Return those of the wanted columns that a text has, as numbers in SI.
+
+    The first line that is neither blank nor a comment (#) is the header. Columns are separated by tabs, semicolons or commas,
+    whichever of them the header has, in this order. Raises InputError with a message of one line that names `place` and the line;
+    also for more than `most` rows.
+    """
+    lines, separator = _rows(text, place)
+    number, header = next(lines, (1, [""]))
+    chosen = find(header, wanted, f"{place}, line {number}")
+    found: dict[str, list[float]] = {name: [] for name in chosen}
+    numbers: list[int] = []
+    for number, row in lines:
+        at = f"{place}, line {number}"
+        if len(numbers) == most:
+            raise InputError(f"{at}: more than {most} rows")
+        if any(cell.strip() for cell in row[len(header) :]):
+            hint = "" if separator != "," else "; decimal commas? Then separate columns by semicolons and write decimal points"
+            raise InputError(f"{at}: {len(row)} cells, but the header has {len(header)}{hint}")
+        for name, (i, _) in chosen.items():
+            found[name].append(_number(row[i].strip() if i < len(row) else "", name, at, first=not numbers))
+        numbers.append(number)
+    columns = {name: _scaled(np.array(found[name], float), factor) for name, (_, factor) in chosen.items()}
+    return Table(columns, place, np.array(numbers or [number]))
+
+
+def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
+    """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI."""
+    headings = list(table)
+    chosen = find([str(heading) for heading in headings], wanted, place)
+    columns = {}
+    for name, (i, factor) in chosen.items():
+        given = table[headings[i]]
+        try:
+            if has_unit(given):  # a unit of its own outweighs one in the heading
+                given, factor = given.to(COLUMNS[name].unit).magnitude, Fraction(1)
+            numbers = np.asarray(given, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"{place}: {name} must be a column of numbers") from None
+        if numbers.ndim != 1:
+            raise InputError(f"{place}: {name} must be a column of numbers, got an array of {numbers.ndim} dimensions")
+        columns[name] = _scaled(numbers, factor)
+    sizes = {name: len(numbers) for name, numbers in columns.items()}
+    if len(set(sizes.values())) > 1:
+        raise InputError(f"{place}: columns of different lengths: {', '.join(f'{n} has {size}' for n, size in sizes.items())}")
+    made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row")
+    for name, numbers in columns.items():
+        for i in np.flatnonzero(~np.isfinite(numbers) | ((numbers < 0.0) & (not _signed(name))))[:1].tolist():
+            _check(float(numbers[i]), name, made.at(i))
+    return made
+
+
+def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, tuple[int, Fraction]]:
+    """Return index and factor to SI of each wanted column that a header has. Raises InputError for two of one kind."""
+    parts = [_HEADING.fullmatch(cell) for cell in header]
+    names = [_plain(part["name"] if part else cell) for cell, part in zip(header, parts, strict=True)]
+    found = {}
+    for column in wanted:
+        at = [i for i, name in enumerate(names) if name in _headings(column)]
+        exact = [i for i in at if names[i] == _plain(column)]
+        at = exact if len(exact) == 1 else at
+        if len(at) > 1:
+            raise InputError(f"{place}: columns {at[0] + 1} and {at[1] + 1} both are the {column}: rename or remove one")
+        if at:
+            part = parts[at[0]]
+            found[column] = at[0], _factor(part["unit"] if part else None, column, f"{place}, column {at[0] + 1}")
+    return found
+
+
+def missing(header: Sequence[str], column: str) -> str:
+    """Return a hint for a header that lacks a column: the heading that could be meant, or how a header is written."""
+    if len(header) == 1 and len(header[0].split()) > 1:
+        return "columns are separated by commas, semicolons or tabs"
+    if any(map(_is_number, header)):
+        return f"the first line must name the columns, as {_example(column)}"
+    hint = nearest(column, [cell for cell in header if cell.strip()])
+    close = hint[14:-2]
+    return f"rename {ascii(close)[:60]}?" if hint.startswith("did") and close != column else f"write it as {_example(column)}"
+
+
+def _example(column: str) -> str:
+    """Return a heading for a column as users may write it, with its unit."""
+    unit = COLUMNS.get(column, Column("1")).unit
+    return column if unit == "1" else f"{column} ({unit})"
+
+
+def header_of(text: str, place: str) -> tuple[int, list[str]]:
+    """Return line number and cells of the header of a text."""
+    return next(_rows(text, place)[0], (1, []))
+
+
+def _rows(text: str, place: str) -> tuple[Iterator[tuple[int, list[str]]], str]:
+    """Return the rows of a text that are neither blank nor comments, with their line numbers, and the separator of columns."""
+    lines = text.lstrip("\ufeff").splitlines()
+    header = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
+    separator = next((mark for mark in "\t;" if mark in header), ",")
+
+    def rows() -> Iterator[tuple[int, list[str]]]:
+        read = csv.reader(lines, delimiter=separator)
+        try:
+            for row in read:
+                if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#"):
+                    yield read.line_num, row
+        except csv.Error as error:
+            raise InputError(f"{place}, line {read.line_num}: {error}") from None
+
+    return rows(), separator
+
+
+def _plain(heading: str) -> str:
+    """Return a heading in the form in which headings are compared."""
+    return " ".join(heading.casefold().replace("µ", "μ").replace("_", " ").replace("-", " ").split())
+
+
+def _headings(column: str) -> set[str]:
+    return {_plain(column), *map(_plain, COLUMNS[column].others if column in COLUMNS else ())}
+
+
+def _factor(unit: str | None, column: str, place: str) -> Fraction:
+    """Return the factor from the unit in a heading to SI. Raises InputError, which does not repeat the unit."""
+    known = COLUMNS.get(column, Column("1"))
+    if unit is None or (known.unit == "1" and unit.strip().casefold() in PURE):
+        return Fraction(1)
+    if known.unit == "1":
+        raise InputError(f"{place}: {column} is a pure number: no unit in its heading (a percentage is not converted)")
+    text = _POWER.sub(r"^\1", unit.translate(_SIGNS).replace("^", "").replace("**", ""))
+    try:
+        if split_quantity(f"1 {text}") is None:
+            raise InputError("")
+        return si_factor(text, known.unit)
+    except InputError:
+        raise InputError(f"{place}: the unit in the heading does not convert to {known.unit}; write it like {known.unit}") from None
+
+
+def _scaled(numbers: Floats, factor: Fraction) -> Floats:
+    """Return numbers times a factor, to the last digit where the factor allows it: 0.05 mm gives 0.05 / 1000."""
+    if max(factor.numerator, factor.denominator) < 2**53:
+        return np.asarray(numbers * float(factor.numerator) / float(factor.denominator))
+    return np.asarray(numbers * float(factor))
+
+
+def _number(text: str, column: str, place: str, first: bool) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        if _COMMA.fullmatch(text):
+            raise InputError(f"{place}: {column} has a decimal comma; {DECIMAL_COMMA}") from None
+        hint = f"; a unit belongs into the heading, as in {_example(column)}" if first and text else ""
+        raise InputError(f"{place}: {column} must be a number, got {'text' if text else 'nothing'}{hint}") from None
+    return _check(value, column, place)
+
+
+def _check(value: float, column: str, place: str) -> float:
+    if not math.isfinite(value):
+        raise InputError(f"{place}: {column} must be finite, got '{value}'; leave such rows out")
+    if value < 0.0 and not _signed(column):
+        raise InputError(f"{place}: {column} must not be negative, got {value:g}")
+    return value
+
+
+def _signed(column: str) -> bool:
+    return COLUMNS.get(column, Column("1")).signed
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

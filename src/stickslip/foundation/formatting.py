@@ -1,0 +1,89 @@
+"""Format numbers with units for people: on the terminal, in notebooks and in what `repr` shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import chain, repeat
+
+from stickslip.foundation.constants import YEAR
+
+_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
+"""SI prefixes with their factors, largest first."""
+_SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
+"""Units that are shown with a prefix."""
+_TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
+"""Units of time with their lengths in s, longest first."""
+_ALTERNATIVES = {
+    "m": (("km", 1e3), ("mm", 1e-3)),
+    "s": (("years", YEAR), ("ms", 1e-3)),
+    "m/s": (("m/year", 1.0 / YEAR), ("km/s", 1e3)),
+}
+"""Further units in which `brief` may show a quantity, with their factors to SI."""
+DIGITS = 6
+"""Number of significant digits of `brief`."""
+
+
+def number(value: float, digits: int = 8) -> str:
+    """Format a number with the given number of significant digits; NaN is shown as a dash."""
+    return "-" if math.isnan(value) else f"{value:.{digits}g}"
+
+
+def with_unit(value: float, unit: str) -> str:
+    """Format a quantity for users: 34.3 GPa, 1.5147648e+10 s (480 years); slow rates are also given per year."""
+    if unit == "1":
+        return number(value)
+    if unit in _SCALED and math.isfinite(value):
+        factor, prefix = next(((f, p) for f, p in _PREFIXES if abs(value) >= f), (1.0, ""))
+        return f"{number(value / factor)} {prefix}{unit}"
+    plain = f"{number(value)} {unit}"
+    if unit == "s" and 1e5 <= abs(value) < math.inf:
+        return f"{plain} ({number(value / YEAR, 6)} years)"
+    if unit.endswith("/s") and 0 < abs(value) < 1e-4:
+        return f"{plain} ({number(value * YEAR, 6)} {unit.removesuffix('/s')}/year)"
+    return plain
+
+
+def brief(value: float, unit: str) -> str:
+    """Format a quantity with 6 digits in the unit in which it is shortest: "10 km", "0.05 m/year", "100 MPa".
+
+    Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
+    """
+    if unit in ("1", ""):
+        return f"{value:.{DIGITS}g}"
+    units = ((unit.removeprefix("1"), 1.0), *_ALTERNATIVES.get(unit, ()))
+    if unit in _SCALED:
+        units = (*units, *((prefix + unit, factor) for factor, prefix in reversed(_PREFIXES)))
+    sizes = ((f"{value / factor:.{DIGITS}g}", name, abs(value / factor)) for name, factor in units)
+    shown, name, _ = min(sizes, key=lambda one: (len(one[0] + one[1]), not 1.0 <= one[2] < 1000.0))
+    return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"
+
+
+def in_unit(seconds: float) -> tuple[float, str]:
+    """Return the length (s) and the name of the largest unit that is not longer than a time; seconds for times below 1 s."""
+    return next(((length, name) for length, name in _TIMES if seconds >= length), _TIMES[-1])
+
+
+def about_time(seconds: float) -> str:
+    """Format a time (s) briefly in its largest unit, such as 3.2 min."""
+    length, name = in_unit(seconds)
+    value = seconds / length
+    return f"{value:.0f} {name}" if value >= 100.0 else f"{number(value, 2)} {name}"
+
+
+def html_table(caption: str, rows: Iterable[Sequence[object]], heading: Sequence[str] = ()) -> str:
+    """Return a table for notebooks; the first cell of each row is its name. All texts are escaped."""
+    from html import escape
+
+    def line(cells: Sequence[object], tags: Iterable[str]) -> str:
+        aligned = (f"<{tag} style='text-align:left'>{escape(str(cell))}</{tag}>" for tag, cell in zip(tags, cells, strict=False))
+        return f"<tr>{''.join(aligned)}</tr>"
+
+    top = f"<thead>{line(heading, repeat('th'))}</thead>" if heading else ""
+    body = "".join(line(cells, chain(["th"], repeat("td"))) for cells in rows)
+    return f"<table><caption>{escape(caption)}</caption>{top}<tbody>{body}</tbody></table>"
+
+
+def clean(text: str) -> str:
+    """Return a text of a scenario with spaces in place of control characters, which could change the terminal."""
+    return "".join(letter if letter.isprintable() else " " for letter in text)

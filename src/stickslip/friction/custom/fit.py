@@ -1,0 +1,240 @@
+"""Fit friction laws to measured points, by least squares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.friction.custom.fit_parameters import Leaf, leaves, numbers_of, rebuilt, slopes, template
+from stickslip.friction.custom.fit_search import WHOLE, Model, search
+from stickslip.friction.custom.fit_statistics import Spread, misses_trend
+from stickslip.friction.custom.fit_text import html_of, text_of, with_uncertainty
+from stickslip.friction.custom.measured import Points
+from stickslip.friction.law import FrictionLaw
+
+Floats = NDArray[np.float64]
+
+EXACT = 1e-13
+"""Residual, as a share of the largest friction coefficient, below which points lie on a law but for rounding."""
+AT_LIMIT = 1e-9
+"""Distance from its limit, relative to the change of a parameter that the points would notice, at which it is at the limit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The result of `fit`: the law that fits best, and how well the points determine it.
+
+    Attributes
+    ----------
+    law : FrictionLaw
+        The law with the best parameters.
+    points : Points
+        The points, with the variables on which the law depends.
+    residual : float
+        Standard deviation of the points about the law (no unit), with the number of fitted parameters taken into account.
+    values : dict
+        Each parameter in SI, by its name in scenario files.
+    uncertainty : dict
+        Standard uncertainty of each fitted parameter in SI, infinite where the points do not determine it.
+    correlation : ndarray
+        Correlations of the fitted parameters, in the order of `uncertainty`.
+    bic : float
+        Bayesian information criterion (Schwarz 1978): of several laws for the same points the one with the smallest fits best for
+        its number of parameters; a difference above 10 is decisive.
+    notes : list of str
+        Sentences on what the points do not determine, and on trends that the law misses.
+    """
+
+    law: FrictionLaw
+    points: Points
+    residual: float
+    values: dict[str, float]
+    bic: float
+    notes: list[str]
+    _spread: Spread
+    _how: dict[str, str]
+
+    @property
+    def uncertainty(self) -> dict[str, float]:
+        """The standard uncertainty of each fitted parameter in SI."""
+        return self._spread.uncertainty
+
+    @property
+    def correlation(self) -> Floats:
+        """The correlations of the fitted parameters."""
+        return self._spread.correlation
+
+    def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
+        """Return the friction coefficient of the law and its standard error.
+
+        Parameters
+        ----------
+        u, v : array_like
+            Slips (m) and slip rates (m/s); they broadcast.
+
+        Returns
+        -------
+        tuple of ndarray
+            The law, and its standard error (no unit) from the uncertainty of the parameters. Parameters that the points do not
+            determine are taken as known.
+        """
+        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+        by = slopes(self.law, self._spread.names, slip.ravel(), rate.ravel())
+        spread = np.sum((by @ np.nan_to_num(self._spread.covariance)) * by, axis=1)
+        return self.law.coefficient(slip, rate), np.sqrt(np.maximum(spread, 0.0)).reshape(slip.shape)
+
+    @property
+    def title(self) -> str:
+        """What was done, in one line."""
+        return f"{self.law.kind} fitted to {len(self.points)} points along {' and '.join(self.points.has)}"
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Name, value and unit of each number of the result, as text."""
+        known, sizes = leaves(self.law), self.uncertainty
+        found = []
+        for name, value in self.values.items():
+            unit = "" if known[name].declared.unit == "1" else known[name].declared.unit
+            how = f"({self._how[name]})" if name in self._how else ""
+            found.append((name, with_uncertainty(value, sizes.get(name)), f"{unit} {how}".strip()))
+        return [*found, ("residual", f"{self.residual:.3g}", "standard deviation of the points about the law")]
+
+    def __repr__(self) -> str:
+        return text_of(self.title, self.rows, self.notes)
+
+    def _repr_html_(self) -> str:
+        return html_of(self.title, self.rows, self.notes)
+
+
+def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed: Mapping[str, Any] | None = None) -> Fit:
+    """Fit the parameters of a friction law to measured points, by least squares.
+
+    Parameters
+    ----------
+    points : Points, str, Path, DataFrame or mapping
+        The points; `Points.read` says what is understood.
+    law : str, FrictionLaw or class
+        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by + or *, one of a law of slip and one of a law
+        of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no hint.
+    start : mapping, optional
+        Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
+    fixed : mapping, optional
+        Values of parameters that are known and not fitted.
+
+    Returns
+    -------
+    Fit
+        The law, the parameters with their standard uncertainties, the residual, and what was noticed.
+
+    Raises
+    ------
+    InputError
+        If the points or an argument cannot be used, or for a law with a state or with points of its own.
+
+    Notes
+    -----
+    All points have the same weight. Uncertainties follow from the curvature of the sum of squares at its minimum: they hold if the
+    differences from the law are independent from point to point. Whole exponents are tried from 1 to 4.
+    """
+    wanted = template(law)
+    chosen = _points_for(wanted, Points.read(points))
+    known = leaves(wanted)
+    held, begun = numbers_of(fixed, known, "fixed"), numbers_of(start, known, "start")
+    whole = [name for name, leaf in known.items() if leaf.declared.whole and name not in held]
+    free = [name for name, leaf in known.items() if not leaf.declared.whole and name not in held]
+    if not free:
+        raise InputError("fit: every parameter is fixed: there is nothing to fit")
+    if len(chosen) <= len(free) + len(whole):
+        raise InputError(f"fit: {len(chosen)} points cannot determine {len(free) + len(whole)} parameters of {wanted.kind}")
+    found = []
+    for exponents in product(*([begun[name]] if name in begun else WHOLE for name in whole)):
+        tried = held | dict(zip(whole, exponents, strict=True))
+        model = Model(rebuilt(wanted, tried, checked=False), free, chosen)
+        total, values = search(model, {name: value for name, value in begun.items() if name in free})
+        found.append((total, tried | values))
+    total, values = min(found, key=lambda one: one[0])
+    return _result(wanted, chosen, {name: values[name] for name in known}, total, whole=whole, free=free)
+
+
+def fit_each(points: Any) -> list[Fit]:
+    """Fit every law that suits the points, and return the fits, best first by `Fit.bic`.
+
+    These are the laws with parameters and without a state that depend on nothing but what the points have.
+
+    Parameters
+    ----------
+    points : Points, str, Path, DataFrame or mapping
+        The points; `Points.read` says what is understood.
+
+    Returns
+    -------
+    list of Fit
+        The fits.
+
+    Raises
+    ------
+    InputError
+        If the points cannot be used.
+    """
+    from stickslip.friction import LAWS
+
+    read, found = Points.read(points), []
+    for kind in LAWS:
+        try:
+            found.append(fit(read, kind))
+        except InputError:
+            continue  # a law that these points do not suit
+    return sorted(found, key=lambda one: one.bic)
+
+
+def _points_for(law: FrictionLaw, points: Points) -> Points:
+    """Return the points with the variables on which a law depends. Raises InputError if they lack one."""
+    needs = [name for name, needed in (("slip", law.depends_on_slip), ("slip_rate", law.depends_on_rate)) if needed]
+    for name in needs:
+        if name not in points.has:
+            raise InputError(f"fit: {law.kind} depends on {name}, but the points have {' and '.join(points.has)} only")
+    if points.slip is not None and "slip" in needs and law.counts == "path" and points.slip.min() < 0.0:
+        raise InputError(f"fit: {law.kind} counts the path of slip, which is never negative, got {points.slip.min():g} m")
+    return points.along(needs[0]) if len(needs) == 1 else points
+
+
+def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: float, *, free: list[str], whole: list[str]) -> Fit:
+    """Return the fit with all that follows from its parameters. Raises InputError if they are no law."""
+    known, n, variables = leaves(law), len(points), points.variables
+    variance = total / max(n - len(free) - len(whole), 1)
+    by = slopes(rebuilt(law, values, checked=False), free, *variables)
+    limits = [name for i, name in enumerate(free) if _at_limit(known[name], values[name], by[:, i], variance)]
+    values = values | {name: float(known[name].declared.at_least or 0.0) for name in limits}
+    try:
+        made = rebuilt(law, values)
+    except InputError as error:
+        raise InputError(f"fit: the points give no {law.kind}: {str(error).partition(': ')[2]}") from None
+    inner = [i for i, name in enumerate(free) if name not in limits]
+    spread = Spread.of([free[i] for i in inner], by[:, inner], variance)
+    notes = [f"{name} is at its limit, {values[name]:g}: no other value that is allowed fits better" for name in limits]
+    notes += spread.notes(values)
+    order = np.lexsort(variables)
+    smallest = EXACT * float(points.friction.max())
+    if math.sqrt(total / n) > smallest and misses_trend((made.coefficient(*variables) - points.friction)[order]):
+        notes.append("the law misses a trend of the points: the uncertainties are too small, see a figure of the fit")
+    bic = n * math.log(max(total / n, smallest**2, 1e-300)) + (len(inner) + len(whole) + 1) * math.log(n)
+    how = {name: "fixed" for name in values if name not in free} | dict.fromkeys(whole, f"tried {WHOLE[0]:g} to {WHOLE[-1]:g}")
+    how |= dict.fromkeys(limits, "at its limit") | {name: "not determined" for part in spread.unseen for name in part}
+    return Fit(made, points, math.sqrt(variance), values, bic, notes, spread, how)
+
+
+def _at_limit(leaf: Leaf, value: float, slopes_by: Floats, variance: float) -> bool:
+    """Return True if a parameter that may be 0 but not less is there, to what the points would notice."""
+    least = leaf.declared.at_least
+    size = float(np.linalg.norm(slopes_by))
+    if least is None or leaf.is_scale or size == 0.0:
+        return False
+    noticed = math.sqrt(variance) / size
+    return value - least <= AT_LIMIT * max(noticed, abs(value))

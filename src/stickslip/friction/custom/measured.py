@@ -1,0 +1,195 @@
+"""Hold measured points of friction, and read them from files, tables and arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.columns import COLUMNS, Table, header_of, missing, read_mapping, read_text
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.piecewise import PiecewiseLaw
+
+Floats = NDArray[np.float64]
+Along = Literal["slip", "slip_rate"]
+"""The two variables on which friction can depend, as columns of files are called."""
+
+LARGEST_FILE = 100_000_000
+"""Size (bytes) of the largest file of points that is read."""
+MOST_POINTS = 1_000_000
+"""Largest number of measured points; a fit to that many takes minutes."""
+ALONG: tuple[Along, ...] = ("slip", "slip_rate")
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Measured friction coefficients, with the slip or the slip rate of each point, or both.
+
+    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate.
+
+    Parameters
+    ----------
+    friction
+        Friction coefficients (no unit), shape (n,).
+    slip
+        Slips of the points (m), shape (n,), or None.
+    slip_rate
+        Slip rates of the points (m/s), shape (n,), not negative, or None.
+    name
+        Name for messages and figures.
+    """
+
+    friction: Floats
+    slip: Floats | None = None
+    slip_rate: Floats | None = None
+    name: str = "points"
+
+    @classmethod
+    def read(cls, source: Any) -> Points:
+        """Read points.
+
+        Parameters
+        ----------
+        source : str, Path, DataFrame or mapping
+            A CSV file, or columns of numbers by their headings: `friction` with `slip`, `slip_rate` or both. A heading may carry a
+            unit, as in "v (mm/s)"; without one numbers are in SI. `u`, `v`, `mu` and some full names are understood, and other
+            columns are ignored. Points, and a law given by points, are taken as they are.
+
+        Returns
+        -------
+        Points
+            The points in SI, in the order of the source.
+
+        Raises
+        ------
+        InputError
+            If the file or the columns cannot be used; the message is one line with the place and the cure.
+        """
+        if isinstance(source, Points):
+            return source
+        table = _table_in(source)
+        columns = table.columns
+        return cls(columns["friction"], columns.get("slip"), columns.get("slip_rate"), table.place)
+
+    @property
+    def has(self) -> tuple[Along, ...]:
+        """The variables that are given: slip, slip_rate or both."""
+        return tuple(name for name in ALONG if getattr(self, name) is not None)
+
+    def along(self, variable: str | None = None) -> Points:
+        """Return the points along slip or along slip rate alone.
+
+        Parameters
+        ----------
+        variable : {"slip", "slip_rate"}, optional
+            Which one; it may be left out if the points have only one.
+
+        Returns
+        -------
+        Points
+            The same points without the other variable.
+
+        Raises
+        ------
+        InputError
+            If the points do not have this variable, or have both and none is named.
+        """
+        if variable is None and len(self.has) == 1:
+            return self
+        if variable is None:
+            raise InputError(f"{self.name}: the points have slip and slip_rate: choose one with along")
+        if variable not in self.has:
+            hint = nearest(str(variable), self.has)
+            raise InputError(f"{self.name}: the points have no {ascii(variable)[:40]}; {hint}")
+        return replace(self, slip=None) if variable == "slip_rate" else replace(self, slip_rate=None)
+
+    @property
+    def places(self) -> Floats:
+        """The slips (m) or the slip rates (m/s) of points that have one of the two, shape (n,)."""
+        (variable,) = self.along().has
+        return np.asarray(self.slip if variable == "slip" else self.slip_rate)
+
+    @property
+    def variables(self) -> tuple[Floats, Floats]:
+        """The slips (m) and the slip rates (m/s) of all points, zeros where they are not given."""
+        zeros = np.zeros(len(self))
+        return (zeros if self.slip is None else self.slip), (zeros if self.slip_rate is None else self.slip_rate)
+
+    def __len__(self) -> int:
+        return len(self.friction)
+
+    def __repr__(self) -> str:
+        ranges = [f"{name} {np.min(x):.3g} to {np.max(x):.3g} {COLUMNS[name].unit}" for name, x in self._columns().items()]
+        return f"Points({len(self)} points, {', '.join(ranges)})"
+
+    def _columns(self) -> dict[str, Floats]:
+        named: dict[str, ArrayLike | None] = {"slip": self.slip, "slip_rate": self.slip_rate}
+        return {name: np.asarray(x) for name, x in named.items() if x is not None} | {"friction": self.friction}
+
+
+def read_table(source: Any) -> tuple[Along, Floats, Floats]:
+    """Return points that are to be joined exactly: the variable, its ascending values and the friction coefficients.
+
+    Raises InputError as `Points.read` does, for points with slip and slip rate, and for those that do not ascend.
+    """
+    if isinstance(source, Points):
+        points = source.along()
+        columns = {points.has[0]: points.places, "friction": points.friction}
+        table = Table(columns, points.name, np.arange(len(points)), "point")
+    else:
+        table = _table_in(source)
+    found = [name for name in ALONG if name in table.columns]
+    if len(found) != 1:
+        raise InputError(f'{table.place}: slip and slip_rate are both there: a table takes one, Points.read(...).along("slip")')
+    table.check_ascending(found[0])
+    return found[0], table.columns[found[0]], table.columns["friction"]
+
+
+def _table_in(source: Any) -> Table:
+    """Return the columns of a source, which has friction and at least one variable. Raises InputError."""
+    if isinstance(source, PiecewiseLaw):
+        places, friction = source.points
+        source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
+    if isinstance(source, Mapping) or hasattr(source, "columns"):
+        return _complete(read_mapping(source, (*ALONG, "friction"), "points"), "points", [str(heading) for heading in source])
+    if not isinstance(source, str | os.PathLike):
+        wanted = "a CSV file, a DataFrame, or a mapping of headings to numbers"
+        raise InputError(f"points must be {wanted}, got {shown(source)}")
+    return _from_file(as_path("points", source))
+
+
+def _from_file(path: Path) -> Table:
+    name = str(path) if str(path).isprintable() else ascii(str(path))
+    try:
+        text = read_bounded(path, LARGEST_FILE).decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{name}: no such file") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{name}: not a text file in UTF-8; save it as CSV in UTF-8") from None
+    except OSError as error:
+        raise InputError(f"{name}: cannot be read: {error.strerror}") from None
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    number, header = header_of(text, name)
+    return _complete(read_text(text, (*ALONG, "friction"), name, MOST_POINTS), f"{name}, line {number}", header)
+
+
+def _complete(table: Table, place: str, header: list[str]) -> Table:
+    """Return a table if it has all that points need. Raises InputError, beginning with `place`, if not."""
+    found = table.columns
+    if "friction" not in found:
+        raise InputError(f"{place}: no column 'friction'; {missing(header, 'friction')}")
+    if not set(ALONG) & set(found):
+        raise InputError(f"{place}: no column slip or slip_rate; {missing(header, 'slip_rate')}")
+    if len(found["friction"]) < 2:
+        raise InputError(f"{table.place}: at least two points are needed, got {len(found['friction'])}")
+    for numbers in found.values():
+        numbers.flags.writeable = False
+    return table

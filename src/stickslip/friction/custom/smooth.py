@@ -1,0 +1,265 @@
+"""Smooth measured points of friction to a law."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip.foundation.arguments import is_number, shown
+from stickslip.foundation.errors import InputError, InputWarning, nearest
+from stickslip.friction.custom.fit_text import html_of, text_of
+from stickslip.friction.custom.measured import Points
+from stickslip.friction.custom.penalised_spline import Basis
+from stickslip.friction.custom.table import FromTable
+from stickslip.friction.noise import reversals
+
+Floats = NDArray[np.float64]
+
+SCALES = ("auto", "linear", "log")
+"""Scales of slip or slip rate in which points can be smoothed."""
+LARGEST = 1e6
+"""Largest strength: it makes a straight line of any points."""
+FINEST = 257
+"""Largest number of points by which the law follows the smooth curve."""
+FOLLOWS = 0.01
+"""Largest distance between the law and the smooth curve, as a share of the residual."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """The result of `smooth`: a law through the smooth curve, and what was smoothed away.
+
+    Attributes
+    ----------
+    points : Points
+        The points, with slip or slip rate alone.
+    law : FromTable
+        The law, constant outside the range of the points.
+    residual : float
+        Standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account.
+    strength : float
+        Strength of smoothing, chosen by cross-validation or given.
+    freedom : float
+        Effective number of degrees of freedom of the curve.
+    scale : {"linear", "log"}
+        Scale of slip or slip rate in which the curve is smooth.
+    monotone : bool
+        True if the curve was made to rise or to fall throughout.
+    reversals : tuple of int
+        How often friction turns from rise to fall or back: through the points exactly, and in the law.
+    """
+
+    points: Points
+    law: FromTable
+    residual: float
+    strength: float
+    freedom: float
+    scale: str
+    monotone: bool
+    reversals: tuple[int, int]
+    _basis: Basis
+    _axis: _Axis
+
+    def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
+        """Return the friction coefficient and its standard error.
+
+        Parameters
+        ----------
+        u, v : array_like
+            Slips (m) and slip rates (m/s); they broadcast, and the one that the points do not have is ignored.
+
+        Returns
+        -------
+        tuple of ndarray
+            The law, and the standard error of the smooth curve (no unit). Two standard errors on either side hold the true curve at
+            95 % of the places, if the noise of neighbouring points is independent.
+        """
+        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+        at = self._axis.forward(slip if self.points.has == ("slip",) else rate)
+        return self.law.coefficient(slip, rate), self._basis.standard_error(at, self.strength, self.residual)
+
+    @property
+    def title(self) -> str:
+        """What was done, in one line."""
+        kind = " monotone" if self.monotone else ""
+        return f"Smoothed{kind} curve through {len(self.points)} points along {self.points.has[0]}"
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Name, value and unit or meaning of each number of the result, as text."""
+        before, after = self.reversals
+        return [
+            ("residual", f"{self.residual:.3g}", "standard deviation of the points about the curve"),
+            ("strength", f"{self.strength:.3g}", f"of smoothing, in {self.scale} {self.points.has[0]}"),
+            ("freedom", f"{self.freedom:.1f}", "effective number of parameters of the curve"),
+            ("reversals", f"{before} -> {after}", "turns of friction from rise to fall or back: in the points, in the law"),
+            ("points", f"{len(self.points)} -> {len(self.law.friction)}", "measured, in the table of the law"),
+        ]
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences on what the result does not say."""
+        found = ["a reversal that survives depends on the strength: try a stronger and a weaker one"] if self.reversals[1] else []
+        if self.freedom > 0.5 * self._basis.design.shape[1]:
+            found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
+        return found
+
+    def __repr__(self) -> str:
+        return text_of(self.title, self.rows, self.notes)
+
+    def _repr_html_(self) -> str:
+        return html_of(self.title, self.rows, self.notes)
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """The map of slips or slip rates to [0, 1]: linear, or the logarithm of 1 + place / unit."""
+
+    low: float
+    high: float
+    unit: float | None
+
+    def forward(self, places: ArrayLike) -> Floats:
+        """Return where places are on the axis, in [0, 1]; those outside are put at its ends."""
+        clipped = np.clip(np.asarray(places, float), self.low, self.high)
+        scaled, (low, high) = self._scaled(clipped), self._ends
+        return np.clip((scaled - low) / (high - low), 0.0, 1.0)
+
+    def back(self, x: Floats) -> Floats:
+        """Return the places (m or m/s) at points x of the axis; 0 and 1 give the exact ends."""
+        low, high = self._ends
+        scaled = low + x * (high - low)
+        places = scaled if self.unit is None else self.unit * np.expm1(scaled)
+        return np.where(x <= 0.0, self.low, np.where(x >= 1.0, self.high, places))
+
+    @property
+    def scale(self) -> str:
+        """The name of the scale."""
+        return "linear" if self.unit is None else "log"
+
+    @property
+    def _ends(self) -> tuple[float, float]:
+        return float(self._scaled(np.array(self.low))), float(self._scaled(np.array(self.high)))
+
+    def _scaled(self, places: Floats) -> Floats:
+        return places if self.unit is None else np.log1p(places / self.unit)
+
+
+def smooth(
+    points: Any,
+    strength: float | Literal["auto"] = "auto",
+    *,
+    monotone: bool = False,
+    along: str | None = None,
+    scale: Literal["auto", "linear", "log"] = "auto",
+) -> Smooth:
+    """Smooth measured points to a law, by a penalised cubic spline.
+
+    Parameters
+    ----------
+    points : Points, str, Path, DataFrame or mapping
+        The points; `Points.read` says what is understood. They may be in any order, and repeat a slip or a slip rate.
+    strength : float or "auto"
+        Strength of smoothing: the weight of the mean squared second derivative of the curve, along an axis on which the points
+        reach from 0 to 1, beside the mean squared difference from the points. By default cross-validation chooses it.
+    monotone : bool
+        If True, the curve rises throughout or falls throughout, whichever the points do on the whole.
+    along : {"slip", "slip_rate"}, optional
+        The variable of the law, for points that have both.
+    scale : {"auto", "linear", "log"}
+        Scale along which the curve is smooth: that of slip or slip rate x itself, or of ln(1 + x / smallest x above 0). By default
+        it is the one under which the curve predicts left-out points better.
+
+    Returns
+    -------
+    Smooth
+        The law, the residual, and what was noticed.
+
+    Raises
+    ------
+    InputError
+        If the points or an argument cannot be used.
+    """
+    read = Points.read(points).along(along)
+    given = _checked(strength)
+    tried = [_fitted(read, axis, given) for axis in _axes(read, scale)]
+    axis, basis, chosen = min(tried, key=lambda one: one[1].score(one[2]))
+    coefficients, rises = basis.solved(chosen), 0
+    if monotone:
+        rises = 1 if np.polyfit(axis.forward(read.places), read.friction, 1)[0] > 0.0 else -1
+        coefficients = basis.monotone(chosen, rises)
+    freedom = basis.freedom(chosen)
+    residual = float(np.sqrt(basis.sum_of_squares(coefficients) / max(len(read) - freedom, 1.0)))
+    law = _law(read, axis, _Curve(basis, coefficients, rises), residual)
+    order = np.argsort(read.places, kind="stable")
+    turns = reversals(read.friction[order]), reversals(law.friction)
+    return Smooth(read, law, residual, chosen, freedom, axis.scale, monotone, turns, basis, axis)
+
+
+def _fitted(points: Points, axis: _Axis, given: float | None) -> tuple[_Axis, Basis, float]:
+    """Return an axis, the equations of the spline along it, and the strength: the given one, or that of cross-validation."""
+    basis = Basis.of(axis.forward(points.places), points.friction)
+    return axis, basis, basis.cross_validated() if given is None else given
+
+
+def _checked(strength: Any) -> float | None:
+    """Return a given strength as a number, or None for "auto". Raises InputError."""
+    if isinstance(strength, str) and strength == "auto":
+        return None
+    if not is_number(strength) or not 0.0 < float(strength) <= LARGEST:
+        raise InputError(f"smooth: strength must be 'auto' or a number above 0, up to 1e6, got {shown(strength)}")
+    return float(strength)
+
+
+def _axes(points: Points, scale: str) -> list[_Axis]:
+    """Return the axes on which points may be smoothed. Raises InputError for points and scales that do not go together."""
+    places = points.places
+    if scale not in SCALES:
+        raise InputError(f"smooth: scale {ascii(scale)[:40]} is unknown; {nearest(str(scale), SCALES)}")
+    if len(np.unique(places)) < 4:
+        raise InputError(f"smooth: at least 4 different values of {points.has[0]} are needed, got {len(np.unique(places))}")
+    low, high = float(places.min()), float(places.max())
+    if scale == "log" and low < 0.0:
+        raise InputError("smooth: scale 'log' needs slips that are not negative")
+    linear, log = [_Axis(low, high, None)], []
+    if low >= 0.0:
+        log = [_Axis(low, high, float(places[places > 0.0].min()))]
+    return {"linear": linear, "log": log, "auto": linear + log}[scale]
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A spline as friction can follow it: never negative, and without rounding errors where it must only rise or only fall."""
+
+    basis: Basis
+    coefficients: Floats
+    rises: int
+
+    def at(self, x: Floats) -> Floats:
+        """Return the friction coefficients at ascending places x in [0, 1]."""
+        values = np.maximum(self.basis.values_at(x, self.coefficients), 0.0)
+        return values if self.rises == 0 else self.rises * np.maximum.accumulate(self.rises * values)
+
+
+def _law(points: Points, axis: _Axis, curve: _Curve, residual: float) -> FromTable:
+    """Return the law through the fewest points, evenly spaced on the axis, that follows the curve closely enough."""
+    fine = np.linspace(0.0, 1.0, 4 * FINEST)
+    places, wanted, near = axis.back(fine), curve.at(fine), max(FOLLOWS * residual, 1e-9)
+    for count in (2**k + 1 for k in range(3, 9)):
+        x = np.linspace(0.0, 1.0, count)
+        law = _table(points, axis.back(x), curve.at(x))
+        found = law.coefficient(places) if law.slip is not None else law.coefficient(0.0, places)
+        if np.abs(found - wanted).max() <= near:
+            break
+    return law
+
+
+def _table(points: Points, places: Floats, friction: Floats) -> FromTable:
+    """Return a table law without a warning of noise: its points are smooth, or as rough as a given strength lets them be."""
+    along = "slip" if points.has == ("slip",) else "rate"
+    with warnings.catch_warnings(action="ignore", category=InputWarning):
+        return FromTable(friction=friction.tolist(), counts="net" if places[0] < 0.0 else "path", **{along: places.tolist()})

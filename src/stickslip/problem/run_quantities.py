@@ -1,0 +1,33 @@
+"""Declare the numbers that say how long and how accurately to run a problem, for scenario files and for Python alike."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+
+DURATION = Quantity("s", "how long to simulate", above=0)
+RTOL = Quantity("1", "relative tolerance of the run", at_least=1e-15)
+CREEP_RTOL = Quantity("1", "leap over creep with this error of slip (slab, law of slip); 0: never; else automatic", at_least=0)
+SHORTEST_EVENT = Quantity("s", "lump slip events that are shorter (slab, rigid driver); 0: none; else automatic", at_least=0)
+CHECKPOINT_INTERVAL = Quantity("s", "wall-clock time between two checkpoints", at_least=0, infinite=True)
+EVENT_RATE = Quantity("m/s", "slip rate above which the contact is in a slip event", at_least=0)
+LARGEST_RTOL = 1e-2
+"""Largest relative tolerance of a run."""
+
+
+def check_rtol(value: Any, where: str, name: str = "rtol") -> float:
+    """Return a relative tolerance as a float. Raises InputError, beginning with `where`, if it is out of range."""
+    found = RTOL.check(where, name, value)
+    if found > LARGEST_RTOL:
+        raise InputError(f"{where}: {name} must be at most {LARGEST_RTOL:g}, got {found:g}")
+    return found
+
+
+def check_event_rate(value: Any, where: str) -> float | None:
+    """Return the slip rate (m/s) that defines slip events, or None, which stands for the default of the problem.
+
+    Raises InputError, beginning with `where`, if it is out of range.
+    """
+    return None if value is None else EVENT_RATE.check(where, "event_rate", value)

@@ -1,0 +1,59 @@
+"""Take a problem from what a user gives: a problem, a scenario, the name of a bundled scenario, or a scenario file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.conversion import WithUnit
+from stickslip.problem.problem import Problem, check_problem
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
+
+def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | Scenario:
+    """Return a problem or a scenario as it is, or the scenario of a bundled name or a file.
+
+    Raises InputError, for another type with a message that begins with `who`.
+    """
+    if isinstance(source, Problem):
+        return source
+    from stickslip.scenarios.scenario import Scenario, load_scenario  # imports pydantic, which a problem can do without
+
+    if isinstance(source, str | Path):
+        return load_scenario(source)
+    if not isinstance(source, Scenario):
+        check_problem(who, source, "a Problem, a scenario, or the name of one")
+    return source
+
+
+def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
+    """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        Problem to examine: itself, its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
+        mass and a law with a state, the answer is "regular".
+    law_slip : float or str, optional
+        Slip (m, or a text with a unit) as the law counts it; the initial one by default.
+
+    Returns
+    -------
+    Uniqueness
+        Regime, critical value, folds, jumps of the rule, and what is proven of the folds.
+
+    Raises
+    ------
+    InputError
+        If friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the selection
+        rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
+
+    Notes
+    -----
+    Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
+    """
+    found = read_source("uniqueness", problem)
+    return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)

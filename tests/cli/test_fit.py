@@ -1,0 +1,134 @@
+"""`stickslip fit`: what it prints, the scenarios that it writes, and its mistakes in one line."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stickslip.cli.names import complete_fitted, complete_table
+from stickslip.scenarios import library
+from stickslip.scenarios.scenario import load_scenario
+from stickslip.scenarios.templates import template_names, with_law
+from tests.problems import RATE_LAW, measured
+
+
+@pytest.fixture
+def points(command, tmp_path: Path) -> Path:
+    """A file of 300 noisy points under the headings of a laboratory."""
+    drawn = measured(RATE_LAW, None, np.linspace(0.0, 10.0, 300), 0.01)
+    rows = "".join(f"{v:.6f};{mu:.5f};rig 2\n" for v, mu in zip(1e3 * drawn.places, drawn.friction, strict=True))
+    path = tmp_path / "data.csv"
+    path.write_text("# run 7\nv (mm/s);mu;note\n" + rows)
+    return path
+
+
+def test_laws_are_compared_and_the_best_comes_first(command, points):
+    shown = command("fit", "data.csv")
+    assert shown.code == 0
+    assert shown.err == ""
+    listed = re.findall(r"^([a-z-]+) +\d +0\.\d+ +([\d.]+)", shown.out, re.MULTILINE)
+    assert next(name for name, _ in listed) == "hyperbolic-rate"
+    assert "coulomb" in dict(listed)
+    assert "linear-slip-weakening" not in dict(listed)
+    assert [float(above) for _, above in listed] == sorted(float(above) for _, above in listed)
+
+
+def test_parameters_are_shown_with_uncertainty_and_unit(command, points):
+    shown = command("fit", "data.csv", "--law", "hyperbolic-rate")
+    assert re.search(r"^alpha +\d\.\d+ ± 0\.0\d+ +s/m", shown.out, re.MULTILINE)
+    assert re.search(r"^residual +0\.01", shown.out, re.MULTILINE)
+    held = command("fit", "data.csv", "--law", "hyperbolic-rate", "--fix", "alpha=1 s/m", "--start", "static=0.5")
+    assert re.search(r"^alpha +1 +s/m \(fixed\)", held.out, re.MULTILINE)
+
+
+@pytest.mark.parametrize("how", [["--law", "hyperbolic-rate"], ["--smooth", "auto"], ["--smooth", "1e-4", "--monotone"], []])
+def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):
+    shown = command("fit", "data.csv", *how, "--out", "mine.toml", "--figure", "fit.png")
+    assert shown.code == 0
+    assert "written: mine.toml" in shown.out
+    assert Path("fit.png").stat().st_size > 5000
+    joined, folds = map(int, re.search(r"(\d+) with the points joined exactly, (\d+) with this law", shown.out).groups())
+    assert joined > 50
+    assert folds in (1, 2, 3)
+    checked = command("check", "mine.toml")
+    assert checked.code == 0
+    assert "noisy" not in checked.out
+    assert command("run", "mine.toml").code == 0
+    assert Path("mine.toml").read_text().startswith("# data.csv: ")
+
+
+@pytest.mark.parametrize("name", template_names())
+def test_every_body_takes_the_law_and_keeps_all_else(name):
+    scenario = load_scenario_text(with_law(name, RATE_LAW, ["a\x1b title", "more"]))
+    assert scenario.problem.friction == RATE_LAW
+    assert scenario.title == "a\x1b title"
+    if name in library.names():
+        former = load_scenario(name)
+        assert scenario.problem.body == former.problem.body
+        assert (scenario.duration, scenario.max_events, scenario.rtol) == (former.duration, former.max_events, former.rtol)
+        assert scenario.problem.rule == former.problem.rule
+        assert scenario.problem.pull_rate == former.problem.pull_rate
+
+
+def load_scenario_text(text):
+    from stickslip.scenarios.scenario import read_scenario
+
+    return read_scenario(text, "mine.toml")
+
+
+def test_noisy_points_are_announced_in_one_line_by_run_and_once_by_check(command, points):
+    text = with_law("slab", RATE_LAW, ["x"])
+    start, end = text.index("[friction]"), text.index("# The motion")
+    Path("noisy.toml").write_text(f'{text[:start]}[friction]\nkind = "table"\nfile = "data.csv"\n{text[end:]}')
+    run = command("run", "noisy.toml", "--until", "1 s")
+    assert run.code == 0
+    (line,) = run.err.splitlines()
+    assert line.startswith(
+        "stickslip: note: FromTable: the points look noisy (about 0.01 in friction): interpolated exactly, friction turns"
+    )
+    checked = command("check", "noisy.toml")
+    assert checked.err == ""
+    assert len(re.findall("look noisy", checked.out)) == 1
+    assert re.search(r"they make \d{2,3} folds", checked.out)
+
+
+def test_names_are_completed(points):
+    assert "hyperbolic-rate" in complete_fitted("hyper")
+    assert not {"table", "rate-and-state", "sum", "expression"} & set(complete_fitted(""))
+    assert complete_table("dat") == ["data.csv"]
+
+
+CASES = [
+    (["fit"], "Missing argument"),
+    (["fit", "no.csv"], "no.csv: no such file"),
+    (["fit", "data.csv", "--law", "hyperbolic"], "fit: law 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'?"),
+    (["fit", "data.csv", "--law", "linear-slip-weakening"], "fit: linear-slip-weakening depends on slip, but the points"),
+    (["fit", "data.csv", "--law", "coulomb", "--smooth", "auto"], "fit: --law and --smooth exclude each other"),
+    (["fit", "data.csv", "--monotone"], "fit: --monotone belongs to --smooth"),
+    (["fit", "data.csv", "--along", "slip"], "fit: --along belongs to --smooth"),
+    (["fit", "data.csv", "--smooth", "auto", "--along", "slip"], "data.csv: the points have no 'slip'"),
+    (["fit", "data.csv", "--fix", "alpha=1"], "fit: --fix belongs to --law"),
+    (["fit", "data.csv", "--law", "coulomb", "--fix", "static"], "fit: --fix must be NAME=VALUE, as static=0.6, got 'static'"),
+    (["fit", "data.csv", "--law", "coulomb", "--start", "static=a"], "fit: start static must be a number"),
+    (["fit", "data.csv", "--smooth", "much"], "fit: --smooth must be auto or a number such as 1e-5, got 'much'"),
+    (["fit", "data.csv", "--smooth", "nan"], "smooth: strength must be 'auto' or a number above 0"),
+    (["fit", "data.csv", "--out", "mine.csv"], "--out mine.csv: the name must end in .toml"),
+    (["fit", "data.csv", "--out", "no/mine.toml"], "--out no/mine.toml: there is no folder no"),
+    (["fit", "data.csv", "--figure", "fit.txt"], "--figure fit.txt: the name must end in .png"),
+    (["fit", "data.csv", "--out", "mine.toml", "--body", "slap"], "no scenario 'slap'; did you mean 'slab'?"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("arguments", "message"), CASES)
+def test_mistakes_are_one_line_and_nothing_is_written(command, points, arguments, message):
+    before = set(Path().iterdir())
+    shown = command(*arguments)
+    assert shown.code == 2
+    assert shown.out == ""
+    (line,) = shown.err.splitlines()
+    assert line.startswith("stickslip: ")
+    assert message in line
+    assert set(Path().iterdir()) == before

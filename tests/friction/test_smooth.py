@@ -1,0 +1,217 @@
+"""Smoothing of measured points: against scipy's smoothing spline, against known curves, and as a law."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_smoothing_spline
+
+import stickslip as ss
+from stickslip.foundation.errors import InputWarning
+from stickslip.friction import FromTable, Points, smooth
+from stickslip.friction.custom.penalised_spline import Basis
+from stickslip.scenarios.scenario import Scenario, read_scenario
+from tests.problems import RATE_LAW, SLAB, measured
+
+RATES = np.linspace(0.0, 10.0, 500)
+NOISY = measured(RATE_LAW, None, RATES, 0.01)
+
+
+def drawn(count: int, seed: int) -> tuple[Any, Any]:
+    """Return places in [0, 1], ascending, with both ends, and noisy values of a curve."""
+    rng = np.random.default_rng(seed)
+    x = np.unique(np.concatenate(([0.0, 1.0], rng.uniform(size=count - 2))))
+    return x, 0.5 + 0.2 * np.sin(4 * x) + 0.02 * rng.standard_normal(len(x))
+
+
+@pytest.mark.parametrize("strength", [1e-9, 1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize("seed", range(5))
+def test_the_spline_is_the_smoothing_spline_of_scipy(strength: float, seed: int) -> None:
+    """scipy minimises the sum of squares plus lam times the integral: lam = n strength."""
+    x, y = drawn(40, seed)
+    basis = Basis.of(x, y)
+    fine = np.linspace(0.0, 1.0, 301)
+    wanted = make_smoothing_spline(x, y, lam=len(x) * strength)(fine)
+    np.testing.assert_allclose(basis.values_at(fine, basis.solved(strength)), wanted, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) -> None:
+    """The score here comes from scipy's spline through each unit vector, whose values are the columns of the hat matrix."""
+    x, y = drawn(40, seed)
+    n, basis = len(x), Basis.of(x, y)
+
+    def score(strength: float, inflation: float) -> float:
+        hat = np.column_stack([make_smoothing_spline(x, unit, lam=n * strength)(x) for unit in np.eye(n)])
+        return float(np.mean((y - hat @ y) ** 2) / (1.0 - inflation * np.trace(hat) / n) ** 2)
+
+    for inflation in (1.0, 1.4):
+        chosen = basis.cross_validated(inflation)
+        assert basis.score(chosen, inflation) == pytest.approx(score(chosen, inflation), rel=1e-5)
+        others = np.geomspace(1e-8, 1.0, 17)
+        smallest = min(score(one, inflation) for one in others if n > inflation * basis.freedom(one))
+        assert basis.score(chosen, inflation) <= smallest * (1.0 + 1e-6)
+
+
+def test_the_score_is_that_of_leaving_points_out() -> None:
+    """Points have nearly the same leverage here: generalised and ordinary cross-validation agree to 10 %."""
+    x, y = drawn(40, 3)
+    strength, errors = 1e-5, []
+    for i in range(len(x)):
+        left = np.arange(len(x)) != i
+        basis = Basis.of(x[left], y[left])
+        weight = strength * len(x) / np.count_nonzero(left)
+        errors.append(float(basis.values_at(np.clip(x[i], *x[left][[0, -1]]), basis.solved(weight))) - y[i])
+    assert Basis.of(x, y).score(strength, inflation=1.0) == pytest.approx(np.mean(np.square(errors[1:-1])), rel=0.1)
+
+
+def test_with_many_points_fewer_knots_lose_nothing() -> None:
+    x, y = drawn(1000, 1)
+    basis = Basis.of(x, y)
+    assert basis.design.shape[1] < 70
+    wanted = make_smoothing_spline(x, y, lam=len(x) * 1e-6)(x)
+    np.testing.assert_allclose(basis.values_at(x, basis.solved(1e-6)), wanted, rtol=0, atol=1e-5)
+
+
+def test_degrees_of_freedom_end_at_a_line_and_at_interpolation() -> None:
+    x, y = drawn(30, 0)
+    basis = Basis.of(x, y)
+    assert basis.freedom(1e6) == pytest.approx(2.0, abs=1e-4)
+    assert basis.freedom(1e-16) == pytest.approx(30.0, abs=1e-2)
+    line = np.polyval(np.polyfit(x, y, 1), x)
+    np.testing.assert_allclose(basis.values_at(x, basis.solved(1e5)), line, rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize("rises", [1, -1])
+def test_a_monotone_spline_is_the_best_that_only_rises_or_falls(rises: int) -> None:
+    """No small change of its coefficients that keeps them in order makes the objective smaller."""
+    x, y = drawn(50, 2)
+    y = y + rises * 0.3 * x
+    basis, strength = Basis.of(x, y), 1e-7
+    found = basis.monotone(strength, rises)
+    assert (np.diff(basis.values_at(np.linspace(0, 1, 2001), found)) * rises >= -1e-12).all()
+    assert not (np.diff(basis.solved(strength)) * rises >= 0.0).all()
+
+    def objective(coefficients: Any) -> float:
+        return float(basis.sum_of_squares(coefficients) + len(x) * strength * np.sum((basis.bending @ coefficients) ** 2))
+
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        other = found + 10.0 ** rng.uniform(-6, -1) * rng.standard_normal(len(found))
+        other = rises * np.maximum.accumulate(rises * other)
+        assert objective(other) >= objective(found) - 1e-12
+
+
+def test_the_curve_lies_closer_to_the_truth_than_the_points_and_the_band_holds_it() -> None:
+    """Over 20 draws: coverage of two standard errors, averaged over places, between 0.90 and 0.99 (nominal 0.954)."""
+    truth, covered, errors, residuals = RATE_LAW.coefficient(0.0, RATES), [], [], []
+    for seed in range(20):
+        found = smooth(measured(RATE_LAW, None, RATES, 0.01, seed))
+        mu, error = found.band(v=RATES)
+        covered.append(np.mean(np.abs(mu - truth) < 2.0 * error))
+        errors.append(np.sqrt(np.mean((mu - truth) ** 2)))
+        residuals.append(found.residual)
+    assert 0.90 < np.mean(covered) < 0.99
+    assert np.median(errors) < 0.002
+    assert np.mean(residuals) == pytest.approx(0.01, rel=5 / np.sqrt(2 * 20 * 490))
+
+
+def test_smoothing_removes_the_folds_that_noise_made() -> None:
+    with warnings.catch_warnings(action="ignore", category=InputWarning):
+        exact = ss.Problem(SLAB, FromTable(NOISY), initial_excess=0.0)
+    found = smooth(NOISY)
+    assert len(ss.uniqueness(exact).folds) > 100
+    (fold,) = ss.uniqueness(ss.Problem(SLAB, found.law, initial_excess=0.0)).folds
+    (true,) = ss.uniqueness(ss.Problem(SLAB, RATE_LAW, initial_excess=0.0)).folds
+    assert fold.rate == pytest.approx(true.rate, rel=0.05)
+    assert found.reversals[0] > 300
+    assert found.reversals[1] == 0
+
+
+def test_the_law_follows_the_curve_within_a_hundredth_of_the_residual() -> None:
+    found = smooth(NOISY)
+    basis = found._basis
+    fine = np.linspace(0.0, 10.0, 5000)
+    curve = basis.values_at(found._axis.forward(fine), basis.solved(found.strength))
+    np.testing.assert_allclose(found.law.coefficient(0.0, fine), curve, rtol=0, atol=0.011 * found.residual)
+    assert len(found.law.friction) <= 129
+
+
+def test_exact_points_stay_where_they_are() -> None:
+    exact = measured(RATE_LAW, None, np.linspace(0.0, 10.0, 100), 0.0)
+    np.testing.assert_allclose(smooth(exact).law.coefficient(0.0, exact.places), exact.friction, rtol=0, atol=2e-5)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_the_scale_is_chosen_that_predicts_better(scale: Literal["linear", "log"]) -> None:
+    law, places = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-5), np.geomspace(1e-6, 1.0, 200)
+    logarithmic = measured(law, None, places, 0.001)
+    linear = measured(ss.friction.SinusoidalSlip(0.6, 0.1, 20.0), np.linspace(0.005, 1.0, 200), None, 0.001)
+    assert smooth(linear if scale == "linear" else logarithmic).scale == scale
+
+
+def test_order_and_repetition_of_points_do_not_matter() -> None:
+    points = measured(RATE_LAW, None, np.repeat(np.linspace(0.0, 5.0, 40), 3), 0.01)
+    order = np.random.default_rng(0).permutation(len(points))
+    shuffled = Points(points.friction[order], None, points.places[order])
+    wanted, found = smooth(points), smooth(shuffled)
+    np.testing.assert_allclose(found.law.friction, wanted.law.friction, rtol=0, atol=1e-6)
+    assert found.residual == pytest.approx(wanted.residual, rel=1e-4)
+
+
+def test_points_along_negative_slip_make_a_law_of_net_slip() -> None:
+    slips = np.linspace(-1.0, 1.0, 80)
+    law = smooth(measured(ss.friction.SinusoidalSlip(0.6, 0.1, 3.0), slips, None, 0.005)).law
+    assert law.counts == "net"
+    assert (law.slip or ())[0] == -1.0
+
+
+def test_a_monotone_law_never_turns_and_friction_is_never_negative() -> None:
+    falling = smooth(NOISY, monotone=True)
+    assert falling.reversals[1] == 0
+    assert (np.diff(falling.law.friction) <= 0.0).all()
+    low = Points(np.abs(0.02 * np.random.default_rng(0).standard_normal(60)), None, np.linspace(0.0, 1.0, 60))
+    assert min(smooth(low).law.friction) >= 0.0
+
+
+def test_a_smoothed_law_is_written_to_a_scenario_and_read_back() -> None:
+    scenario = Scenario(ss.Problem(SLAB, smooth(NOISY).law, initial_excess=0.0), 12.0)
+    assert read_scenario(scenario.to_toml(), "again").problem == scenario.problem
+
+
+def test_the_result_says_what_it_did_as_text_and_html() -> None:
+    found = smooth(NOISY, strength=1e-12)
+    text = repr(found)
+    for part in (
+        "Smoothed curve through 500 points along slip_rate",
+        "residual",
+        "1e-12",
+        f"{found.reversals[0]} -> {found.reversals[1]}",
+    ):
+        assert part in text
+    assert "note: a reversal that survives depends on the strength" in text
+    html = found._repr_html_()
+    assert "residual</th>" in html
+    assert "-&gt;" in html
+
+
+BAD: list[tuple[Any, dict[str, Any], str]] = [
+    (NOISY, {"strength": 0.0}, "strength must be 'auto' or a number above 0, up to 1e6, got 0.0"),
+    (NOISY, {"strength": "much"}, "strength must be 'auto' or a number above 0, up to 1e6, got 'much'"),
+    (NOISY, {"strength": True}, "strength must be 'auto'"),
+    (NOISY, {"scale": "logarithmic"}, "scale 'logarithmic' is unknown; allowed: auto, linear, log"),
+    (NOISY, {"along": "slip"}, "the points have no 'slip'"),
+    ({"v": [0, 1, 1, 2], "mu": [1, 1, 1, 1]}, {}, "at least 4 different values of slip_rate are needed, got 3"),
+    ({"u": [-1, 1, 2, 3], "mu": [1, 1, 1, 1]}, {"scale": "log"}, "scale 'log' needs slips that are not negative"),
+    ({"u": [1, 1, 2, 3], "v": [1, 1, 2, 3], "mu": [1, 1, 1, 1]}, {}, "have slip and slip_rate: choose one with along"),
+]
+
+
+@pytest.mark.parametrize(("points", "arguments", "message"), BAD)
+def test_wrong_arguments_are_refused_in_one_line(points: Any, arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(ss.InputError) as caught:
+        smooth(points, **arguments)
+    assert message in str(caught.value)
