@@ -47,9 +47,9 @@ def show_comparison(points: Points, fits: Sequence[Fit]) -> None:
 
 def show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
     """Print whether the slip rate is unique under a law, and how many folds exact interpolation and the law have."""
-    from stickslip.contact.uniqueness import uniqueness
+    from stickslip.contact.uniqueness import uniqueness_of
 
-    contact = uniqueness(problem)
+    contact = uniqueness_of(problem)
     screen = console()
     print_sentences(screen, contact.summary.removesuffix("."))
     if contact.resistance is None or not problem.friction.depends_on_rate:
@@ -63,7 +63,7 @@ def _folds_of_points(points: Points, problem: Problem) -> int | None:
     """Return the number of folds of the same problem with the points joined exactly, or None if they cannot be."""
     import warnings
 
-    from stickslip.contact.uniqueness import uniqueness
+    from stickslip.contact.uniqueness import uniqueness_of
     from stickslip.foundation.errors import InputWarning
     from stickslip.friction import FromTable
 
@@ -71,6 +71,6 @@ def _folds_of_points(points: Points, problem: Problem) -> int | None:
         return None
     try:
         with warnings.catch_warnings(action="ignore", category=InputWarning):
-            return len(uniqueness(replace(problem, friction=FromTable(points))).folds)
+            return len(uniqueness_of(replace(problem, friction=FromTable(points))).folds)
     except InputError:
         return None
