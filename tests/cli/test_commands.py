@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pandas
 import pytest
+from PIL import Image
 
 from stickslip import __version__
 from stickslip.cli.names import (
@@ -44,6 +45,20 @@ def test_without_arguments_the_help_is_shown(command):
 
 def test_version_prints_the_version(command):
     assert command("--version").out == f"stickslip {__version__}\n"
+
+
+def test_figures_have_the_size_and_the_dots_asked_for(command, tmp_path):
+    """16 cm x 10 cm at 300 dots per inch, one column of 3.5 inches, 200 dots per inch by default; a PDF in points of 1/72 inch."""
+    assert command("check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10 cm", "--dpi", "300").code == 0
+    assert command("run", "fig6-slab", "--energy", "b.png", "--friction", "c.png", "--size", "single column").code == 0
+    assert command("run", "fig6-slab", "--figure", "d.pdf", "--size", "3.5x5in").code == 0
+    sizes = []
+    for name in ("a.png", "b.png", "c.png"):
+        with Image.open(tmp_path / name) as picture:
+            sizes.append(picture.size)
+    assert sizes[0] == pytest.approx((16 / 2.54 * 300, 10 / 2.54 * 300), abs=1.0)
+    assert [width for width, _ in sizes[1:]] == [700, 700]
+    assert b"/MediaBox [ 0 0 252 360 ]" in (tmp_path / "d.pdf").read_bytes()
 
 
 def test_help_is_fast_because_it_compiles_and_validates_nothing():

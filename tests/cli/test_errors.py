@@ -46,6 +46,11 @@ CASES = [
     (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["check", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["check", "\x1b[31mred.toml"], "'\\x1b[31mred.toml': no such file"),
+    (["run", "fig6-slab", "--dpi", "300"], "--dpi is the look of a figure: name the file of one, say --figure NAME.png"),
+    (["run", "fig6-slab", "--size", "16 x 10 cm", "--animation", "a.gif"], "--size is the look of a figure"),
+    (["run", "fig6-slab", "--figure", "a.png", "--dpi", "3"], "--dpi: must be a number of dots per inch from 10 to 2400, got 3"),
+    (["check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10"], "--size: must be two lengths in inches, a text such as"),
+    (["compare", "fig6-slab", "fig4-loop", "-f", "a.png", "--size", "1 x 2 mm"], "--size: each side must be from 2 cm to 2 m"),
     (["check", "fig6-slab", "--figure", "a.txt"], "--figure a.txt: the name must end in .png or .pdf or .svg"),
     (
         ["check", "fig6-block-printed", "--figure", "a.png"],

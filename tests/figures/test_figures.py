@@ -11,16 +11,17 @@ import pytest
 import xarray as xr
 from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
 from stickslip.figures.contact import admissible, hysteresis, laws, regimes, resistance, systems
 from stickslip.figures.runs import comparison
-from stickslip.figures.runs.run import plot_run
+from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import ensemble, regularise
-from stickslip.figures.style import STYLE, image
-from tests.figures.labels import has_unit, labels
+from stickslip.figures.style import INK, STYLE, image
+from tests.figures.labels import has_unit, labels, size_of
 from tests.figures.problems import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM
 
 mpl.use("Agg")
@@ -99,12 +100,56 @@ def test_a_run_is_drawn_over_its_set() -> None:
     assert {"its start", "its end"} <= set(lines_of(figure))
 
 
+def test_under_a_slip_law_the_run_is_drawn_over_the_set_of_each_slip() -> None:
+    """Each set and each point in slip satisfy load = Z v + S (mu0 + a sin(omega u)) at their own slip: relative 1e-9."""
+    run = ss.load_scenario("fig5-slab-reconstructed").run()
+    data = admissible.data(run.problem, run)
+
+    def load(slip: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        return 9.8e6 * rate + 1e8 * (1.0 + 0.5 * np.sin(50.0 * slip))
+
+    strength, rate = float(data.strength), data.slip_rate.values
+    assert data.set_slip.values[[0, -1]] == pytest.approx(run.slip([0.0, 12.0]), rel=1e-12)
+    assert data.set_excess.values + strength == pytest.approx(load(data.set_slip.values[:, None], rate), rel=1e-9, abs=0.0)
+    assert np.ptp(data.set_strength.values) > 0.9e8  # of 1e8 Pa: the sets lie at all phases of the law
+    slips = data.path_slip_rate.values > 0.0
+    on_path = load(data.path_law_slip.values[slips], data.path_slip_rate.values[slips])
+    assert data.path_excess.values[slips] + strength == pytest.approx(on_path, rel=1e-9, abs=0.0)
+    figure = admissible.draw(data)
+    bar = figure.axes[1]
+    assert bar.get_ylabel() == "slip $u$ (mm)"
+    figure.draw_without_rendering()
+    ticks = [float(text.get_text()) for text in bar.get_yticklabels()]
+    assert ticks == pytest.approx(1e3 * bar.get_yticks(), rel=1e-12)
+
+
+def test_arrows_follow_the_path_from_its_start() -> None:
+    solution = ss.simulate(LOOP, 5.7)
+    axes = admissible.draw(admissible.data(LOOP, solution)).axes[0]
+    path = lines_of(axes.figure)["run"]
+    (start,) = lines_of(axes.figure)["its start"]
+    assert start.tolist() == path[0].tolist()
+    arrows = [text for text in axes.texts if text.arrow_patch is not None and text.arrow_patch.get_edgecolor() == to_rgba(INK)]
+    assert len(arrows) > 4
+    size = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*(np.diff(path, axis=0) / size).T))])
+    apart = max(0.3, along[-1] / 14)
+    for k, arrow in enumerate(arrows):
+        before, at, after = (
+            np.array([np.interp((k + 0.5) * apart + d, along, path[:, j]) for j in (0, 1)]) for d in (-0.02, 0, 0.02)
+        )
+        head, tail = np.array(arrow.xy, float), np.array(arrow.xyann, float)
+        assert np.hypot(*((0.5 * (head + tail) - at) / size)) < 0.01
+        assert ((head - tail) / size) @ ((after - before) / size) > 0.0
+
+
 def test_near_the_critical_value_loads_are_differences() -> None:
     critical = replace(SLAB_PROBLEM, friction=replace(LAW, alpha=0.196 + 1e-6))
     figure = admissible.draw(admissible.data(critical))
-    assert figure.axes[0].get_ylabel().endswith("minus static strength (Pa)")
+    text = figure.axes[0].get_ylabel()
+    assert "minus static strength" in text
     _, load = lines_of(figure)["slip, unstable"].T
-    assert np.nanmin(load) == pytest.approx(ss.uniqueness(critical).window[0], rel=1e-9)
+    assert np.nanmin(load) * size_of(text) == pytest.approx(ss.uniqueness(critical).window[0], rel=1e-9)
 
 
 def test_slip_backwards_shows_the_mirrored_set() -> None:
@@ -133,7 +178,7 @@ def test_the_map_of_regimes_marks_the_problem() -> None:
     found = regime_map(SLAB_PROBLEM, Axis("alpha", 0.01, 10.0, 6, log=True), Axis("normal_stress", 1e7, 5e8, 5))
     dataset = regimes.data(SLAB_PROBLEM, found)
     figure = regimes.draw(dataset)
-    assert labels(figure) == ["friction.alpha (s/m)", "body.normal_stress (MPa)"]
+    assert labels(figure) == [r"weakening parameter $\alpha$ (s/m)", "normal stress $S$ on the contact (MPa)"]
     assert lines_of(figure)["the scenario"].tolist() == [[1.0, 100.0]]
     (curve,) = figure.axes[0].collections[1:]
     points = np.concatenate(curve.get_segments())
@@ -144,7 +189,7 @@ def test_the_map_of_regimes_marks_the_problem() -> None:
 @pytest.fixture(scope="module")
 def side_by_side() -> xr.Dataset:
     solutions = {"block": ss.simulate(BLOCK_PROBLEM, 7.0), "slab": ss.simulate(SLAB_PROBLEM, 7.0)}
-    return comparison.data(solutions, {"block": 7.0, "slab": 7.0})
+    return comparison.data(solutions, 7.0)
 
 
 def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> None:
@@ -152,6 +197,16 @@ def test_comparison_draws_the_shock_at_the_start(side_by_side: xr.Dataset) -> No
     assert rate[0] == 0.0
     assert float(rate[1]) == pytest.approx(4.10204081633, rel=1e-11)
     assert side_by_side.slab_time[0] == side_by_side.slab_time[1] == 0.0
+
+
+def test_systems_are_compared_over_the_same_time_in_the_same_units(side_by_side: xr.Dataset) -> None:
+    figure = comparison.draw(side_by_side)
+    assert len({axes.get_xlim() for axes in figure.axes}) == 1
+    assert figure.axes[0].get_ylabel() == figure.axes[1].get_ylabel() == "slip $u$ (m)"
+    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(d)", "(b)", "(e)", "(c)", "(f)"]
+    small = side_by_side.assign(block_slip=1e-6 * side_by_side.block_slip.assign_attrs(side_by_side.block_slip.attrs))
+    small["block_slip"].attrs = side_by_side.block_slip.attrs
+    assert comparison.draw(small).axes[0].get_ylabel() == "slip $u$ (µm)"
 
 
 def test_comparison_is_labelled(side_by_side: xr.Dataset) -> None:
@@ -210,7 +265,7 @@ def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:
 
 def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
     before = dict(mpl.rcParams)
-    figure = plot_run(ss.simulate(SLAB_PROBLEM, 7.0))
+    figure = draw(ss.simulate(SLAB_PROBLEM, 7.0))
     assert dict(mpl.rcParams) == before
     assert len(figure.axes) == 3
     assert all(has_unit(text) for text in labels(figure))
@@ -219,7 +274,7 @@ def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
 
 
 def test_years_are_shown_as_years() -> None:
-    figure = plot_run(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
+    figure = draw(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
     assert figure.axes[2].get_xlabel().endswith("(year)")
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
     pyplot.close(figure)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -10,22 +11,31 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection, PolyCollection, QuadMesh
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection, QuadMesh
 from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.figure import Figure
+from matplotlib.image import imread
 from numpy.typing import NDArray
 
 import stickslip as ss
 from stickslip.figures.style import INK, PALE
+from stickslip.figures.sweeps.curves import ALL, BESIDE
 from stickslip.figures.sweeps.varied import is_logarithmic
+from stickslip.sweeps.design.parameter_paths import parameter_paths
 
 mpl.use("Agg")
 
 Floats = NDArray[np.float64]
 ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"
 RULES = np.array(["perfect-delay", "minimal", "maximal", "maxwell", "middle"], np.dtypes.StringDType())
-UNITS = {"run.selection": "", ALPHA: "s/m", THICKNESS: "m", STRESS: "Pa"}
+ABOUT = {one.name: {"long_name": one.declared.meaning, "units": one.unit} for one in parameter_paths(ss.load_scenario("fig6-slab"))}
+NAMES = {
+    ALPHA: r"weakening parameter $\alpha$ (s/m)",
+    THICKNESS: "thickness $h$ (km)",
+    STRESS: "normal stress $S$ on the contact (MPa)",
+}
 AXES = {
     "run.selection": RULES,
     ALPHA: np.linspace(0.1, 2.0, 9),
@@ -37,19 +47,21 @@ FAILED, NOT_RUN = 10, -1
 
 def grid(values: Floats, *names: str, status: Any = 0, **about: Any) -> xr.Dataset:
     """What a sweep over these keys returns."""
-    coordinates = {
-        name: xr.Variable(name, AXES[name][:size], {"units": UNITS[name]}) for name, size in zip(names, values.shape, strict=True)
-    }
+    coordinates = {name: xr.Variable(name, AXES[name][:size], ABOUT[name]) for name, size in zip(names, values.shape, strict=True)}
     attributes = {"units": "1", "long_name": "pulses of all slip events"} | about
     variables = {"answer": (names, values, attributes), "status": (names, np.broadcast_to(np.int8(status), values.shape).copy())}
-    design = {"design": json.dumps({"design": "grid", "keys": list(names)}), "title": "stickslip sweep: ElasticSlab, Coulomb"}
+    design = {
+        "design": json.dumps({"design": "grid", "keys": list(names)}),
+        "title": "stickslip sweep: ElasticSlab, Coulomb",
+        "scenario": 'title = "Any scenario"',
+    }
     return xr.Dataset(variables, coords=coordinates, attrs=design)
 
 
 def members(answers: Floats, status: Any = 0, **columns: Floats) -> xr.Dataset:
     """What a sweep over samples returns."""
     named = {name.replace("__", "."): values for name, values in columns.items()}
-    coordinates = {name: xr.Variable("member", values, {"units": UNITS[name]}) for name, values in named.items()}
+    coordinates = {name: xr.Variable("member", values, ABOUT[name]) for name, values in named.items()}
     status = np.broadcast_to(np.int8(status), answers.shape).copy()
     variables = {"answer": ("member", answers, {"units": "m", "long_name": "slip"}), "status": ("member", status)}
     return xr.Dataset(variables, coords=coordinates, attrs={"design": json.dumps({"design": "lhs", "keys": list(named)})})
@@ -69,9 +81,9 @@ def test_a_map_shows_every_member_at_its_place() -> None:
     values = np.add.outer(np.arange(9.0), np.arange(13.0) // 6)
     figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
     axes, mesh = figure.axes[0], meshes(figure, 1)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("friction.alpha (s/m)", "body.thickness (km)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (NAMES[ALPHA], NAMES[THICKNESS])
     assert (axes.get_xscale(), axes.get_yscale()) == ("linear", "log")
-    assert axes.get_title(loc="left") == "ElasticSlab, Coulomb"
+    assert axes.get_title(loc="left") == "Any scenario"
     assert np.array_equal(mesh.get_array(), values.T)
     edges = np.asarray(mesh.get_coordinates())
     assert edges[0, :2, 0] == pytest.approx([0.1 - 0.11875, 0.1 + 0.11875], rel=1e-12)
@@ -132,7 +144,8 @@ def test_numbers_over_decades_have_a_logarithmic_scale_in_a_readable_unit() -> N
 def test_three_keys_are_maps_side_by_side_with_the_same_colours() -> None:
     values = np.add.outer(np.add.outer(np.arange(9) % 2, np.arange(13) % 2), np.array([0.0, 2.0]))
     figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS, STRESS), "answer")
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["normal stress 50 MPa", "normal stress 100 MPa"]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a)  $S$ = 50 MPa", "(b)  $S$ = 100 MPa"]
+    assert figure.get_suptitle() == "Any scenario. Panels: normal stress S on the contact"
     for k, axes in enumerate(figure.axes):
         mesh = [one for one in axes.collections if isinstance(one, QuadMesh)][1]
         assert np.array_equal(mesh.get_array(), values[:, :, k].T)
@@ -145,16 +158,67 @@ def test_one_key_is_a_curve_with_gaps() -> None:
     curve, cross = figure.axes[0].lines
     assert np.array_equal(curve.get_ydata(), values, equal_nan=True)
     assert cross.get_xdata().tolist() == [AXES[ALPHA][2]]
-    assert legend(figure) == ["failed"]
+    assert legend(figure) == [ALL, "failed"]
     assert figure.axes[0].get_ylabel() == "pulses of all slip events"
 
 
 def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
     values = np.add.outer(0.5 * np.arange(9), np.array([0.0, 10.0]))
     figure = ss.figures.plot_sweep(grid(values, ALPHA, STRESS), "answer")
-    assert legend(figure) == ["normal stress 50 MPa", "normal stress 100 MPa"]
+    assert legend(figure) == ["50 MPa", "100 MPa"]
+    assert figure.legends[0].get_title().get_text() == "normal stress $S$ on the contact"
     for k, line in enumerate(figure.axes[0].lines):
         assert np.array_equal(line.get_xydata(), np.stack([AXES[ALPHA], values[:, k]], axis=1))
+
+
+def test_a_curve_is_interrupted_where_it_jumps_and_says_so() -> None:
+    alpha = AXES[ALPHA]
+    values = np.where(alpha < 1.0, 1e-7, 1.0) * (1.0 + 0.1 * alpha)
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, units="m", long_name="slip"), "answer")
+    axes = figure.axes[0]
+    assert axes.get_yscale() == "log"
+    (lines,) = [one for one in axes.collections if isinstance(one, LineCollection)]
+    drawn = np.array([segment[:, 0] for segment in lines.get_segments()])
+    neighbours = np.stack([alpha[:-1], alpha[1:]], axis=1)
+    assert np.array_equal(drawn, neighbours[(neighbours < 1.0).all(axis=1) | (neighbours >= 1.0).all(axis=1)])
+    assert legend(figure) == [ALL]
+
+
+def test_a_smooth_curve_is_one_line_without_a_key() -> None:
+    figure = ss.figures.plot_sweep(grid(np.exp(3.0 * AXES[ALPHA]) + 0.5, ALPHA), "answer")
+    (lines,) = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    assert len(lines.get_segments()) == len(AXES[ALPHA]) - 1
+    assert legend(figure) == []
+
+
+def test_of_many_members_those_beside_a_jump_are_marked() -> None:
+    x = np.linspace(0.0, 1.0, 90)
+    coordinate = {ALPHA: xr.Variable(ALPHA, x, ABOUT[ALPHA])}
+    values = np.where(x < 0.5, 0.1 * x, 1.0 - 0.1 * x)
+    dataset = grid(np.zeros(9), ALPHA).drop_vars(["answer", "status", ALPHA]).assign_coords(coordinate)
+    dataset = dataset.assign(answer=(ALPHA, values, {"units": "m", "long_name": "slip"}), status=(ALPHA, np.zeros(90, np.int8)))
+    figure = ss.figures.plot_sweep(dataset, "answer")
+    (line,) = figure.axes[0].lines
+    assert line.get_markevery() == [44, 45]
+    assert legend(figure) == [BESIDE]
+
+
+def test_a_curve_and_a_map_are_drawn_in_axes_of_the_user() -> None:
+    for values, names in ((np.arange(9.0), (ALPHA,)), (np.add.outer(np.arange(9.0), np.arange(13.0)), (ALPHA, THICKNESS))):
+        figure, (left, right) = pyplot.subplots(1, 2)
+        assert ss.figures.plot_sweep(grid(values, *names), "answer", ax=right) is right
+        assert right.get_xlabel() == NAMES[ALPHA]
+        assert right.get_title(loc="left") == ""
+        assert not left.has_data()
+        pyplot.close(figure)
+    with pytest.raises(ss.InputError, match="several panels"):
+        ss.figures.plot_sweep(grid(np.ones((9, 13, 2)), ALPHA, THICKNESS, STRESS), "answer", ax=right)
+
+
+def test_a_figure_has_the_size_and_the_dots_that_are_asked_for(tmp_path: Path) -> None:
+    path = tmp_path / "map.png"
+    ss.figures.plot_sweep(grid(np.ones((9, 13)), ALPHA, THICKNESS), "answer", path, size=(4.0, 3.0), dpi=100)
+    assert imread(path).shape[:2] == (300, 400)
 
 
 def test_words_label_their_places_on_the_axis() -> None:
@@ -186,11 +250,8 @@ def test_samples_over_three_keys_are_drawn_over_each() -> None:
         "body__normal_stress": np.linspace(5e7, 9e7, 9),
     }
     figure = ss.figures.plot_sweep(members(np.arange(9.0) / 2.0, **columns), "answer")
-    assert [axes.get_xlabel() for axes in figure.axes] == [
-        "friction.alpha (s/m)",
-        "body.thickness (km)",
-        "body.normal_stress (MPa)",
-    ]
+    assert [axes.get_xlabel().replace("\n", " ") for axes in figure.axes] == [NAMES[ALPHA], NAMES[THICKNESS], NAMES[STRESS]]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a)", "(b)", "(c)"]
     for axes, (values, size) in zip(figure.axes, zip(columns.values(), (1.0, 1e3, 1e6), strict=True), strict=True):
         assert axes.lines[0].get_xydata() == pytest.approx(np.stack([values / size, np.arange(9.0) / 2.0], axis=1), rel=1e-15)
 
@@ -221,7 +282,7 @@ def test_the_title_is_that_of_the_scenario(refined: xr.Dataset) -> None:
     assert ss.figures.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law, alpha = 1"
     untitled = refined.assign_attrs(scenario="\n".join(refined.attrs["scenario"].splitlines()[2:]))
     assert not untitled.attrs["scenario"].startswith("title")
-    assert ss.figures.plot_sweep(untitled).axes[0].get_title(loc="left") == "Elastic slab, hyperbolic-rate friction"
+    assert ss.figures.plot_sweep(untitled).axes[0].get_title(loc="left") == ""
 
 
 def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
@@ -242,10 +303,21 @@ def test_words_are_an_axis_of_curves_and_of_maps(alphas: int, thicknesses: int) 
         assert meshes(figure, 1).get_array().tolist() == first[np.argsort(RULES)].T.tolist()
 
 
+@pytest.mark.parametrize("names", [*permutations(("run.selection", ALPHA, STRESS)), *permutations(("run.selection", ALPHA))])
+def test_words_may_be_any_of_the_keys(names: tuple[str, ...]) -> None:
+    sizes = {"run.selection": 3, ALPHA: 9, STRESS: 2}
+    values = np.arange(float(np.prod([sizes[name] for name in names]))).reshape([sizes[name] for name in names])
+    figure = ss.figures.plot_sweep(grid(values, *names), "answer")
+    figure.canvas.draw()
+    words = [text.get_text() for axes in figure.axes for text in (*axes.get_xticklabels(), *axes.get_yticklabels())]
+    texts = {*words, *legend(figure), *(axes.get_title(loc="left").partition("  ")[2] for axes in figure.axes)}
+    assert set(RULES[:3].tolist()) <= texts
+
+
 def test_a_refined_map_of_three_keys_is_cut_along_one() -> None:
     vary = {ALPHA: np.linspace(0.1, 0.4, 3), STRESS: np.linspace(50e6, 200e6, 3), "body.wave_speed": ["2 km/s", "5 km/s"]}
     figure = ss.figures.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["wave speed 2000 m/s", "wave speed 5000 m/s"]
+    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a)  $c$ = 2000 m/s", "(b)  $c$ = 5000 m/s"]
     for axes, speed in zip(figure.axes, (2e3, 5e3), strict=True):
         for cell in next(one for one in axes.collections if isinstance(one, PolyCollection)).get_paths():
             (low, high), critical = cell.vertices[[0, 2]].prod(axis=1), 2800.0 * speed / 0.5e6

@@ -102,5 +102,7 @@ def test_the_figure_shows_the_ratios_and_both_lines(found: Analogy) -> None:
     drawn = figure.draw(dataset)
     assert drawn.axes[2].get_xlabel() == "wavelength (m)"
     titles = [axes.get_title(loc="left") for axes in drawn.axes[:4]]
-    assert titles[0] == "a   slip, slab / block"
-    assert titles[3] == "d   all within 10 % (green)"
+    assert titles[0] == "(a)  ratio of slips"
+    assert titles[3] == "(d)  block stands for slab"
+    key = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert key[:2] == ["(d) all three ratios within 10 %, same pulses", "(d) not so"]

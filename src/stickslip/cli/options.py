@@ -39,5 +39,8 @@ def table_of(what: str) -> Any:
 
 ScenarioName = Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)]
 FigureFile = Annotated[Path | None, picture("a figure", "--figure", "-f")]
+Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.")]
+SIZE_HELP = 'Size of figures: "16 x 10 cm", "3.5 x 5 in", "single column" or "double column".'
+Size = Annotated[str | None, option(SIZE_HELP, "--size", "--figure-size")]
 Until = Annotated[str | None, option(DURATION, "--until", "--duration")]
 Rtol = Annotated[float | None, option("Override the relative tolerance.")]

@@ -2,49 +2,68 @@
 
 from __future__ import annotations
 
+import string
+import textwrap
+from collections.abc import Iterable
+from itertools import zip_longest
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
 from stickslip.contact.regime_map import Axis
-from stickslip.figures.style import GREY, PALE, label, shown
+from stickslip.figures.names import parameter_name
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import PALE, label, shown
 from stickslip.problem.problem import Problem
 
-
-def panels(rows: int, columns: int, size: tuple[float, float], **options: Any) -> tuple[Figure, NDArray[Any]]:
-    """Return a new figure (size in inches) and its grid of axes, always as a 2-D array."""
-    figure = Figure(figsize=size, layout="constrained")
-    axes: NDArray[Any] = figure.subplots(rows, columns, squeeze=False, **options)
-    return figure, axes
+LETTERS = 13.0
+"""Number of letters of a title in an inch; longer titles are broken into lines."""
+NARROW = 500.0
+"""Logarithmic axes that span less than this factor have ticks at 1, 2, 5, 10, ...: powers of ten alone would be too few."""
 
 
-def sheet(figure: Figure | None, size: tuple[float, float]) -> Figure:
-    """Return a figure of this size (inches) to draw on: the given one, or a new one that pyplot does not know."""
-    figure = Figure() if figure is None else figure
-    figure.set_size_inches(*size)
-    figure.set_layout_engine("constrained")
-    return figure
+def panels(
+    rows: int, columns: int, size: tuple[float, float], place: Place | None = None, **options: Any
+) -> tuple[Figure, NDArray[Any]]:
+    """Return a figure of the usual `size` (inches) and its grid of axes, always as a 2-D array; `place` says where to draw."""
+    figure = sheet(size, **(place or {}))
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
-def letter(axes: Axes, text: str) -> None:
-    """Set the title of a panel: its letter and what it shows."""
-    axes.set_title(text, pad=6)
+def letter_panels(axes: Iterable[Axes], texts: Iterable[str] = ()) -> None:
+    """Set the titles of panels: a letter, "(a)", "(b)", ..., and what each shows, if `texts` say it. One panel has no letter."""
+    found = list(axes)
+    for k, (panel, text) in enumerate(zip_longest(found, texts, fillvalue="")):
+        mark = f"({string.ascii_lowercase[k]})" if len(found) > 1 else ""
+        panel.set_title("  ".join(part for part in (mark, text) if part), pad=5)  # type: ignore[union-attr]
+
+
+def set_title(where: Any, title: str) -> None:
+    """Set the title of a whole figure, or of the only panel of one, above its left end. No title, "", takes no room.
+
+    Titles are users' texts: they are never read as formulas.
+    """
+    if not title:
+        return
+    figure = where.figure
+    line = "".join(letter if letter.isprintable() else " " for letter in title)
+    text = textwrap.fill(" ".join(line.split()), max(int(LETTERS * figure.get_figure(root=True).get_size_inches()[0]), 20))
+    if isinstance(where, Axes):
+        where.set_title(text, parse_math=False)
+    else:
+        look = {"fontsize": mpl.rcParams["axes.titlesize"], "fontweight": "bold", "parse_math": False}
+        where.suptitle(text, x=0.012, ha="left", **look)
 
 
 def zero_line(axes: Axes) -> None:
     """Draw a faint horizontal line at zero, for quantities whose zero has a meaning."""
     axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
-
-
-def leave_empty(axes: Axes, text: str = "") -> None:
-    """Replace a panel by a note that says why there is nothing to draw."""
-    axes.set_axis_off()
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=GREY)
 
 
 def set_scale(axes: Axes, which: str, log: bool) -> None:
@@ -53,17 +72,27 @@ def set_scale(axes: Axes, which: str, log: bool) -> None:
         getattr(axes, f"set_{name}scale")("log" if log else "linear")
 
 
+def set_log_ticks(axes: Axes, which: str) -> None:
+    """Give the logarithmic axis "x" or "y" ticks that can be read, once its limits are set: plain 1, 2, 5, ... if it is short."""
+    axis = getattr(axes, f"{which}axis")
+    low, high = sorted(axis.get_view_interval())
+    if high < NARROW * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_locator(NullLocator())
+
+
 def count_ticks(axes: Axes, count: int = 4) -> None:
     """Give the vertical axis at most `count` intervals between ticks at whole numbers."""
     axes.yaxis.set_major_locator(MaxNLocator(count, integer=True))
 
 
-def parameter_variables(problem: Problem, *, short: bool = False, **axes: Axis) -> dict[str, xr.Variable]:
-    """Return the coordinates `x` and `y` of a map over two parameters of a problem; `short` names leave out the table."""
+def parameter_variables(problem: Problem, **axes: Axis) -> dict[str, xr.Variable]:
+    """Return the coordinates `x` and `y` of a map over two parameters of a problem."""
     found = {}
     for name, axis in axes.items():
         one = problem.parameters[axis.parameter]
-        text = one.name.rpartition(".")[2].replace("_", " ") if short else one.name
+        text = parameter_name(one.name, one.declared.meaning)
         found[name] = xr.Variable(name, axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
     return found
 
@@ -73,6 +102,8 @@ def draw_parameters(axes: Axes, dataset: xr.Dataset) -> None:
     axes.set(xlabel=label(dataset["x"]), ylabel=label(dataset["y"]))
     for name in ("x", "y"):
         set_scale(axes, name, bool(dataset[name].attrs["log"]))
+        if dataset[name].attrs["log"]:
+            set_log_ticks(axes, name)
 
 
 def draw_map(axes: Axes, dataset: xr.Dataset, values: Any, **colours: Any) -> Any:

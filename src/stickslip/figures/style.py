@@ -1,8 +1,23 @@
 """The common look of all figures: colours, units, and labels that carry their units.
 
-Most figure modules have two functions: `data(...)` returns an xarray.Dataset in SI units, and `draw(dataset)` draws exactly that
-dataset. The data published beside a figure are therefore the data that were drawn. The figure that `draw` returns is not known to
-pyplot, unless one of pyplot's figures was passed to it: save it with its `savefig`.
+Most figure modules have two functions: `data(...)` returns an xarray.Dataset in SI units, and `draw(dataset, **place)` draws just
+that dataset. The data published beside a figure are therefore the data that were drawn.
+
+Rules that all figures follow:
+
+1. **Place.** Every function that draws takes the keywords of `sheet.Place` (ax, figure, size, dpi) and begins with
+   `sheet(usual size, **place)`, or with `one_panel(usual size, **place)` for a figure of one panel, which ends with
+   `return result(axes, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls pyplot; a method
+   for users returns `known_to_pyplot(draw(dataset, **place), place)`.
+2. **Titles.** `panels.set_title(figure, title)` with the title of the scenario; problems from Python have none, and neither have
+   axes of the user. No names of classes or of laws.
+3. **Letters.** Several panels have letters, `panels.letter_panels(axes, texts)`: "(a) text" above the panel, at its left end. A
+   figure of one panel has no letter.
+4. **Units.** `unit_of(units, *values)` alone chooses a readable unit, from all values that share an axis; the values are divided by
+   its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and unit.
+   Stress of a slab and force of a block have names of their own (`FORCES`).
+5. **Parameters** have the words and the symbol of their declared meaning (`names.parameter_name`) and their unit.
+6. **Legends.** Every line, band, marker and colour is explained in the figure, in a legend or by a text beside it.
 """
 
 from __future__ import annotations
@@ -19,7 +34,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
-from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings
@@ -36,6 +50,8 @@ INK, GREY, PALE = "#222222", "#7A7A7A", "#D9D9D9"
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
 # Colours of large areas.
 LIGHT_BLUE, LIGHT_ORANGE = "#D6E6F4", "#F8D9C4"
+# Colours of areas of two kinds: no and yes, regular and irregular.
+TWO = (LIGHT_BLUE, ORANGE)
 
 # Settings of matplotlib under which `styled` functions draw.
 STYLE: Any = {
@@ -69,8 +85,20 @@ STYLE: Any = {
     "svg.hashsalt": "stickslip",
 }
 
-SHOWN = {"Pa": ("MPa", 1e6), "N": ("TN", 1e12), "m^-1 s": ("s/m", 1.0)}
-"""Some SI units are shown under another name, mostly a larger unit: its name, and its size in SI units."""
+_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
+UNITS: dict[str, tuple[tuple[float, str], ...]] = {
+    "s": ((YEAR, "year"), (86_400.0, "day"), (1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
+    "m": ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
+    "m/s": ((1.0, "m/s"), (1e-3, "mm/s"), (1e-6, "µm/s"), (1e-9, "nm/s")),
+    **{unit: tuple((size, prefix + unit) for size, prefix in _PREFIXES) for unit in ("Pa", "N", "J", "J/m²", "N/m")},
+}
+"""Readable units of each SI unit, the largest first: size in SI units and name."""
+SPELLED = {"m s-1": "m/s", "J m-2": "J/m²", "m^-1 s": "s/m", "1/m": "m⁻¹", "kg/m^3": "kg/m³", "kg/m^2": "kg/m²"}
+"""SI units as readers expect to see them."""
+LEAST = {"s": 0.5, "m": 0.5, "m/s": 0.5}
+"""A unit is taken if the largest value is at least this number of it; 1 where none is given."""
+DECADES = 1e6
+"""A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
 CURVES = {
     "time": ("time", "t", "s"),
     "slip": ("slip", "u", "m"),
@@ -78,6 +106,7 @@ CURVES = {
     "slip_rate": ("slip rate", "v", "m/s"),
     "traction": ("traction", r"\tau", "Pa"),
     "load": ("load", r"\beta", "Pa"),
+    "friction": ("friction coefficient", r"\mu", "1"),
 }
 """Name, symbol and unit of the curves of a run, as `Solution.curve` names them."""
 FORCES = {"traction": "friction force", "load": "spring force"}
@@ -99,11 +128,12 @@ def styled(function: Callable[P, T]) -> Callable[P, T]:
     return inside
 
 
-def image(figure: Figure, kind: str) -> bytes:
+def image(figure: Figure, kind: str, dpi: float | None = None) -> bytes:
     """Return a figure as the bytes of a "png" or "svg" file, the same for the same input: without date and random names."""
     stream = io.BytesIO()
     with mpl.rc_context(STYLE):
-        figure.savefig(stream, format=kind, metadata={"Date": None} if kind == "svg" else {"Software": None})
+        about = {"Date": None} if kind == "svg" else {"Software": None}
+        figure.savefig(stream, format=kind, metadata=about, dpi=mpl.rcParams["savefig.dpi"] if dpi is None else dpi)
     return stream.getvalue()
 
 
@@ -120,15 +150,44 @@ def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, force_uni
     return quantity(dims, values, name, symbol, unit)
 
 
-def unit_shown(variable: xr.DataArray) -> tuple[str, float]:
-    """Return the unit (name, size in SI units) in which a variable is drawn."""
-    units = variable.attrs["units"]
-    return SHOWN.get(units, (units, 1.0))
+def unit_of(units: str, *values: Any, log: bool = False) -> tuple[str, float]:
+    """Return the readable unit (name, size in SI units) of values that share an axis.
+
+    Parameters
+    ----------
+    units : str
+        Their SI unit.
+    *values : array_like
+        All of them, in SI; only the largest magnitude counts. NaN and infinite values are left out.
+    log : bool
+        True for a logarithmic axis: values that span more than `DECADES` are shown in SI.
+
+    Returns
+    -------
+    tuple
+        The largest unit of `UNITS` of which the largest value is at least one (s, m and m/s: a half). If all are 0, or the unit
+        has no others, it is the SI unit.
+    """
+    units = SPELLED.get(units, units)
+    known = np.concatenate([np.abs(np.ravel(np.asarray(one, float))) for one in values]) if values else np.zeros(0)
+    known = known[np.isfinite(known) & (known > 0.0)]
+    choice = UNITS.get(units, ())
+    if not choice or not known.size or (log and known.max() > DECADES * known.min()):
+        return units, 1.0
+    least = LEAST.get(units, 1.0)
+    # A hair less than the bound, so that rounding does not decide about round numbers.
+    found = next(((name, size) for size, name in choice if known.max() >= least * size * (1.0 - 1e-9)), None)
+    return found or (choice[-1][1], choice[-1][0])
 
 
-def shown(variable: xr.DataArray) -> Floats:
-    """Return the values in the unit in which they are drawn."""
-    return np.asarray(variable.values, dtype=float) / unit_shown(variable)[1]
+def unit_shown(*variables: xr.DataArray) -> tuple[str, float]:
+    """Return the unit (name, size in SI units) in which variables that share an axis are drawn."""
+    return unit_of(variables[0].attrs["units"], *(variable.values for variable in variables))
+
+
+def shown(variable: xr.DataArray, unit: tuple[str, float] | None = None) -> Floats:
+    """Return the values in the unit (name, size) given, or in the one that suits them."""
+    return np.asarray(variable.values, dtype=float) / (unit or unit_shown(variable))[1]
 
 
 def axis_text(name: str, symbol: str, unit: str) -> str:
@@ -137,14 +196,16 @@ def axis_text(name: str, symbol: str, unit: str) -> str:
     return text if unit == "1" else f"{text} ({unit})"
 
 
-def label(variable: xr.DataArray) -> str:
-    """Return the axis label of a variable, in the unit in which it is drawn."""
-    return axis_text(variable.attrs["long_name"], variable.attrs.get("symbol", ""), unit_shown(variable)[0])
+def label(variable: xr.DataArray, unit: tuple[str, float] | None = None) -> str:
+    """Return the axis label of a variable, in the unit (name, size) given, or in the one that suits its values."""
+    return axis_text(variable.attrs["long_name"], variable.attrs.get("symbol", ""), (unit or unit_shown(variable))[0])
 
 
-def curve_label(curve: str, unit: str = "") -> str:
-    """Return the axis label of one of `CURVES`, in its own unit or in the one given."""
+def curve_label(curve: str, unit: str = "", force_unit: str = "Pa") -> str:
+    """Return the axis label of one of `CURVES`, in its own unit or in the one given; a block's (N) has the name of a force."""
     name, symbol, own = CURVES[curve]
+    if force_unit == "N":
+        name = FORCES.get(curve, name)
     return axis_text(name, symbol, unit or own)
 
 
@@ -153,14 +214,9 @@ def narrow(text: str) -> str:
     return text if "\n" in text else text.replace(" (", "\n(")
 
 
-def name_system(body: str, law: str) -> str:
-    """Return the title of a figure of one system, from the kinds of its body and its friction law."""
-    return f"{body.replace('-', ' ').capitalize()}, {law} friction"
-
-
-def system_title(problem: Problem) -> str:
-    """Return the title of a figure of one problem: its body and its friction law."""
-    return name_system(type(problem.body).kind, type(problem.friction).kind)
+def title_of(readings: Readings) -> str:
+    """Return the title of a figure of one run: that of its scenario, "" for a problem from Python."""
+    return readings.title
 
 
 def clock(readings: Readings) -> str:
@@ -168,26 +224,9 @@ def clock(readings: Readings) -> str:
     return "time since the event began" if "event_slip" in readings.curves else "time $t$"
 
 
-def readable(largest: float, units: str) -> tuple[str, float]:
-    """Return a readable unit (name, size in SI units) for a stress or force whose largest value, in Pa or N, is given.
-
-    The unit is the largest of tera, giga, mega, kilo and the plain unit that does not exceed the value, or the plain one.
-    """
-    prefixes = {1e12: "T", 1e9: "G", 1e6: "M", 1e3: "k"}
-    size = next((size for size in prefixes if largest >= size), 1.0)
-    return prefixes.get(size, "") + units, size
-
-
 def time_unit(span: float) -> tuple[str, float]:
     """Return the unit (name, size in s) in which times over the given span (s) are readable."""
-    units = {"year": YEAR, "day": 86_400.0, "s": 1.0, "ms": 1e-3}
-    return next(((name, size) for name, size in units.items() if span > 0.5 * size), ("µs", 1e-6))
-
-
-def length_unit(length: float) -> tuple[str, float]:
-    """Return the unit (name, size in m) in which lengths up to the given one (m) are readable."""
-    units = {"km": 1e3, "m": 1.0, "mm": 1e-3, "µm": 1e-6}
-    return next(((name, size) for name, size in units.items() if length > 0.5 * size), ("nm", 1e-9))
+    return unit_of("s", span)
 
 
 def nearly_flat(*stresses: Floats) -> bool:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
@@ -47,12 +48,14 @@ class RunOptions:
     checkpoint: Path | None = None
     checkpoint_every: Number = declare(CHECKPOINT_INTERVAL, CHECKPOINT_EVERY)
     max_pieces: int | None = None
+    title: str = ""
 
     @classmethod
     def of(cls, scenario: Scenario, **given: Any) -> Self:
         """Return the options of a scenario, those in `given` that are not None in their place or beside them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
-        return cls(**({name: getattr(scenario, name) for name in names} | _not_none(given)))
+        own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading}
+        return cls(**(own | _not_none(given)))
 
     @classmethod
     def to_continue(cls, stopped: Solution, duration: float | str | WithUnit | None, max_events: int | None, **others: Any) -> Self:
@@ -67,6 +70,7 @@ class RunOptions:
             stopped.creep_rtol,
             stopped.shortest_event,
             max_events if max_events is not None or had_them else stopped.max_events,
+            title=stopped.title,
             **others,
         )
 
@@ -75,6 +79,8 @@ class RunOptions:
         check_problem(who, problem)
         creep_rtol = None if self.creep_rtol is None else CREEP_RTOL.check(who, "creep_rtol", self.creep_rtol)
         shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
+        if not isinstance(self.title, str):
+            raise InputError(f"{who}: title must be text, got {shown(self.title)}")
         return replace(
             self,
             duration=DURATION.check(who, "duration", self.duration),

@@ -120,7 +120,7 @@ class Session:
         reached = options.duration if whole else float(kept.trip[-1] * row + kept.phase_to[-1])
         history = History(kept, self.problem, row, float(self.setup.params.ramp), reached, creep=self.creep)
         found = Solution(self.problem, options.duration, options.rtol, STATUSES[code], history, self.checkpoint())
-        given = {name: getattr(options, name) for name in ("max_events", "creep_rtol", "shortest_event")}
+        given = {name: getattr(options, name) for name in ("max_events", "creep_rtol", "shortest_event", "title")}
         return replace(found, lumping_note=self.lumping_note, rounding_note=self.rounding_note, **given)
 
     def advance(self, last: tuple[int, float], budget: int) -> int:

@@ -33,6 +33,7 @@ def simulate(
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
+    title: str = "",
 ) -> Solution:
     """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
@@ -65,6 +66,8 @@ def simulate(
     max_pieces : int, optional
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
         million, some 0.4 GB in memory and in a file.
+    title : str
+        Title of the run, for figures; by default that of the scenario.
 
     Returns
     -------
@@ -105,6 +108,7 @@ def simulate(
             checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
             checkpoint_every=checkpoint_every,
             max_pieces=max_pieces,
+            title=title or None,
         )
         return run_to_end(Session.begin(given, options), WholeHistory())
 

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 LARGEST = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
+UNNAMED = "scenario"
+"""Name of a scenario that has none of its own."""
 DEEPEST = 20
 """Largest number of parts in a dotted key: tomllib takes a time that grows with the square of this number."""
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
@@ -73,7 +75,7 @@ class Scenario:
     max_events: int | None = None
     creep_rtol: float | None = None
     shortest_event: float | None = None
-    name: str = field(default="scenario", compare=False)
+    name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -89,8 +91,13 @@ class Scenario:
         shown = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
         return html_table(f"stickslip Scenario {self.name}", shown) + self.problem._repr_html_()
 
+    @property
+    def heading(self) -> str:
+        """The title of figures: that of the scenario, or its name; "" if it has neither."""
+        return self.title or (self.name if self.name != UNNAMED else "")
+
     @classmethod
-    def of(cls, solution: Solution, name: str = "scenario") -> Self:
+    def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
         """Return the scenario of which a solution is a run."""
         return cls(
             problem=solution.problem,
@@ -99,6 +106,7 @@ class Scenario:
             max_events=solution.max_events,
             creep_rtol=solution.creep_rtol,
             shortest_event=solution.shortest_event,
+            title=solution.title,
             name=name,
         )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,73 +18,94 @@ from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from stickslip.figures.sheet import Place
     from stickslip.solution.solution import Solution
 
 MOST_VALUES = 20_000_000
 """Largest number of times multiplied by places in one dataset; each value takes up to 0.5 kB of memory while it is computed."""
 
 Run = TypeVar("Run", bound=Readings)
+T = TypeVar("T")
 
 
 class Plots(Generic[Run]):
     """Figures of a run, or of a window on it: `solution.plot()` draws the default one, `solution.plot.energy()` that of energies.
 
-    Methods with `start` and `end` draw between these times (s); the default is the whole run, or what the window shows. All return
-    a `matplotlib.figure.Figure`, and all but `animation` leave it to the caller to save it.
+    Methods with `start` and `end` draw between these times (s); the default is the whole run, or what the window shows. All but
+    `animation` take these keywords, too:
+
+    - `ax`: axes to draw in, for figures of one panel; `figure`: an empty figure to draw in, for all.
+    - `size`: width and height in inches, a text such as "16 x 10 cm", "single column" or "double column".
+    - `dpi`: dots per inch.
+
+    They return a `matplotlib.figure.Figure`, or the axes if `ax` was given. A new figure is one of pyplot's: a notebook shows it
+    once, `pyplot.show()` shows it in a window, and `figure.savefig(...)` saves it.
     """
 
     def __init__(self, run: Run) -> None:
         self._run = run
 
-    def __call__(self, start: float | None = None, end: float | None = None) -> Figure:
-        """Draw slip, slip rate, traction and load against time, each in a panel of its own."""
-        from stickslip.figures.runs.run import plot_run
+    def __call__(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
+        """Draw slip, slip rate, traction and load against time.
 
-        return plot_run(self._run, start, end)
+        If the friction law never sticks, friction is drawn as a coefficient, against time and against slip.
+        """
+        from stickslip.figures.runs import run
 
-    def slip(self, start: float | None = None, end: float | None = None) -> Figure:
+        return known_to_pyplot(run.draw(self._run, start, end, **place), place)
+
+    def slip(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the slip against time; in a window, the slip since the event began."""
-        return self._curve(self._run.curves[0], start, end)
+        return self._curve(self._run.curves[0], start, end, place)
 
-    def slip_rate(self, start: float | None = None, end: float | None = None) -> Figure:
+    def slip_rate(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the slip rate against time."""
-        return self._curve("slip_rate", start, end)
+        return self._curve("slip_rate", start, end, place)
 
-    def traction(self, start: float | None = None, end: float | None = None) -> Figure:
+    def traction(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the friction on the contact against time."""
-        return self._curve("traction", start, end)
+        return self._curve("traction", start, end, place)
 
-    def load(self, start: float | None = None, end: float | None = None) -> Figure:
+    def load(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the load on the contact against time."""
-        return self._curve("load", start, end)
+        return self._curve("load", start, end, place)
 
-    def state(self, start: float | None = None, end: float | None = None) -> Figure:
+    def state(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the state variable of the friction law against time. Raises InputError if the law has none."""
-        return self._curve("state", start, end)
+        return self._curve("state", start, end, place)
 
-    def _curve(self, name: Curve, start: float | None, end: float | None) -> Figure:
+    def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
         from stickslip.figures.runs import one_curve
 
-        return one_curve.plot(self._run, name, start, end)
+        return known_to_pyplot(one_curve.draw(self._run, name, start, end, **place), place)
 
-    def field(self, start: float | None = None, end: float | None = None) -> Figure:
+    def friction(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
+        """Draw the friction coefficient against slip, as papers on laboratory friction do."""
+        from stickslip.figures.runs import friction
+
+        return known_to_pyplot(friction.draw(self._run, start, end, **place), place)
+
+    def field(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.
 
         The default for a long run is the last of its largest slip events. Raises InputError for a block.
         """
         from stickslip.figures.runs import space_time
 
-        return space_time.plot(self._run, start, end)
+        return known_to_pyplot(space_time.draw(space_time.data(self._run, start, end), **place), place)
 
-    def snapshots(self, t: ArrayLike | None = None) -> Figure:
+    def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
         """Draw displacement, velocity and stress across the slab at several times.
 
         Parameters
         ----------
         t : array_like, optional
             Times, s. The default is six times over one round trip of the waves.
+        **place
+            Where to draw, and how large: see `Plots`.
 
         Returns
         -------
@@ -97,16 +118,16 @@ class Plots(Generic[Run]):
         """
         from stickslip.figures.runs import snapshots
 
-        return snapshots.plot(self._run, t)
+        return known_to_pyplot(snapshots.draw(snapshots.data(self._run, t), **place), place)
 
-    def energy(self, start: float | None = None, end: float | None = None) -> Figure:
+    def energy(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.
 
         The default for a long run is the last of its largest slip events.
         """
         from stickslip.figures.runs import energy
 
-        return energy.plot(self._run, start, end)
+        return known_to_pyplot(energy.draw(energy.data(self._run, start, end), **place), place)
 
     def animation(
         self,
@@ -149,7 +170,7 @@ class Plots(Generic[Run]):
 class SolutionPlots(Plots["Solution"]):
     """Figures of a whole run: those of `Plots`, its catalogue, and its path through the solutions of the contact equation."""
 
-    def catalogue(self, event: int | None = None) -> Figure:
+    def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
         """Draw the slip events, one of them in ever closer zooms, and their distributions.
 
         Parameters
@@ -157,6 +178,8 @@ class SolutionPlots(Plots["Solution"]):
         event : int, optional
             Row number in `solution.events`; negative ones count from the last. The default is the last event whose slip is at
             least 99 % of the largest.
+        **place
+            Where to draw, and how large: see `Plots`.
 
         Returns
         -------
@@ -169,16 +192,16 @@ class SolutionPlots(Plots["Solution"]):
         """
         from stickslip.figures.runs import catalogue
 
-        return catalogue.draw(catalogue.data(self._run, event))
+        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
 
-    def path(self) -> Figure:
+    def path(self, **place: Unpack[Place]) -> Figure | Axes:
         """Draw the solutions of the contact equation (the set K) and the path of the run through them.
 
         Raises InputError for a block, a contact mass, or a law with a state variable, which have no such set.
         """
         from stickslip.figures.contact import admissible
 
-        return admissible.draw(admissible.data(self._run.problem, self._run))
+        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
 
 
 class Exports(Readings):
@@ -271,6 +294,13 @@ def figure_of_study(study: object) -> Any:
     from stickslip.figures.studies import figure_of
 
     return figure_of(study)
+
+
+def known_to_pyplot(drawn: T, place: Place) -> T:
+    """Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on."""
+    from stickslip.figures import sheet
+
+    return sheet.known_to_pyplot(drawn, place)
 
 
 def check_size(t: ArrayLike, x: ArrayLike | None) -> None:

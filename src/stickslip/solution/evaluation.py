@@ -50,6 +50,8 @@ class Readings:
 
     problem: Problem
     history: History
+    title: str
+    """Title of the scenario, for figures; empty for a problem from Python."""
 
     @property
     def shown(self) -> tuple[float, float]:

@@ -48,6 +48,11 @@ class Window(Exports):
         return self.solution.problem
 
     @property
+    def title(self) -> str:  # type: ignore[override]  # read only
+        """The title of the run."""
+        return self.solution.title
+
+    @property
     def epoch(self) -> Epoch:
         """The start of the event: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
         return self.history.epoch

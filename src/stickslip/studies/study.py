@@ -7,18 +7,20 @@ from contextlib import contextmanager
 from functools import cached_property
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
 from stickslip.run.progress_line import told
-from stickslip.solution.accessors import figure_of_study
+from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from stickslip.figures.sheet import Place
 
 MAX_PIECES = 200_000
 """Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""
@@ -62,9 +64,20 @@ class Study:
         """Return what `plot` draws, in SI units."""
         return self._figure().data(self)  # type: ignore[no-any-return]
 
-    def plot(self) -> Figure:
-        """Plot the result; the panels are described with each study in the documentation."""
-        return self._figure().draw(self.to_dataset())  # type: ignore[no-any-return]
+    def plot(self, **place: Unpack[Place]) -> Figure:
+        """Plot the result; the panels are described with each study in the documentation.
+
+        Parameters
+        ----------
+        **place
+            Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot()`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        figure: Figure = self._figure().draw(self.to_dataset(), **place)
+        return known_to_pyplot(figure, place)
 
     def _figure(self) -> Any:
         return figure_of_study(self)

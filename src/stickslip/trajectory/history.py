@@ -327,6 +327,12 @@ class History:
             return np.zeros(len(at.xi))
         return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
 
+    def law_slip(self, at: Positions) -> Floats:
+        """Return the slip that the friction law sees, m."""
+        grown = self.grown(at)
+        walked = self.mode(at) * grown if self.problem.friction.counts == "path" else grown
+        return np.where(at.before, self.problem.law_slip, self.problem.law_slip + self.store.law_slip[at.piece] + walked)
+
     def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
@@ -334,8 +340,6 @@ class History:
         if not body.has_inertia:
             return excess - body.damping * rate
         law, mode = self.problem.friction, self.mode(at)
-        grown = self.grown(at)
-        walked = mode * grown if law.counts == "path" else grown
-        law_slip = self.problem.law_slip + self.store.law_slip[at.piece] + walked
-        by_law = mode * self.problem.normal * law.coefficient(law_slip, np.abs(rate), self.state(at)) - self.problem.strength
+        coefficient = law.coefficient(self.law_slip(at), np.abs(rate), self.state(at))
+        by_law = mode * self.problem.normal * coefficient - self.problem.strength
         return np.where((mode == 0) | at.before, excess, by_law)

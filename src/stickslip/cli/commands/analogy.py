@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import AXIS, option, picture, table_of
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import AXIS, Dpi, Size, option, picture, table_of
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ def analogy(
     map_axes: Annotated[list[str] | None, option(f"Axis of the map: {AXIS}", "--map")] = None,
     out: Annotated[Path | None, table_of("point")] = None,
     figure: Annotated[Path | None, picture("the map", "--figure", "-f")] = None,
+    dpi: Dpi = None,
+    size: Size = None,
     within: Annotated[float, typer.Option(help="Largest relative difference of the answers.")] = 0.1,
     duration: Annotated[str | None, option("How long to wait for the end of the event: s, or with a unit.")] = None,
 ) -> None:
@@ -52,14 +54,16 @@ def analogy(
     from stickslip.cli.overrides import load_with
 
     check_target(out, "--out", (".csv",))
+    look = Look(dpi, size)
     check_target(figure, "--figure")
+    look.check(figure)
     typed = AXES if map_axes is None and scenario == BUNDLED else map_axes or []
     if len(typed) != 2:
         raise InputError(f'analogy: give two --map, as --map "friction.alpha=0.01..10:20:log", got {len(typed)}')
     chosen = load_with("analogy", scenario, duration=duration)
     found = _study(chosen, typed, within)
     show_analogy(chosen, found)
-    announce(*write_files((out, lambda path: _save(path, chosen, found)), (figure, drawing(found.plot))))
+    announce(*write_files((out, lambda path: _save(path, chosen, found)), (figure, drawing(found.plot, look))))
 
 
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:

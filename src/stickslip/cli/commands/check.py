@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from stickslip.cli.options import AXIS, ScenarioName, option
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import AXIS, Dpi, ScenarioName, Size, option
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError, InputWarning
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from stickslip.problem.problem import Problem
+    from stickslip.scenarios.scenario import Scenario
 
 
 def check(
@@ -22,6 +22,8 @@ def check(
     figure: Annotated[
         Path | None, option("Save a figure of the set K, or of the map (.png, .pdf, .svg).", "--figure", "-f")
     ] = None,
+    dpi: Dpi = None,
+    size: Size = None,
     map_axes: Annotated[list[str] | None, option(f"Axis of a regime map: {AXIS}", "--map")] = None,
 ) -> None:
     r"""Check a scenario without running it.
@@ -45,31 +47,35 @@ def check(
     from stickslip.scenarios.examine import examine
     from stickslip.scenarios.scenario import load_scenario
 
+    look = Look(dpi, size)
     check_target(figure, "--figure")
+    look.check(figure)
     with warnings.catch_warnings(action="ignore", category=InputWarning):  # the examination has these
         loaded = load_scenario(scenario)
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
-    drawn = None if figure is None else _map(loaded.problem, axes) if axes else _set(loaded.problem)
+    drawn = None if figure is None else _map(loaded, axes) if axes else _set(loaded)
     show_examination(loaded, examine(loaded))
     if drawn is not None:
-        announce(*write_files((figure, drawing(lambda: drawn))))
+        announce(*write_files((figure, drawing(drawn, look))))
 
 
-def _set(problem: Problem) -> Figure:
+def _set(loaded: Scenario) -> Callable[..., object]:
+    """Return the function that draws the set K of a scenario."""
     from stickslip.figures.contact import admissible
 
-    return admissible.draw(admissible.data(problem))
+    return partial(admissible.draw, admissible.data(loaded.problem, title=loaded.heading))
 
 
-def _map(problem: Problem, axes: list[str]) -> Figure:
+def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
+    """Return the function that draws the regimes of a scenario over two numbers."""
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
     from stickslip.run.progress_line import progress_line
     from stickslip.scenarios.axes import read_axis
 
-    x, y = (read_axis(problem, text, "check: --map") for text in axes)
+    x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:
-        found = regime_map(problem, x, y, lambda done, count: report(f"{done} of {count} points"))
-    return regimes.draw(regimes.data(problem, found))
+        found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
+    return partial(regimes.draw, regimes.data(loaded.problem, found, loaded.heading))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_source
-from stickslip.cli.options import FigureFile, Rtol, option, table_of
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import Dpi, FigureFile, Rtol, Size, option, table_of
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ def compare(
     *,
     out: Annotated[Path | None, table_of("run")] = None,
     figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
     event: Annotated[int | None, option("Draw this slip event of each, in local time: 0 the first, -1 the last.")] = None,
     until: Annotated[str | None, option(UNTIL, "--until", "--duration")] = None,
     rtol: Rtol = None,
@@ -47,10 +49,12 @@ def compare(
     from stickslip.cli.output.studies import show_comparison
 
     check_target(out, "--out", (".csv",))
+    look = Look(dpi, size)
     check_target(figure, "--figure")
+    look.check(figure)
     found = _compared(runs, until, rtol, event)
     show_comparison(found)
-    announce(*write_files((out, found.to_csv), (figure, drawing(found.plot))))
+    announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
     if not all(solution.status.ok for solution in found.runs.values()):
         raise typer.Exit(1)
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import DURATION, FigureFile, Rtol, ScenarioName, option
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import DURATION, SIZE_HELP, Dpi, FigureFile, Rtol, ScenarioName, option
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -29,6 +29,8 @@ def ensemble(
     rtol: Rtol = None,
     out: Annotated[Path | None, option("Save the table of events (.csv), or all that is drawn (.nc).", "--out", "-o")] = None,
     figure: FigureFile = None,
+    dpi: Dpi = None,
+    figure_size: Annotated[str | None, option(SIZE_HELP, "--figure-size")] = None,
 ) -> None:
     r"""Find how far single events and statistics can be trusted: repeat a run with tiny disturbances of the initial load.
 
@@ -52,12 +54,14 @@ def ensemble(
     from stickslip.cli.overrides import load_with
 
     check_target(out, "--out", (".csv", ".nc"))
+    look = Look(dpi, figure_size)
     check_target(figure, "--figure")
+    look.check(figure)
     chosen = load_with("ensemble", scenario, until=until, events=events, rtol=rtol)
     study = _study(chosen, members, size, seed)
     show_ensemble(chosen, study)
     save = study.to_netcdf if out is not None and out.suffix.lower() == ".nc" else study.to_csv
-    announce(*write_files((out, save), (figure, drawing(study.plot))))
+    announce(*write_files((out, save), (figure, drawing(study.plot, look))))
     if len(study.runs) < study.wanted:
         raise KeyboardInterrupt
     raise typer.Exit(0 if study.ok else 1)

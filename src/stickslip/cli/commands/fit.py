@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.names import complete_fitted, complete_table, complete_template
-from stickslip.cli.options import FigureFile, option
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import Dpi, FigureFile, Size, option
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ def fit(
     ] = "slab",
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
 ) -> None:
     r"""Make a friction law from measured points.
 
@@ -64,7 +66,9 @@ def fit(
     from stickslip.friction import Points
 
     check_target(out, "--out", (".toml",))
+    look = Look(dpi, size)
     check_target(figure, "--figure")
+    look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
     if out is not None:
         from stickslip.scenarios.templates import template
@@ -84,7 +88,7 @@ def fit(
     announce(
         *write_files(
             (out, lambda path: _write_text(path, text or "")),
-            (figure, drawing(lambda: _figure(result))),
+            (figure, drawing(lambda **place: _draw(result, **place), look)),
         )
     )
     if out is not None:
@@ -160,7 +164,7 @@ def _write_text(path: Path, text: str) -> Path:
     return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8"))
 
 
-def _figure(result: Fit | Smooth) -> Any:
+def _draw(result: Fit | Smooth, **place: Any) -> object:
     from stickslip.figures.contact import measured
 
-    return measured.draw(measured.data(result))
+    return measured.draw(measured.data(result), **place)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_regularisation
-from stickslip.cli.options import DURATION, FigureFile, Rtol, ScenarioName, option, table_of
-from stickslip.cli.output.files import announce, check_target, drawing, write_files
+from stickslip.cli.options import DURATION, Dpi, FigureFile, Rtol, ScenarioName, Size, option, table_of
+from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ def regularise(
     count: Annotated[int, typer.Option(help="How many sizes, evenly spaced in their logarithm.")] = 8,
     out: Annotated[Path | None, table_of("size")] = None,
     figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
     duration: Annotated[str | None, option(DURATION)] = None,
     rtol: Rtol = None,
 ) -> None:
@@ -51,11 +53,13 @@ def regularise(
     from stickslip.cli.overrides import load_with
 
     check_target(out, "--out", (".csv",))
+    look = Look(dpi, size)
     check_target(figure, "--figure")
+    look.check(figure)
     chosen = load_with("regularise", scenario, duration=duration, rtol=rtol)
     study = _study(chosen, by, _sizes(chosen, largest, smallest, count))
     show_regularisation(chosen, study)
-    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot))))
+    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))
 
 
 def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count: int) -> list[float]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from stickslip.cli.names import complete_rule, complete_scenario
-from stickslip.cli.options import FigureFile, Rtol, Until, argument, option, picture
-from stickslip.cli.output.files import announce
+from stickslip.cli.options import Dpi, FigureFile, Rtol, Size, Until, argument, option, picture
+from stickslip.cli.output.files import Look, announce
 
 if TYPE_CHECKING:
     from stickslip.trajectory.status import Status
@@ -39,8 +39,11 @@ def run(
     path: Annotated[Path | None, picture("a figure of the run's path in the set K")] = None,
     catalog_figure: Annotated[Path | None, picture("a figure of the slip events")] = None,
     energy: Annotated[Path | None, picture("a figure of where the energy is")] = None,
+    friction: Annotated[Path | None, picture("a figure of the friction coefficient against slip")] = None,
     space_time: Annotated[Path | None, picture("a figure of the slab's inside over time")] = None,
     animation: Annotated[Path | None, option("Save the slab in motion (.gif; .mp4 and .webm need ffmpeg).")] = None,
+    dpi: Dpi = None,
+    size: Size = None,
     catalog: Annotated[Path | None, option("Keep slip events only, in bounded memory (.csv, .parquet or .nc).")] = None,
     energies: Annotated[bool, typer.Option("--energies", help="Add the energies of each event to --catalog (slow).")] = False,
     until: Until = None,
@@ -76,7 +79,7 @@ def run(
     from stickslip.cli.output.pictures import Pictures
     from stickslip.cli.output.summary import show_catalogue, show_solution
 
-    drawn = Pictures(figure, path, catalog_figure, energy, space_time, animation)
+    drawn = Pictures(figure, path, catalog_figure, energy, friction, space_time, animation, Look(dpi, size))
     replaced = {"until": until, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
     request = Request(

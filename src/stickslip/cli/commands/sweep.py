@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from stickslip.cli.names import complete_design, complete_quantity, complete_vary
-from stickslip.cli.options import ScenarioName, option
+from stickslip.cli.options import Dpi, ScenarioName, Size, option
+from stickslip.cli.output.files import Look, drawing
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -68,6 +70,8 @@ def sweep(
     depth: Depth = 6,
     factor: Factor = None,
     figure: Figure = None,
+    dpi: Dpi = None,
+    size: Size = None,
     dry_run: DryRun = False,
 ) -> None:
     r"""Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
@@ -98,6 +102,8 @@ def sweep(
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)
+    look = Look(dpi, size)
+    look.check(figure)
     if refine is not None and (table or design != "grid" or series or dry_run):
         raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
     chosen = load_scenario(scenario)
@@ -125,7 +131,7 @@ def sweep(
         else:
             found = _found(plan, out, resources)
     if figure is not None:
-        _draw(found, refine or plan.work.names[0], figure)
+        _draw(found, refine or plan.work.names[0], figure, look)
     raise typer.Exit(show_sweep(plan, found, out, figure))
 
 
@@ -202,7 +208,7 @@ def _refined(plan: Plan, axes: list[Axis], options: dict[str, Any]) -> tuple[Pla
     return replace(plan, design=Design(REFINED, plan.design.parameters, columns)), found
 
 
-def _draw(dataset: xr.Dataset, quantity: str, figure: Path) -> None:
+def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: Look) -> None:
     from stickslip.figures.sweeps.sweep import plot_sweep
 
-    plot_sweep(dataset, quantity, figure)
+    drawing(partial(plot_sweep, dataset, quantity), look)(figure)

@@ -4,19 +4,52 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import typer
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+DPI = 200.0
+"""Dots per inch of figures if the user does not say."""
 PICTURES = (".png", ".pdf", ".svg")
 """File suffixes of figures."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a user typed on the look of figures: dots per inch and size."""
+
+    dpi: float | None = None
+    size: str | None = None
+
+    @property
+    def dots(self) -> float:
+        """Dots per inch of the file."""
+        return DPI if self.dpi is None else self.dpi
+
+    @property
+    def place(self) -> dict[str, Any]:
+        """The keywords for functions that draw."""
+        return {} if self.size is None else {"size": self.size}
+
+    def check(self, *figures: object) -> None:
+        """Refuse a look that no figure can have, or that no figure is there to have. Raises InputError.
+
+        `figures` are the files of figures that are wanted, None for those that are not.
+        """
+        given = [option for option, value in (("--dpi", self.dpi), ("--size", self.size)) if value is not None]
+        if not given:
+            return
+        if not any(figures):
+            raise InputError(f"{given[0]} is the look of a figure: name the file of one, say --figure NAME.png")
+        from stickslip.figures.sheet import check_dpi, read_size
+
+        sides = (1.0, 1.0) if self.size is None else read_size(self.size, (1.0, 1.0), "--size")
+        check_dpi(self.dots, max(sides), "--dpi")
 
 
 def check_target(path: Path | None, option: str, suffixes: tuple[str, ...] = PICTURES) -> None:
@@ -53,9 +86,18 @@ def write_files(*targets: tuple[Path | None, Callable[[Path], object]]) -> list[
     return [path for path, _ in wanted]
 
 
-def drawing(figure: Callable[[], Figure]) -> Callable[[Path], Path]:
-    """Return a function that draws a figure and writes it to a file."""
-    return lambda path: write_atomically(path, figure().savefig)
+def drawing(draw: Callable[..., object], look: Look) -> Callable[[Path], Path]:
+    """Return a function that lets `draw` draw in a new figure of this look, and writes the figure to a file."""
+
+    def write(path: Path) -> Path:
+        from stickslip.figures.sheet import StickslipFigure
+        from stickslip.figures.style import styled
+
+        figure = StickslipFigure()
+        draw(figure=figure, **look.place)
+        return write_atomically(path, lambda draft: styled(figure.savefig)(draft, dpi=look.dots))
+
+    return write
 
 
 def announce(*paths: Path | None) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.files import check_target, drawing, write_files
+from stickslip.cli.output.files import Look, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,17 +22,20 @@ class Pictures:
     path: Path | None
     catalog_figure: Path | None
     energy: Path | None
+    friction: Path | None
     space_time: Path | None
     animation: Path | None
+    look: Look
 
     @property
     def wanted(self) -> dict[str, Path]:
         """The files that are wanted, by option."""
-        named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self)}
+        named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self) if field.name != "look"}
         return {option: target for option, target in named.items() if target is not None}
 
     def check(self) -> None:
-        """Refuse files that could not be written. Raises InputError."""
+        """Refuse files that could not be written, and a look that figures cannot have. Raises InputError."""
+        self.look.check(*(target for option, target in self.wanted.items() if option != "--animation"))
         for option, target in self.wanted.items():
             if option != "--animation":
                 check_target(target, option)
@@ -57,11 +60,12 @@ class Pictures:
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""
         return write_files(
-            (self.figure, drawing(solution.plot)),
-            (self.path, drawing(solution.plot.path)),
-            (self.catalog_figure, drawing(solution.plot.catalogue)),
-            (self.energy, drawing(solution.plot.energy)),
-            (self.space_time, drawing(solution.plot.field)),
+            (self.figure, drawing(solution.plot, self.look)),
+            (self.path, drawing(solution.plot.path, self.look)),
+            (self.catalog_figure, drawing(solution.plot.catalogue, self.look)),
+            (self.energy, drawing(solution.plot.energy, self.look)),
+            (self.friction, drawing(solution.plot.friction, self.look)),
+            (self.space_time, drawing(solution.plot.field, self.look)),
             (self.animation, lambda target: _animate(solution, target)),
         )
 

@@ -2,26 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.ticker import FuncFormatter
 
+from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.figures.contact.resistance import draw_branches
-from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import GREEN, GREY, INK, Floats, curve_quantity, label, quantity, styled
+from stickslip.figures.contact.resistance import BRANCHES, draw_branches
+from stickslip.figures.panels import set_title
+from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.style import (
+    GREEN,
+    GREY,
+    INK,
+    Floats,
+    axis_text,
+    curve_quantity,
+    label,
+    quantity,
+    styled,
+    title_of,
+    unit_of,
+    unit_shown,
+)
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
-    from stickslip.solution.solution import Solution
+    from matplotlib.figure import Figure
 
-Height = Callable[..., Any]
-"""A function that maps an excess (Pa) and the direction of slip (1 or -1) to the ordinate at which that load is drawn."""
+    from stickslip.solution.solution import Solution
 
 _POINTS = 1201
 """Number of slip rates at which the curve is evaluated."""
@@ -29,9 +45,15 @@ _ROOM = 1.25
 """The curve ends at this multiple of the largest slip rate of interest, so that all folds, jumps and the run lie inside."""
 _TINY = 1e-3
 """If the loads span less than this share of the static strength, they are drawn as differences from it."""
+_SETS = 8
+"""Number of slips at which the set is drawn if friction depends on slip."""
+_GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+"""The golden ratio; its multiples, less their whole parts, spread evenly without a period."""
+_ARROWS = 0.3, 14
+"""Distance between the arrows on the path, as a share of the axes, and about how many there are at most."""
 
 
-def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
+def data(problem: Problem, solution: Solution | None = None, *, title: str = "") -> xr.Dataset:
     """Return the set K for forward slip at the start of a problem, and the path of a run in it.
 
     Parameters
@@ -40,13 +62,18 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         A slab whose slip rate follows from the load alone.
     solution : Solution, optional
         A run of the problem; its path is drawn over the set.
+    title : str
+        Title of the figure; by default that of the run.
 
     Returns
     -------
     xarray.Dataset
-        The curve as excess over the static strength (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable, 0 continuum); the
-        static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s), excess (Pa);
-        and the path of the run, slip rate (m/s) and excess (Pa), empty if no run is given.
+        The curve as excess over the static strength at the start (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable, 0
+        continuum); the static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s),
+        excess (Pa); and the path of the run: slip rate (m/s), excess (Pa) and slip of the law (m), empty if no run is given.
+
+        If friction depends on slip and the run slips, `set_slip` (m) are some slips of the law that the run passes, and
+        `set_excess` (Pa), `set_kind` and `set_strength` (Pa, minus that at the start) are the sets there.
 
     Raises
     ------
@@ -56,7 +83,7 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
 
     Notes
     -----
-    If friction depends on slip, the set moves as the contact slips, and the path of the run leaves the set of the start.
+    If friction depends on slip, the set moves as the contact slips: at each moment the run is on the set of its own slip.
     """
     contact = uniqueness_of(problem)
     g = contact.resistance
@@ -77,20 +104,41 @@ def data(problem: Problem, solution: Solution | None = None) -> xr.Dataset:
         "strength": quantity((), g.strength, "static strength", r"S\mu_s", "Pa"),
         "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
     }
-    place = f" at a slip of {g.law_slip:.6g} m" if problem.friction.depends_on_slip else ""
     coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}
-    title = f"Set K: {type(problem.friction).kind} friction{place}, {contact.regime}"
+    title = title or ("" if solution is None else title_of(solution))
     attributes = {"title": title, "rule": contact.rule}
-    return xr.Dataset(contents | path, coords=coordinates, attrs=attributes)
+    moved = _moved(problem, g, rates, path["path_law_slip"].values)
+    return xr.Dataset(contents | path | moved, coords=coordinates, attrs=attributes)
 
 
 def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
-    rate = load = np.zeros(0)
+    rate = load = slip = np.zeros(0)
     if solution is not None:
-        (_, rate), (_, load) = solution.curve("slip_rate"), solution.curve("load")
+        (time, rate), (_, load) = solution.curve("slip_rate"), solution.curve("load")
+        slip = solution.history.law_slip(solution.history.find(time, "right"))
     return {
         "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", "m/s"),
         "path_excess": quantity("path", load - strength, "load of the run minus static strength", r"\beta - S\mu_s", "Pa"),
+        "path_law_slip": quantity("path", slip, "slip", "u", "m"),
+    }
+
+
+def _moved(problem: Problem, start: Resistance, rates: Floats, slips: Floats) -> dict[str, xr.Variable]:
+    """Return the sets at some slips (m) that a run passes; none if friction does not depend on slip or the run does not slip."""
+    moves = problem.friction.depends_on_slip and slips.size > 0 and np.ptp(slips) > 0.0
+    # Evenly spaced slips could all lie at the same phase of a law that is periodic in slip; those of the golden ratio do not.
+    shares = np.sort([*(_GOLDEN * np.arange(_SETS - 1) % 1.0), 1.0])
+    chosen = slips.min() + np.ptp(slips) * shares if moves else np.zeros(0)
+    sets = [resistance(problem, float(slip)) for slip in chosen]
+    shape = (len(sets), len(rates))
+    strength = np.array([g.strength - start.strength for g in sets])
+    excess = np.array([g.excess(rates) for g in sets]).reshape(shape) + strength[:, None]
+    kind = np.sign(np.array([g.slope(rates) for g in sets]).reshape(shape)).astype(int)
+    return {
+        "set_slip": quantity("set", chosen, "slip", "u", "m"),
+        "set_strength": quantity("set", strength, "static strength minus that at the start", "", "Pa"),
+        "set_excess": quantity(("set", "slip_rate"), excess, "load minus static strength at the start", "", "Pa"),
+        "set_kind": xr.Variable(("set", "slip_rate"), kind, {"long_name": "1 stable, -1 unstable, 0 continuum"}),
     }
 
 
@@ -107,65 +155,132 @@ def _fastest(contact: Uniqueness, path: Floats) -> float:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
-    """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards."""
-    figure, grid = panels(1, 1, (5.4, 4.2))
-    axes = grid[0, 0]
-    strength = float(dataset["strength"])
-    low, high = _range(dataset)
-    near = high - low < _TINY * strength
-    scale, origin = (1.0, strength) if near else (1e-6, 0.0)
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+    """Draw the set in the plane of slip rate and load, and its mirror image too if the run slips backwards.
 
-    def height(excess: Any, sign: int = 1) -> Any:
-        """Return the ordinate of the load strength + excess, near the strength as a difference, which loses no digit."""
-        return scale * (sign * np.asarray(excess) + (sign * strength - origin))
-
+    If friction depends on slip, the sets at some slips and the path of the run have the colour of the slip.
+    """
+    moves = dataset.sizes["set"] > 0
+    axes = one_panel((6.4 if moves else 5.4, 4.2), **place)
+    scales = _Scales(dataset)
     backwards = bool((dataset["path_slip_rate"].values < 0.0).any())
     for sign in (1, -1) if backwards else (1,):
-        _draw_set(axes, dataset, sign, height)
-    _draw_jumps(axes, dataset, height)
-    _draw_path(axes, dataset, height)
-    fastest = float(dataset["slip_rate"][-1])
+        if moves:
+            _draw_sets(axes, dataset, sign, scales)
+        else:
+            _draw_set(axes, dataset, sign, scales)
+    if not moves:
+        _draw_jumps(axes, dataset, scales)
+    fastest = float(scales.rates(dataset["slip_rate"])[-1])
     axes.set(
-        xlabel=label(dataset["slip_rate"]),
-        ylabel=r"load $\beta$ minus static strength (Pa)" if near else r"load $\beta$ (MPa)",
+        xlabel=label(dataset["slip_rate"], scales.rate),
+        ylabel=scales.label,
         xlim=(-fastest if backwards else -0.04 * fastest, fastest),
-        ylim=(float(height(low)), float(height(high))),
+        ylim=scales.limits,
     )
+    _draw_path(axes, dataset, scales)
     axes.legend(loc="best")
-    letter(axes, dataset.attrs["title"])
-    return figure
+    if "ax" not in place:
+        set_title(axes, dataset.attrs["title"])
+    return result(axes, **place)
 
 
-def _range(dataset: xr.Dataset) -> tuple[float, float]:
-    """Return the range of loads to be drawn, as excess (Pa): that of the curve, the end of stick and the run, with a margin."""
-    inside = np.concatenate((dataset["excess"].values, [0.0], dataset["path_excess"].values))
-    room = 0.08 * float(np.ptp(inside)) or 1.0
-    return float(inside.min()) - room, float(inside.max()) + room
+class _Scales:
+    """The units in which slip rates and loads of a dataset are drawn; near the strength loads are differences from it."""
+
+    def __init__(self, dataset: xr.Dataset) -> None:
+        names = ("excess", "path_excess", "set_excess", "set_strength")
+        inside = np.concatenate([[0.0], *(dataset[name].values.ravel() for name in names)])
+        self.strength = float(dataset["strength"])
+        near = np.ptp(inside) < _TINY * self.strength
+        self.origin = self.strength if near else 0.0
+        self.load = unit_of("Pa", inside + (self.strength - self.origin))
+        self.rate = unit_shown(dataset["slip_rate"])
+        self.label = rf"load $\beta$ {'minus static strength ' if near else ''}({self.load[0]})"
+        room = 0.08 * float(np.ptp(inside)) or 1.0
+        self.limits = float(self.height(inside.min() - room)), float(self.height(inside.max() + room))
+
+    def height(self, excess: Any, sign: int = 1) -> Any:
+        """Return the ordinate of the load strength + excess, near the strength as a difference, which loses no digit."""
+        return (sign * np.asarray(excess) + (sign * self.strength - self.origin)) / self.load[1]
+
+    def rates(self, values: Any) -> Floats:
+        """Return slip rates (m/s) in the unit in which they are drawn."""
+        return np.asarray(values, float) / self.rate[1]
 
 
-def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, height: Height) -> None:
+def _draw_set(axes: Axes, dataset: xr.Dataset, sign: int, scales: _Scales) -> None:
     """Draw stick (vertical) and the stable, unstable and flat parts of the curve, or their mirror image for sign -1."""
     rate, excess, kind = (dataset[name].values for name in ("slip_rate", "excess", "kind"))
-    stick = height(np.array([-float(dataset["strength"]), 0.0]), sign)
+    stick = scales.height(np.array([-scales.strength, 0.0]), sign)
     look: dict[str, Any] = {"linewidth": 3.0} if sign > 0 else {"linewidth": 3.0, "label": None}
     axes.plot([0.0, 0.0], stick, **{"color": GREY, "label": "stick"} | look)
-    draw_branches(axes, sign * rate, height(excess, sign), kind, **look)
+    draw_branches(axes, sign * scales.rates(rate), scales.height(excess, sign), kind, **look)
 
 
-def _draw_jumps(axes: Axes, dataset: xr.Dataset, height: Height) -> None:
+def _draw_sets(axes: Axes, dataset: xr.Dataset, sign: int, scales: _Scales) -> None:
+    """Draw the sets at some slips in the colours of these, and stick up to the largest strength among them."""
+    strength = dataset["set_strength"].values
+    stick = scales.height(np.array([-scales.strength, strength.max()]), sign)
+    axes.plot([0.0, 0.0], stick, color=GREY, linewidth=3.0, label="stick, up to the strength at each slip" if sign > 0 else None)
+    colour, rate = _colours(dataset), sign * scales.rates(dataset["slip_rate"])
+    for k, slip in enumerate(dataset["set_slip"].values):
+        look: dict[str, Any] = {"color": colour.to_rgba(slip), "linewidth": 1.2, "label": None}
+        draw_branches(axes, rate, scales.height(dataset["set_excess"].values[k], sign), dataset["set_kind"].values[k], **look)
+    if sign > 0:
+        for which, (name, _, style) in BRANCHES.items():
+            if (dataset["set_kind"].values == which).any():
+                axes.plot([], [], color=GREY, linewidth=1.2, linestyle=style, label=f"{name}, at the slip of its colour")
+
+
+def _colours(dataset: xr.Dataset) -> ScalarMappable:
+    """Return the colours of slips, in m."""
+    slips = dataset["set_slip"].values
+    return ScalarMappable(Normalize(slips[0], slips[-1]), "viridis_r")
+
+
+def _draw_jumps(axes: Axes, dataset: xr.Dataset, scales: _Scales) -> None:
     arrow = {"arrowstyle": "-|>", "color": GREEN, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
     for before, after, excess in dataset["jump"].values.tolist():
-        level = float(height(excess))
-        axes.annotate("", (after, level), (before, level), arrowprops=arrow)
+        level = float(scales.height(excess))
+        axes.annotate("", (after / scales.rate[1], level), (before / scales.rate[1], level), arrowprops=arrow)
     if dataset.sizes["jumps"]:
         axes.plot([], [], color=GREEN, linewidth=1.2, label=f"jump, {dataset.attrs['rule']}")
 
 
-def _draw_path(axes: Axes, dataset: xr.Dataset, height: Height) -> None:
-    rate, load = dataset["path_slip_rate"].values, height(dataset["path_excess"].values)
+def _draw_path(axes: Axes, dataset: xr.Dataset, scales: _Scales) -> None:
+    """Draw the path of the run, with arrows along it, a large open circle at its start and a square at its end."""
+    rate, load = scales.rates(dataset["path_slip_rate"]), scales.height(dataset["path_excess"].values)
     if not rate.size:
         return
-    axes.plot(rate, load, color=INK, linewidth=1.0, label="run", zorder=4)
-    for i, marker, name in ((0, "o", "its start"), (-1, "s", "its end")):
-        axes.plot(rate[i], load[i], marker, color=INK, markersize=4.5, zorder=5, label=name, linestyle="")
+    moves = dataset.sizes["set"] > 0
+    name, width = ("run, in the colour of its slip", 2.2) if moves else ("run", 1.0)
+    axes.plot(rate, load, color=INK, linewidth=width, label=name, zorder=4)
+    if moves:
+        unit, size = unit_shown(dataset["set_slip"])
+        points = np.stack([rate, load], axis=1)
+        slip, colour = dataset["path_law_slip"].values, _colours(dataset)
+        hues: Any = colour.to_rgba(0.5 * (slip[:-1] + slip[1:]))
+        steps = list(np.stack([points[:-1], points[1:]], axis=1))
+        axes.add_collection(LineCollection(steps, colors=hues, linewidths=1.5, zorder=4.1), autolim=False)
+        bar = axes.figure.colorbar(colour, ax=axes, pad=0.02)
+        bar.set_label(axis_text("slip", "u", unit))
+        bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / size:.4g}"))
+    _draw_arrows(axes, rate, load)
+    look: dict[str, Any] = {"color": INK, "linestyle": "", "clip_on": False}
+    ring: dict[str, Any] = {"markersize": 9.0, "markerfacecolor": "none", "markeredgewidth": 1.5, "zorder": 6}
+    axes.plot(rate[0], load[0], "o", label="its start", **ring, **look)
+    axes.plot(rate[-1], load[-1], "s", markersize=4.5, zorder=5, label="its end", **look)
+
+
+def _draw_arrows(axes: Axes, x: Floats, y: Floats) -> None:
+    """Draw heads of arrows along a line, at equal distances as seen in the axes."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x) / (right - left), np.diff(y) / (high - low)))])
+    if along[-1] == 0.0:
+        return
+    spacing = max(_ARROWS[0], along[-1] / _ARROWS[1])
+    for place in np.arange(0.5 * spacing, along[-1], spacing):
+        tail, head = ((float(np.interp(at, along, x)), float(np.interp(at, along, y))) for at in (place - 0.02, place + 0.02))
+        arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 0.0, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11}
+        axes.annotate("", head, tail, arrowprops=arrow, zorder=5)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.panels import letter, zero_line
-from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled
+from stickslip.figures.contact.resistance import load_unit
+from stickslip.figures.panels import letter_panels, zero_line
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled, unit_shown
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.solution import Solution
 
 CASE = "loop"
@@ -36,15 +39,14 @@ def data(solution: Solution) -> xr.Dataset:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the loop in the plane of slip rate and load on the left, and the same run against time on the right."""
-    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    figure = sheet((7.2, 3.8), **place)
     axes: Any = figure.subplot_mosaic([["loop", "load"], ["loop", "rate"]], width_ratios=(1.25, 1))
     _draw_loop(axes["loop"], dataset)
     _draw_time(axes["load"], axes["rate"], dataset)
     figure.align_ylabels([axes["load"], axes["rate"]])
-    letter(axes["loop"], "a   Set K and the paths walked")
-    letter(axes["load"], "b   The run")
+    letter_panels((axes["loop"], axes["load"], axes["rate"]), ("Set K and the path of a run", "Load", "Slip rate"))
     return figure
 
 
@@ -55,7 +57,8 @@ def _parts(dataset: xr.Dataset) -> tuple[tuple[slice, str, str], ...]:
 
 def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     resistance.draw_set(axes, dataset, CASE, quiet=True)
-    rate, load = shown(dataset["run_slip_rate"]), shown(dataset["run_load"])
+    rate = shown(dataset["run_slip_rate"], unit_shown(dataset["slip_rate"]))
+    load = shown(dataset["run_load"], load_unit(dataset))
     shift = 0.012 * rate.max()  # both paths follow the same branches: draw them side by side, not on top of each other
     for (part, colour, text), side in zip(_parts(dataset), (-1, 1), strict=True):
         x, y = rate[part] + side * shift, load[part] - side * 0.35
@@ -64,7 +67,7 @@ def _draw_loop(axes: Axes, dataset: xr.Dataset) -> None:
     axes.set(ylim=(50, 90), xlim=(-0.04 * rate.max(), 1.04 * rate.max()))
     resistance.draw_points(axes, dataset, CASE, D=(8, 3))
     axes.annotate("to O", (0, 50), (6, 4), textcoords="offset points", fontsize=9, fontweight="bold")
-    axes.set_ylabel(label(dataset["run_load"]))
+    axes.set_ylabel(label(dataset["run_load"], load_unit(dataset)))
     axes.legend(loc="lower right")
 
 
@@ -80,14 +83,16 @@ def _arrows(axes: Axes, x: Floats, y: Floats, colour: str) -> None:
 
 def _draw_time(top: Axes, bottom: Axes, dataset: xr.Dataset) -> None:
     time = shown(dataset["run_time"])
-    for axes, name in ((top, "run_load"), (bottom, "run_slip_rate")):
+    for axes, name, unit in ((top, "run_load", load_unit(dataset)), (bottom, "run_slip_rate", unit_shown(dataset["slip_rate"]))):
         for part, colour, _ in _parts(dataset):
-            axes.plot(time[part], shown(dataset[name])[part], color=colour)
-        axes.set(ylabel=label(dataset[name]), xlim=(0, time[-1]))
+            axes.plot(time[part], shown(dataset[name], unit)[part], color=colour)
+        axes.set(ylabel=label(dataset[name], unit), xlim=(0, time[-1]))
     for point, left in (("A", 0.0), ("C", 0.25 * time[-1])):
-        level = dataset[f"{CASE}_point_{point}"].values[1] / 1e6
+        stress, size = load_unit(dataset)
+        level = dataset[f"{CASE}_point_{point}"].values[1] / size
         top.axhline(level, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-        top.annotate(f"fold {point}, {level:.2f} MPa", (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
+        text = f"fold {point}, {level:.2f} {stress}"
+        top.annotate(text, (left, level), (3, 2), textcoords="offset points", fontsize=7.5, color=INK)
     zero_line(bottom)
     top.tick_params(labelbottom=False)
     bottom.set_xlabel(label(dataset["run_time"]))

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, panels
+from stickslip.figures.panels import letter_panels, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import LINE_COLOURS, curve_quantity, label, quantity, shown, styled
 from stickslip.friction import FrictionLaw
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 PANELS = {
-    "slip": ("slip_law", "a   Slip law, eq. (14)", "lower left"),
-    "slip_rate": ("rate_law", "b   Slip-rate law, eq. (15)", "upper right"),
+    "slip": ("slip_law", "Slip law, eq. (14)", "lower left"),
+    "slip_rate": ("rate_law", "Slip-rate law, eq. (15)", "upper right"),
 }
 """Panels by their abscissa: the dimension of the laws, the title and the place of the legend."""
 
@@ -39,15 +43,15 @@ def data(
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw two panels: the laws that depend on slip on the left, those that depend on slip rate on the right."""
-    figure, axes = panels(1, 2, (7.2, 2.8))
-    for panel, (along, (laws, title, legend)) in zip(axes[0], PANELS.items(), strict=True):
+    figure, axes = panels(1, 2, (7.2, 2.8), place)
+    for panel, (along, (laws, _, legend)) in zip(axes[0], PANELS.items(), strict=True):
         coefficient = dataset[f"coefficient_along_{along.removeprefix('slip_')}"]
         for i, law in enumerate(dataset[laws].values):
             look = {"color": LINE_COLOURS[i % 4], "linewidth": 1.5 if i == 0 else 1.0}
             panel.plot(shown(dataset[along]), shown(coefficient)[i], label=str(law), **look)
-        panel.set(xlabel=label(dataset[along]), ylabel=label(coefficient), ylim=(0, None), xlim=(0, float(dataset[along][-1])))
+        panel.set(xlabel=label(dataset[along]), ylabel=label(coefficient), ylim=(0, None), xlim=(0, shown(dataset[along])[-1]))
         panel.legend(loc=legend)
-        letter(panel, title)
+    letter_panels(axes[0], [title for _, title, _ in PANELS.values()])
     return figure

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, zero_line
-from stickslip.figures.style import BLUE, GREY, INK, Floats, axis_text, length_unit, quantity, spans_decades, styled
+from stickslip.figures.panels import letter_panels, set_title, zero_line
+from stickslip.figures.sheet import Place, known_to_pyplot, sheet
+from stickslip.figures.style import BLUE, GREY, INK, Floats, axis_text, quantity, spans_decades, styled, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Fit, Smooth
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CURVE = 801
 """Number of places at which the law is evaluated."""
@@ -24,7 +27,7 @@ SHADES = ("#F8D9C4", "#F0A879")
 """Colours of the band of two standard errors, and of the band of one above it."""
 
 
-def plot_fit(result: Fit | Smooth, path: str | Path | None = None) -> Figure:
+def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpack[Place]) -> Figure:
     """Draw measured points, the law through them and its band, and save the figure if a file is named.
 
     Parameters
@@ -33,6 +36,8 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None) -> Figure:
         The result of `stickslip.friction.fit` or `smooth`.
     path : str or Path, optional
         File to be written, either whole or not at all.
+    **place
+        Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot`.
 
     Returns
     -------
@@ -47,9 +52,10 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None) -> Figure:
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")
-    figure = draw(data(result))
-    if path is not None:
-        write_atomically(Path(path), figure.savefig)
+    figure = draw(data(result), **place)
+    if path is None:
+        return known_to_pyplot(figure, place)
+    write_atomically(Path(path), figure.savefig)
     return figure
 
 
@@ -91,15 +97,15 @@ def _along(place: Floats) -> Floats:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw points, law and bands in the upper panel, and the differences of the points from the law in the lower one."""
-    figure = Figure(figsize=(5.6, 4.8), layout="constrained")
+    figure = sheet((5.6, 5.0), **place)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
-    unit, size = _unit(dataset["place"])
-    place, along = dataset["place"].values / size, dataset["along"].values / size
+    unit, size = unit_shown(dataset["place"])
+    places, along = dataset["place"].values / size, dataset["along"].values / size
     law, residual = dataset["law"].values, float(dataset["residual"])
-    _draw_points(upper, place, dataset["friction"].values, f"measured, {len(place)} points")
-    _draw_points(lower, place, dataset["difference"].values)
+    _draw_points(upper, places, dataset["friction"].values, f"measured, {len(places)} points")
+    _draw_points(lower, places, dataset["difference"].values)
     upper.plot(along, law, color=BLUE, label=dataset.attrs["law"], zorder=4)
     _draw_band(upper, along, law, dataset["standard_error"].values)
     _draw_band(lower, along, np.zeros_like(law), dataset["standard_error"].values)
@@ -107,12 +113,13 @@ def draw(dataset: xr.Dataset) -> Figure:
     for sign in (-1, 1):
         upper.plot([], [], color=INK, linewidth=0.9, linestyle="--", label=f"± residual, {residual:.2g}" if sign > 0 else None)
         lower.axhline(sign * residual, color=INK, linewidth=0.9, linestyle="--")
-    _scale(lower, place)
+    _scale(lower, places)
     name, symbol = dataset["place"].attrs["long_name"], dataset["place"].attrs["symbol"]
     upper.set(ylabel=r"friction coefficient $\mu$")
     lower.set(xlabel=axis_text(name, symbol, unit), ylabel="measured\nminus law")
     upper.legend(loc="best")
-    letter(upper, dataset.attrs["title"])
+    letter_panels([upper, lower])
+    set_title(figure, dataset.attrs["title"])
     figure.align_ylabels([upper, lower])
     return figure
 
@@ -129,15 +136,6 @@ def _draw_points(axes: Axes, place: Floats, values: Floats, text: str = "") -> N
     few = len(place) <= 200
     look: dict[str, Any] = {"color": GREY, "markersize": 3.5 if few else 2.0, "alpha": 0.9 if few else 0.5, "markeredgewidth": 0}
     axes.plot(place, values, "o", label=text or None, rasterized=len(place) > MANY, zorder=2, **look)
-
-
-def _unit(places: xr.DataArray) -> tuple[str, float]:
-    """Return the unit (name, size in SI) in which slips or slip rates are readable."""
-    units = places.attrs["units"]
-    if units == "1":
-        return "1", 1.0
-    name, size = length_unit(float(np.abs(places.values).max()))
-    return (f"{name}/s" if units == "m/s" else name), size
 
 
 def _scale(axes: Axes, place: Floats) -> None:

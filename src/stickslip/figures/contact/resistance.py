@@ -3,18 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
-from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, Floats, curve_quantity, label, quantity, shown, styled
+from stickslip.figures.panels import letter_panels, panels
+from stickslip.figures.sheet import Place
+from stickslip.figures.style import (
+    BLUE,
+    GREY,
+    INK,
+    PURPLE,
+    VERMILLION,
+    Floats,
+    curve_quantity,
+    label,
+    quantity,
+    shown,
+    styled,
+    unit_shown,
+)
 from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 OFFSETS = {"O": (5, 5), "A": (6, 4), "B": (5, -11), "C": (2, -13), "D": (5, -12), "E": (-12, 2)}
 """Offset of each point's name from the point, in points (1/72 inch), chosen so that it does not cover the curve."""
@@ -68,25 +84,31 @@ def corners(problem: Problem, largest_rate: float) -> dict[str, tuple[float, flo
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a panel for each case, with stable branches solid and unstable ones dashed."""
     cases, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("cases", "case_titles"))
-    figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.3), sharey=True)
+    figure, axes = panels(1, len(cases), (3.6 * len(cases), 3.5), place, sharey=True)
     for i, case in enumerate(cases):
         draw_set(axes[0, i], dataset, case)
         draw_points(axes[0, i], dataset, case)
-        letter(axes[0, i], f"{'abcdef'[i]}   {titles[i]}")
-    axes[0, 0].set_ylabel(label(dataset[f"{cases[0]}_resistance"]))
+    letter_panels(axes[0], titles)
+    axes[0, 0].set_ylabel(label(dataset[f"{cases[0]}_resistance"], load_unit(dataset)))
     axes[0, -1].legend(loc="lower right")
     return figure
 
 
+def load_unit(dataset: xr.Dataset) -> tuple[str, float]:
+    """Return the unit (name, size in Pa) in which the loads of all cases are drawn."""
+    return unit_shown(*(values for name, values in dataset.data_vars.items() if str(name).endswith("_resistance")))
+
+
 def draw_set(axes: Axes, dataset: xr.Dataset, case: str, *, quiet: bool = False) -> None:
     """Draw the branches of K: stick (vertical), stable slip and unstable slip; `quiet` draws them in grey, as a background."""
-    rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"])
+    rate, load = shown(dataset["slip_rate"]), shown(dataset[f"{case}_resistance"], load_unit(dataset))
     kind = np.where(dataset[f"{case}_slope"].values > 0, 1, -1)
     look: dict[str, Any] = {"color": GREY, "linewidth": 1.0, "label": None} if quiet else {"linewidth": 1.8}
-    axes.plot([0, 0], [0, float(shown(dataset[f"{case}_strength"]))], **{"color": INK, "label": "stick"} | look)
+    stick = {"color": INK, "label": "stick"} | look | ({"label": "set K (dashed: unstable)"} if quiet else {})
+    axes.plot([0, 0], [0, float(dataset[f"{case}_strength"]) / load_unit(dataset)[1]], **stick)
     draw_branches(axes, rate, load, kind, **look)
     axes.set(xlabel=label(dataset["slip_rate"]), xlim=(-0.04 * rate[-1], rate[-1]), ylim=(0, None))
 
@@ -106,7 +128,8 @@ def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, 
     """Draw the points O to E of an irregular case and the levels of its folds; `moved` replaces offsets of names (in points)."""
     offsets = OFFSETS | moved
     points = {p: dataset[f"{case}_point_{p}"].values for p in OFFSETS if f"{case}_point_{p}" in dataset}
-    found = {point: (rate, load / 1e6) for point, (rate, load) in points.items()}
+    metres, size = unit_shown(dataset["slip_rate"])[1], load_unit(dataset)[1]
+    found = {point: (rate / metres, load / size) for point, (rate, load) in points.items()}
     low, high = axes.get_ylim()
     for point, (rate, load) in found.items():
         if low <= load <= high:
@@ -114,4 +137,5 @@ def draw_points(axes: Axes, dataset: xr.Dataset, case: str, **moved: tuple[int, 
             axes.annotate(point, (rate, load), offsets[point], textcoords="offset points", fontsize=9, fontweight="bold")
     for start, end in (("A", "B"), ("D", "C")) if found else ():
         (left, level), (right, _) = found[start], found[end]
-        axes.plot([left, right], [level, level], color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+        name = "jump of perfect delay" if start == "A" else None
+        axes.plot([left, right], [level, level], color=GREY, linewidth=0.8, linestyle=":", zorder=0, label=name)

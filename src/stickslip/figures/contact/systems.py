@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
 from stickslip.bodies import as_slab
-from stickslip.figures.panels import letter, panels
+from stickslip.figures.panels import letter_panels, panels
+from stickslip.figures.sheet import Place
 from stickslip.figures.style import BLUE, GREY, INK, PALE, VERMILLION, quantity, styled
 from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.problem import Problem
 
-Place = tuple[float, float]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Point = tuple[float, float]
 ARROW: dict[str, Any] = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "linewidth": 1.3, "mutation_scale": 11}
 """Look of all arrows: matplotlib's `arrowprops`, sizes in points."""
 
@@ -38,17 +41,16 @@ def data(block: Problem, slab: Problem) -> xr.Dataset:
 
 
 @styled
-def draw(_: xr.Dataset) -> Figure:
+def draw(_: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a sketch, not to scale, that shows what the symbols mean; it is the same whatever numbers the dataset holds."""
-    figure, ((left, right),) = panels(1, 2, (7.2, 2.7))
+    figure, ((left, right),) = panels(1, 2, (7.2, 2.7), place)
     for axes in (left, right):
         axes.set(xlim=(0, 10), ylim=(0.2, 6.8), aspect="equal")
         axes.axis("off")
         _draw_rough_floor(axes)
     _draw_block(left)
     _draw_slab(right)
-    letter(left, "a   Spring-block")
-    letter(right, "b   Elastic slab")
+    letter_panels((left, right), ("Spring-block", "Elastic slab"))
     return figure
 
 
@@ -102,7 +104,7 @@ def _spring(left: float, right: float, height: float) -> tuple[list[float], list
     return [left, *coils, right], [height, *(height + o for o in offsets), height]
 
 
-def _arrow(axes: Axes, start: Place, end: Place, name: tuple[str, float, float] | None = None, *, colour: str = INK) -> None:
+def _arrow(axes: Axes, start: Point, end: Point, name: tuple[str, float, float] | None = None, *, colour: str = INK) -> None:
     """Draw an arrow between two places, and its name, given with the place of its middle."""
     axes.annotate("", end, start, arrowprops={**ARROW, "color": colour})
     if name is not None:

@@ -15,9 +15,10 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import set_title, zero_line
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, places, snapshots
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, length_unit, narrow, styled
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
@@ -128,14 +129,15 @@ def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], No
     """Draw the film's panels; return a function that moves them to the n-th frame, and the list of artists that it changes."""
     scales = Scales(dataset)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
-    unit, size = length_unit(float(np.abs(dataset.displacement).max()))
+    unit, size = unit_shown(dataset.displacement)
     displacement, stress = dataset.displacement.values / size, scales.stresses(dataset.stress.values)
     lines = [_draw_profile(axes["A"], dataset, displacement, BLUE), _draw_profile(axes["B"], dataset, stress, VERMILLION)]
     axes["A"].set_xlabel(f"displacement ({unit})")
     axes["B"].set(xlabel=scales.name_stress("shear stress"), ylabel="")
     axes["B"].tick_params(labelleft=False)
     marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
-    letter(axes["C"], dataset.attrs["title"])
+    set_title(figure, dataset.attrs["title"])
+    add_legend(axes["A"], [*axes["A"].get_legend_handles_labels()[0], marks[0]])
     clock = axes["A"].set_title(" ")
 
     def move(n: int) -> None:
@@ -157,8 +159,8 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
     scales.set_places(panel, dataset)
-    panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False)
-    panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":")
+    panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False, label="contact")
+    panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":", label="first frame")
     (line,) = panel.plot(values[0], places, color=colour)
     return line
 
@@ -166,17 +168,17 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
 def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
     """Draw the curves of the contact, and return the vertical lines that mark the present moment in each panel."""
     time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values - dataset.contact_slip.values[0]
-    unit, size = length_unit(float(np.abs(slip).max()))
+    (unit, size), (rate_unit, rate_size) = unit_of("m", slip), unit_shown(dataset.contact_slip_rate)
     curves = (
         (slip / size, f"slip ({unit})", BLUE),
-        (dataset.contact_slip_rate.values, "slip rate\n(m/s)", GREEN),
+        (dataset.contact_slip_rate.values / rate_size, f"slip rate\n({rate_unit})", GREEN),
         (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress("traction")), VERMILLION),
     )
     for panel, (values, text, colour) in zip(panels, curves, strict=True):
         panel.plot(time, values, color=colour)
         panel.set(ylabel=text, xlim=time[[0, -1]])
         panel.tick_params(labelbottom=panel is panels[-1])
-    marks = [panel.axvline(time[0], color=INK, linewidth=0.8) for panel in panels]
+    marks = [panel.axvline(time[0], color=INK, linewidth=0.8, label="time of the frame") for panel in panels]
     zero_line(panels[1])
     panels[-1].set_xlabel(scales.clock)
     return marks

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Container
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.figures.panels import count_ticks, leave_empty, letter, set_scale, zero_line
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import count_ticks, letter_panels, set_scale, set_title, zero_line
 from stickslip.figures.runs.slab_panels import last_large_event
+from stickslip.figures.sheet import Place, sheet
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -22,23 +28,26 @@ from stickslip.figures.style import (
     Floats,
     curve_label,
     curve_quantity,
-    length_unit,
     quantity,
     spans_decades,
     styled,
-    system_title,
     time_unit,
+    title_of,
+    unit_of,
 )
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.solution import Solution
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 CLOSE = 1e-3
 """The last zoom shows this share of the event's duration after its start, and a quarter of that before it."""
 ZOOMS = {
-    "run": ("B  the run", "slip", "time $t$"),
-    "window": ("C  the event", "event_slip", "since its start"),
-    "close": ("D  its start", "event_slip", "since its start"),
+    "run": ("slip in the run", "slip", "time $t$"),
+    "window": ("one event", "event_slip", "since its start"),
+    "close": ("its start", "event_slip", "since its start"),
 }
 """Title, curve and name of the time axis of the three zooms, by the prefix of their variables."""
 
@@ -84,67 +93,85 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
     count = f"{len(table)} slip event{'s' if len(table) > 1 else ''}"
-    return xr.Dataset(contents, attrs={"title": f"{system_title(solution.problem)}: {count}"})
+    return xr.Dataset(contents, attrs={"title": f"{title_of(solution)}: {count}".removeprefix(": ")})
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
-    """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map."""
-    figure = Figure(figsize=(7.6, 7.2), layout="constrained")
-    axes = figure.subplot_mosaic("AAA;BCD;EFG")
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+    """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
+
+    A run of one event has no distributions, one of two no return map.
+    """
+    slip, recurrence = dataset["slip"].values, dataset["recurrence"].values
+    recurrence = recurrence[np.isfinite(recurrence)]
+    rows = ["AAAAAA", "BBCCDD", *(["EEEFFF"] if len(slip) == 2 else ["EEFFGG"] if len(slip) > 2 else [])]
+    figure = sheet((7.2, 2.3 * len(rows) + 0.6), **place)
+    axes = figure.subplot_mosaic(";".join(rows))
     _draw_time_line(axes["A"], dataset)
     _draw_zooms([axes[name] for name in "BCD"], dataset)
-    _draw_distribution(axes["E"], dataset["slip"].values)
-    recurrence = dataset["recurrence"].values
-    recurrence = recurrence[np.isfinite(recurrence)]
-    for name, title, needed, draw_times in (
-        ("F", "F  recurrence times", 1, _draw_recurrence),
-        ("G", "G  return map", 2, _draw_return_map),
-    ):
-        letter(axes[name], title)
-        if len(recurrence) < needed:
-            leave_empty(axes[name], f"needs {needed + 1} events")
-        else:
-            unit, size = time_unit(float(recurrence.max()))
-            draw_times(axes[name], recurrence / size, unit)
+    titles = ["slip events", *(title for title, *_ in ZOOMS.values()), "distribution of slips", "recurrence times", "return map"]
+    if "F" in axes:
+        unit, size = time_unit(float(recurrence.max()))
+        _draw_distribution(axes["E"], slip)
+        _draw_recurrence(axes["F"], recurrence / size, unit)
+    if "G" in axes:
+        _draw_return_map(axes["G"], recurrence / size, unit)
+    letter_panels(axes.values(), titles[: len(axes)])
+    add_legend(axes["A"], _marks(dataset, axes))
+    set_title(figure, dataset.attrs["title"])
     return figure
+
+
+def _marks(dataset: xr.Dataset, drawn: Container[str]) -> list[Artist]:
+    """Return the entries of the key for the panels that are drawn."""
+    point: Any = {"linestyle": "none", "marker": "o"}
+    marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label="(a) slip event", **point)]
+    ring = {"color": VERMILLION, "markersize": 6, "markerfacecolor": "none"}
+    marks.append(Line2D([], [], label="(a) event of (c), (d)", **point | ring))
+    marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label="(b) its time"))
+    if float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
+        marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
+    if "F" in drawn:
+        marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label="(f) mean"))
+    if "G" in drawn:
+        marks.append(Line2D([], [], color=GREY, linewidth=0.8, label="(g) equal times"))
+    return marks
 
 
 def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
     unit, size = time_unit(float(dataset["run_time"].values[-1]))
+    length, metres = unit_of("m", slip, log=wide)
     start, end = dataset["start"].values / size, float(dataset["run_time"].values[-1]) / size
-    low = 0.5 * slip.min() if wide else 0.0
-    axes.vlines(start, low, slip, color=BLUE, linewidth=0.9)
-    axes.plot(start, slip, "o", color=BLUE, markersize=3)
+    low = 0.5 * slip.min() / metres if wide else 0.0
+    axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
+    axes.plot(start, slip / metres, "o", color=BLUE, markersize=3)
     chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
-    axes.plot(start[chosen], slip[chosen], "o", color=VERMILLION, markersize=6, markerfacecolor="none")
+    axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
     if horizon < end:
         axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
-        text, side = " shaded: beyond the predictability horizon ", "right" if horizon > 0.5 * end else "left"
-        axes.annotate(text, (horizon, 0.02), xycoords=("data", "axes fraction"), ha=side, color=INK)
     set_scale(axes, "y", wide)
     axes.set_ylim(bottom=low)
-    axes.set(xlim=(-0.02 * end, 1.02 * end), xlabel=curve_label("time", unit), ylabel="slip (m)")
-    letter(axes, f"A  {dataset.attrs['title']}")
+    axes.set(xlim=(-0.02 * end, 1.02 * end), xlabel=curve_label("time", unit), ylabel=f"slip ({length})")
 
 
 def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
-    for axes, (name, (title, curve, clock)) in zip(panels, ZOOMS.items(), strict=True):
+    for axes, (name, (_, curve, clock)) in zip(panels, ZOOMS.items(), strict=True):
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), length_unit(float(np.ptp(slip)))
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), unit_of("m", np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
         axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         zero_line(axes)
-        letter(axes, title)
 
 
 def _draw_distribution(axes: Axes, slip: Floats) -> None:
     """Draw the number of events whose slip is at least x, against x."""
-    ordered, many, wide = np.sort(slip), len(slip) > WIDE, spans_decades(slip)
+    many, wide = len(slip) > WIDE, spans_decades(slip)
+    unit, size = unit_of("m", slip, log=wide)
+    ordered = np.sort(slip) / size
     smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)
     set_scale(axes, "x", wide)
@@ -154,8 +181,7 @@ def _draw_distribution(axes: Axes, slip: Floats) -> None:
         count_ticks(axes)
     if not wide:
         axes.set_xlim(0.0, 1.15 * ordered[-1])
-    axes.set(xlabel="slip $x$ (m)", ylabel="number of events with slip ≥ $x$")
-    letter(axes, "E  slip")
+    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="events with slip ≥ $x$")
 
 
 def _draw_recurrence(axes: Axes, times: Floats, unit: str) -> None:
@@ -166,17 +192,17 @@ def _draw_recurrence(axes: Axes, times: Floats, unit: str) -> None:
     counts, _ = np.histogram(times, edges)
     axes.stairs(counts, edges, fill=True, color=BLUE)
     if counts.max() > WIDE:
-        axes.set(yscale="log", ylim=(0.5, 4.0 * counts.max()))
+        axes.set(yscale="log", ylim=(0.5, 10.0 * counts.max()))
     else:
-        axes.set_ylim(0.0, 1.25 * counts.max())
+        axes.set_ylim(0.0, 1.3 * counts.max())
         count_ticks(axes)
-    axes.axvline(float(times.mean()), color=VERMILLION, linewidth=1.0)
+    axes.axvline(float(times.mean()), ymax=0.82, color=VERMILLION, linewidth=1.0, linestyle="--")
     set_scale(axes, "x", wide)
-    axes.set(xlabel=f"recurrence time ({unit})", ylabel="events")
+    axes.set(xlabel=f"recurrence time ({unit})", ylabel="number of events")
     if len(times) > 1:
-        text = f"coefficient of variation {times.std(ddof=1) / times.mean():.2g}"
-        behind = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-        axes.text(0.03, 0.97, text, transform=axes.transAxes, va="top", color=VERMILLION, bbox=behind)
+        variation = times.std(ddof=1) / times.mean()
+        text = "< 0.001" if variation < 1e-3 else f"= {variation:.2g}"
+        axes.text(0.03, 0.97, f"std. deviation / mean {text}", transform=axes.transAxes, va="top", fontsize=8)
 
 
 def _draw_return_map(axes: Axes, times: Floats, unit: str) -> None:

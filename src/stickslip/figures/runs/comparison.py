@@ -3,26 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, panels, zero_line
-from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled
+from stickslip.figures.panels import letter_panels, panels, zero_line
+from stickslip.figures.sheet import Place
+from stickslip.figures.style import (
+    GREY,
+    INK,
+    LINE_COLOURS,
+    curve_quantity,
+    label,
+    nearly_flat,
+    quantity,
+    shown,
+    styled,
+    unit_of,
+    unit_shown,
+)
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.evaluation import Curve
     from stickslip.solution.solution import Solution
 
+Unit = tuple[str, float]
+"""Name of a unit, and its size in SI units."""
+APART = 100.0
+"""Systems whose largest values differ by more than this factor have units of their own."""
 ROWS: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Curves of each run, in SI; the panel of traction shows the load too."""
 
 
-def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: Mapping[str, str] | None = None) -> xr.Dataset:
-    """Return the curves of each run from t = 0 to its entry in `ends` (s), in SI, with the run's name as prefix of the variables.
+def data(solutions: Mapping[str, Solution], end: float, titles: Mapping[str, str] | None = None) -> xr.Dataset:
+    """Return the curves of each run from t = 0 to `end` (s), in SI, with the run's name as prefix of the variables.
 
     Each run has its own times, with both limits at every shock. `titles` names the columns.
     """
@@ -30,7 +48,7 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
     for name, solution in solutions.items():
         body, along = solution.problem.body, f"{name}_time"
         for row in ROWS:
-            time, values = solution.curve(row, 0.0, ends[name])
+            time, values = solution.curve(row, 0.0, end)
             contents[f"{name}_{row}"] = curve_quantity(along, values, row, solution.problem.load_unit)
         contents[along] = curve_quantity(along, time, "time")
         if body.has_waves:
@@ -40,43 +58,54 @@ def data(solutions: Mapping[str, Solution], ends: Mapping[str, float], titles: M
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw a column for each system, with friction as a solid line and the load as a dashed line behind it."""
     names, titles = ([str(name) for name in np.atleast_1d(dataset.attrs[key])] for key in ("systems", "system_titles"))
-    figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), sharex="col")
-    for k, (name, title) in enumerate(zip(names, titles, strict=True)):
-        _draw_column(axes[:, k], dataset, name, LINE_COLOURS[k % 2])
-        letter(axes[0, k], f"{'abcdef'[k]}   {title}")
+    figure, axes = panels(3, len(names), (3.6 * len(names), 5.4), place, sharex=True)
+    units = {row: _units(dataset, names, row) for row in ("slip", "slip_rate")}
+    clock = unit_shown(*(dataset[f"{name}_time"] for name in names))
+    for k, name in enumerate(names):
+        own = {row: units[row][k] for row in units} | {"time": clock}
+        _draw_column(axes[:, k], dataset, name, LINE_COLOURS[k % 2], own)
+    letter_panels(axes.T.flat, [text for title in titles for text in (title, "", "")])
     figure.align_ylabels()
     return figure
 
 
-def _draw_column(column: Any, dataset: xr.Dataset, name: str, colour: str) -> None:
+def _units(dataset: xr.Dataset, names: list[str], row: str) -> list[Unit]:
+    """Return the unit of one row of panels for each system: the same for all, unless they are too far apart for that."""
+    values = [dataset[f"{name}_{row}"] for name in names]
+    tops = [top for one in values if (top := float(np.abs(one).max())) > 0.0]
+    if tops and max(tops) <= APART * min(tops):
+        return [unit_shown(*values)] * len(names)
+    return [unit_shown(one) for one in values]
+
+
+def _draw_column(column: Any, dataset: xr.Dataset, name: str, colour: str, units: Mapping[str, Unit]) -> None:
     time = dataset[f"{name}_time"]
     for panel, row in zip(column[:2], ROWS, strict=False):
         values = dataset[f"{name}_{row}"]
-        panel.plot(shown(time), shown(values), color=colour)
-        panel.set_ylabel(label(values))
+        panel.plot(shown(time, units["time"]), shown(values, units[row]), color=colour)
+        panel.set_ylabel(label(values, units[row]))
         zero_line(panel)
-    _draw_stress(column[2], dataset, name, colour)
-    first, last = float(time[0]), float(time[-1])
-    column[2].set(xlabel=label(time), xlim=(first - 0.03 * (last - first), last))
+    _draw_stress(column[2], dataset, name, colour, units["time"])
+    first, last = (float(at) / units["time"][1] for at in time[[0, -1]])
+    column[2].set(xlabel=label(time, units["time"]), xlim=(first - 0.03 * (last - first), last))
     if f"{name}_two_way_time" in dataset:
-        _mark_echo(column, float(dataset[f"{name}_two_way_time"]))
+        _mark_echo(column, float(dataset[f"{name}_two_way_time"]) / units["time"][1])
 
 
-def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str) -> None:
+def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str, clock: Unit) -> None:
     """Draw friction and load, as changes from the initial load if they hardly change."""
     time, friction, load = (dataset[f"{name}_{row}"] for row in ("time", "traction", "load"))
-    text, heights = label(friction), (shown(load), shown(friction))
-    if nearly_flat(friction.values, load.values):
-        about, start = friction.attrs, float(load[0])
-        text = f"{about['long_name']} change\n${about['symbol']}-\\beta(0)$ ({about['units']})"
-        heights = load.values - start, friction.values - start
+    about, change = friction.attrs, nearly_flat(friction.values, load.values)
+    start = float(load[0]) if change else 0.0
+    unit, size = unit_of(about["units"], friction.values - start, load.values - start)
     dashed: dict[str, Any] = {"color": INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
-    for variable, values, look in zip((load, friction), heights, (dashed, {"color": colour}), strict=True):
-        panel.plot(shown(time), values, label=variable.attrs["long_name"], **look)
-    panel.set_ylabel(text)
+    for variable, look in ((load, dashed), (friction, {"color": colour})):
+        panel.plot(shown(time, clock), (variable.values - start) / size, label=variable.attrs["long_name"], **look)
+    what = f"{about['long_name']} change\n${about['symbol']}-\\beta(0)$ ({unit})"
+    panel.set_ylabel(what if change else label(friction, (unit, size)))
     zero_line(panel)
     panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2, borderaxespad=0.0)
 

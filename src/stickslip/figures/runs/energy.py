@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib import pyplot
-from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, sheet
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import set_title
 from stickslip.figures.runs.slab_panels import choose_interval
+from stickslip.figures.sheet import Place, one_panel, result
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -21,14 +21,17 @@ from stickslip.figures.style import (
     clock,
     curve_quantity,
     quantity,
-    readable,
     styled,
-    system_title,
     time_unit,
+    title_of,
+    unit_of,
 )
 from stickslip.observables.energy.balance import energies
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from stickslip.solution.evaluation import Readings
 
 TIMES = 800
@@ -78,22 +81,15 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     total = parts["elastic"][0] + parts["kinetic"][0] + work + parts["radiated"]
     contents = {name: quantity("time", parts[name], text, "", unit) for name, (text, _) in PARTS.items()}
     contents["total"] = quantity("time", total, "initial energy plus work of the driver", "", unit)
-    attributes = {"title": system_title(readings.problem), "clock": clock(readings)}
+    attributes = {"title": title_of(readings), "clock": clock(readings)}
     return xr.Dataset(contents, {"time": curve_quantity("time", time, "time")}, attributes)
 
 
 @styled
-def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
-    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
-    return draw(data(readings, start, end), pyplot.figure())
-
-
-@styled
-def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the parts stacked, without those that are zero throughout, and the total as a dashed line."""
-    figure = sheet(figure, (6.4, 3.8))
-    axes: Any = figure.subplots()
-    unit, size = readable(float(dataset.total.max()), dataset.total.attrs["units"])
+    axes = one_panel((6.4, 3.8), **place)
+    unit, size = unit_of(dataset.total.attrs["units"], dataset.total.values)
     time_name, second = time_unit(float(np.ptp(dataset.time.values)))
     time = dataset.time.values / second
     drawn = {name: look for name, look in PARTS.items() if dataset[name].values.any()}
@@ -103,8 +99,8 @@ def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
     dashed: Any = {"color": INK, "linewidth": 1.0, "linestyle": (0, (4, 2))}
     axes.plot(time, dataset.total.values / size, label=dataset.total.attrs["long_name"], **dashed)
     axes.set(xlabel=f"{dataset.attrs['clock']} ({time_name})", ylabel=f"energy ({unit})", xlim=time[[0, -1]], ylim=(0.0, None))
-    handles, names = axes.get_legend_handles_labels()
     # Reversed, the legend has the order of the stack.
-    figure.legend(handles[::-1], names[::-1], loc="outside lower center", ncols=2)
-    letter(axes, dataset.attrs["title"])
-    return figure
+    add_legend(axes, axes.get_legend_handles_labels()[0][::-1], own="ax" in place)
+    if "ax" not in place:
+        set_title(axes, dataset.attrs["title"])
+    return result(axes, **place)

@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 
-from stickslip.figures.panels import zero_line
-from stickslip.figures.style import INK, PALE, Floats, readable
+from stickslip.figures.panels import set_scale, zero_line
+from stickslip.figures.runs.curves import fit_height
+from stickslip.figures.style import GREY, INK, PALE, Floats, time_unit, unit_of
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import MAY_VARY
 from stickslip.solution.evaluation import Readings
@@ -19,8 +20,12 @@ POINTS = 32
 """Points in a period of a tone, enough for a smooth line."""
 
 
-def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size: float) -> None:
-    """Draw the varying field from `start` to `end` (s since the epoch of the readings), against time in units of `size` (s)."""
+def draw_loading(panel: Axes, readings: Readings, start: float, end: float) -> None:
+    """Draw the varying field from `start` to `end` (s since the epoch of the readings).
+
+    The axis is logarithmic if the field is positive and spans a factor of ten or more, as steps of the pull rate do.
+    """
+    size = time_unit(end - start)[1]
     fields = {name: getattr(readings.problem, name) for name in MAY_VARY}
     name, history = next((name, field) for name, field in fields.items() if isinstance(field, LoadingHistory))
     row, offset = readings.history.epoch
@@ -31,15 +36,21 @@ def draw_loading(panel: Axes, readings: Readings, start: float, end: float, size
     time, values = _straight(history, start + begun, end + begun, 0.0 if is_band else turns)
     if not is_band:
         values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
-    unit, scale = ("m/s", 1.0) if name == "pull_rate" else readable(float(np.abs(values).max()), "Pa")
+    spread, what = swing if is_band else 0.0, name.replace("_", " ")
+    unit, scale = unit_of("m/s" if name == "pull_rate" else "Pa", np.abs(values) + spread)
     time = (time - begun) / size
     if is_band:
-        panel.fill_between(time, (values - swing) / scale, (values + swing) / scale, color=PALE, linewidth=0.0)
-    panel.plot(time, values / scale, color=INK)
-    low, high = panel.get_ylim()
-    if low < 0.0 < high:
+        panel.fill_between(
+            time, (values - swing) / scale, (values + swing) / scale, facecolor=PALE, edgecolor=GREY, label="range of the tone"
+        )
+    panel.plot(time, values / scale, color=INK, label=f"{what} without its tone" if is_band else None)
+    low, high = float((values - spread).min()), float((values + spread).max())
+    if low > 0.0 and high >= 10.0 * low:
+        set_scale(panel, "y", log=True)
+        fit_height(panel, [values / scale])
+    elif low < 0.0 < high:
         zero_line(panel)
-    panel.set_ylabel(f"{name.replace('_', ' ')}\n({unit})")
+    panel.set_ylabel(f"{what}\n({unit})")
 
 
 def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[Floats, Floats]:

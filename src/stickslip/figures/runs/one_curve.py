@@ -2,37 +2,28 @@
 
 from __future__ import annotations
 
-from matplotlib import pyplot
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Unpack
 
-from stickslip.figures.panels import letter
-from stickslip.figures.style import BLUE, clock, curve_label, readable, styled, system_title, time_unit
+from stickslip.figures.panels import set_title
+from stickslip.figures.runs.curves import draw_curve, interval, set_time
+from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.style import styled, title_of
 from stickslip.solution.evaluation import Curve, Readings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
 @styled
-def plot(readings: Readings, name: Curve, start: float | None = None, end: float | None = None) -> Figure:
-    """Draw one of `readings.curves` from `start` to `end` (s) in a new pyplot figure."""
-    first, last = readings.shown
-    start, end = first if start is None else start, last if end is None else end
-    time, values = readings.curve(name, start, end)
-    unit, size = time_unit(end - start)
-    figure = pyplot.figure(figsize=(6.4, 3.0), layout="constrained")
-    axes = figure.subplots()
-    text, value_size = _label(readings, name, float(abs(values).max()))
-    axes.plot(time / size, values / value_size, color=BLUE)
-    axes.set_ylabel(text)
-    axes.set_xlabel(f"{clock(readings)} ({unit})")
-    letter(axes, system_title(readings.problem))
-    return figure
-
-
-def _label(readings: Readings, name: Curve, largest: float) -> tuple[str, float]:
-    """Return the axis label of a curve and the size of its unit, which suits the largest value of a stress or force."""
-    state = readings.problem.friction.state
-    if name == "state" and state is not None:
-        return f"state ({state.unit})", 1.0
-    if name in ("traction", "load"):
-        unit, size = readable(largest, readings.problem.load_unit)
-        return curve_label(name, unit), size
-    return curve_label(name), 1.0
+def draw(
+    readings: Readings, name: Curve, start: float | None = None, end: float | None = None, **place: Unpack[Place]
+) -> Figure | Axes:
+    """Draw one of `readings.curves` from `start` to `end` (s)."""
+    start, end = interval(readings, start, end)
+    axes = one_panel((6.4, 3.0), **place)
+    draw_curve(axes, readings, name, (start, end))
+    set_time(axes, readings, (start, end))
+    if "ax" not in place:
+        set_title(axes, title_of(readings))
+    return result(axes, **place)

@@ -1,87 +1,71 @@
-"""The default plot of a run: panels with slip, slip rate, traction and load, and the loading below if it varies."""
+"""The default figure of a run: slip, slip rate, traction and load against time, and the loading below if it varies."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
-import numpy as np
-from matplotlib import pyplot
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-
-from stickslip.figures.panels import letter, zero_line
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import letter_panels, set_title
+from stickslip.figures.runs.curves import draw_curve, draw_friction, draw_stress, interval, mark_shocks, set_time
 from stickslip.figures.runs.loading import draw_loading
-from stickslip.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    VERMILLION,
-    Floats,
-    clock,
-    curve_label,
-    nearly_flat,
-    readable,
-    styled,
-    system_title,
-    time_unit,
-)
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import styled, title_of
 from stickslip.solution.evaluation import Readings
 
-MANY = 60
-"""If there are more shocks than this, they are not marked: the marks would hide the curves."""
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH = 6.4
+"""Usual width of the figure, inches."""
+HEIGHTS = {"curve": 1.75, "loading": 1.25, "slip": 2.0}
+"""Usual heights (inches) of a panel with a curve, of that of the loading, and of that with friction against slip."""
 
 
 @styled
-def plot_run(solution: Readings, start: float | None = None, end: float | None = None, *, title: str = "") -> Figure:
-    """Draw a run, or a window on it, from `start` to `end` (s) in a new pyplot figure.
+def draw(readings: Readings, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
+    """Draw a run, or a window on it, from `start` to `end` (s).
 
-    A notebook or `pyplot.show()` displays it. Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs
-    to years, suits the interval. If the friction law never sticks, the slip rate has a logarithmic axis.
+    Shocks (jumps of the slip rate) are marked by dotted lines. The unit of time, from µs to years, suits the interval. If the
+    friction law never sticks, the slip rate has a logarithmic axis, friction is drawn as a coefficient in place of traction and
+    load, and a further panel shows it against slip, as papers on laboratory friction do. The start from rest of such a contact is
+    left out of these panels: its scale is far from all that follows.
     """
-    start, end = solution.shown[0] if start is None else start, solution.shown[1] if end is None else end
-    unit, size = time_unit(end - start)
-    varies = solution.problem.varies
-    heights = [3, 3, 3, 2] if varies else [1, 1, 1]
-    figure = pyplot.figure(figsize=(6.4, 6.8 if varies else 5.6), layout="constrained")
-    axes: Any = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-    for panel, name, colour in ((axes[0], solution.curves[0], BLUE), (axes[1], "slip_rate", GREEN)):
-        time, values = solution.curve(name, start, end)
-        if name == "slip_rate" and not solution.problem.friction.sticks:
-            # A contact that never sticks slips at widely different rates.
-            panel.set_yscale("log")
-            values = np.where(values != 0.0, np.abs(values), np.nan)
-        panel.plot(time / size, values, color=colour)
-        panel.set_ylabel(curve_label(name))
-    _draw_stress(axes[2], solution, start, end, size)
-    if varies:
-        draw_loading(axes[3], solution, start, end, size)
-    for panel in axes[:3]:
-        if panel.get_yscale() == "linear":
-            zero_line(panel)
-        for at in _shock_times(solution, start, end):
-            panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0)
-    axes[-1].set_xlabel(f"{clock(solution)} ({unit})")
-    letter(axes[0], title or system_title(solution.problem))
+    span = interval(readings, start, end)
+    figure, panels = _panels(readings, place)
+    *curves, stress = panels["curves"]
+    for panel, name in zip(curves, (readings.curves[0], "slip_rate"), strict=True):
+        draw_curve(panel, readings, name, span)
+    if readings.problem.friction.sticks:
+        draw_stress(stress, readings, span)
+    else:
+        draw_friction(stress, readings, span)
+    mark_shocks([*curves, stress], readings, span)
+    last = stress
+    for last in panels["loading"]:
+        draw_loading(last, readings, *span)
+    set_time(last, readings, span)
+    for panel in panels["slip"]:
+        draw_friction(panel, readings, span, against_slip=True)
+    add_legend(stress, [mark for panel in (stress, *panels["loading"]) for mark in panel.get_legend_handles_labels()[0]])
+    letter_panels([panel for group in panels.values() for panel in group])
+    set_title(figure, title_of(readings))
     figure.align_ylabels()
     return figure
 
 
-def _draw_stress(panel: Axes, solution: Readings, start: float, end: float, size: float) -> None:
-    """Draw traction and load, as changes from the problem's initial load if they hardly change."""
-    units = solution.problem.load_unit
-    (time, load), (_, traction) = solution.curve("load", start, end), solution.curve("traction", start, end)
-    unit, scale = readable(float(np.abs(load).max()), units)
-    offset, text = 0.0, f"traction, load ({unit})"
-    if nearly_flat(load, traction):
-        scale, offset, text = 1.0, solution.problem.load, f"change of\ntraction, load ({units})"
-    panel.plot(time / size, (load - offset) / scale, color=INK, linewidth=1.0, linestyle="--", label=r"load $\beta$")
-    panel.plot(time / size, (traction - offset) / scale, color=VERMILLION, label=r"traction $\tau$")
-    panel.set_ylabel(text)
-    panel.legend(loc="best")
-
-
-def _shock_times(solution: Readings, start: float, end: float) -> Floats:
-    times = np.asarray(solution.shocks["time"], dtype=float)
-    times = times[(times >= start) & (times <= end)]
-    return times if times.size <= MANY else times[:0]
+def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[Any]]]:
+    """Return the figure and its panels in one column: three curves, the loading if it varies, and friction against slip."""
+    groups = {"curves": 3, "loading": int(readings.problem.varies), "slip": int(not readings.problem.friction.sticks)}
+    heights = [HEIGHTS["curve"]] * 3 + [HEIGHTS["loading"]] * groups["loading"] + [HEIGHTS["slip"]] * groups["slip"]
+    figure = sheet((WIDTH, 0.35 + sum(heights)), **place)
+    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
+    found: dict[str, list[Any]] = {name: [] for name in groups}
+    first = None
+    for k, name in enumerate([name for name, count in groups.items() for _ in range(count)]):
+        panel = figure.add_subplot(grid[k], sharex=first if name != "slip" else None)
+        first = first or panel
+        found[name].append(panel)
+    timed = [*found["curves"], *found["loading"]]
+    for panel in timed[:-1]:
+        panel.tick_params(labelbottom=False)
+    return figure, found

@@ -16,12 +16,11 @@ from stickslip.figures.style import (
     Floats,
     clock,
     curve_quantity,
-    length_unit,
     nearly_flat,
     quantity,
-    readable,
-    system_title,
     time_unit,
+    title_of,
+    unit_of,
 )
 from stickslip.foundation.errors import InputError
 from stickslip.observables.field import slab_of
@@ -62,7 +61,7 @@ def last_large_event(slips: Floats) -> int:
 
 def about(readings: Readings) -> dict[str, Any]:
     """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
-    return {"title": system_title(readings.problem), "clock": clock(readings), "thickness": slab_of(readings.problem).thickness}
+    return {"title": title_of(readings), "clock": clock(readings), "thickness": slab_of(readings.problem).thickness}
 
 
 def places(readings: Readings, count: int) -> Floats:
@@ -134,9 +133,9 @@ class Scales:
     def __init__(self, dataset: xr.Dataset) -> None:
         time, stress = dataset.time.values, dataset.stress.values
         self.time_unit, self.time = time_unit(float(np.ptp(time)))
-        self.place_unit, self.place = length_unit(dataset.attrs["thickness"])
+        self.place_unit, self.place = unit_of("m", dataset.attrs["thickness"])
         self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0
-        self.stress_unit, self.stress = readable(float(np.abs(stress - self.offset).max()), "Pa")
+        self.stress_unit, self.stress = unit_of("Pa", stress - self.offset)
         self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
 
     def name_stress(self, name: str) -> str:

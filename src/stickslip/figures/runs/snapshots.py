@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps, pyplot
-from matplotlib.figure import Figure
+from matplotlib import colormaps
 from numpy.typing import ArrayLike
 
-from stickslip.figures.panels import letter, sheet
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, places, snapshots
-from stickslip.figures.style import label, length_unit, styled
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import label, shown, styled, unit_shown
 from stickslip.observables.field import slab_of
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.evaluation import Readings
 
 COUNT, PLACES = 6, 1500
@@ -39,31 +42,25 @@ def data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
 
 
 @styled
-def plot(readings: Readings, times: ArrayLike | None = None) -> Figure:
-    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
-    return draw(data(readings, times), pyplot.figure())
-
-
-@styled
-def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three panels with the contact below and a line for each time, later ones darker."""
     scales = Scales(dataset)
-    figure = sheet(figure, (7.6, 3.8))
+    figure = sheet((7.2, 3.9), **place)
     axes: Any = figure.subplots(1, 3, sharey=True)
-    unit, size = length_unit(float(np.abs(dataset.displacement).max()))
-    since = dataset.displacement.attrs["long_name"].replace(" ", f" ({unit})\n", 1)
+    unit, size = unit_shown(dataset.displacement)
+    since = dataset.displacement.attrs["long_name"].replace("displacement ", f"displacement $u$ ({unit})\n", 1)
     drawn = (
         (since, dataset.displacement.values / size),
-        (label(dataset.velocity), dataset.velocity.values),
+        (label(dataset.velocity), shown(dataset.velocity)),
         (scales.name_stress(r"shear stress $\sigma$"), scales.stresses(dataset.stress.values)),
     )
     colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, dataset.sizes["time"]))
     for panel, (text, values) in zip(axes, drawn, strict=True):
         for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
-            panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.4g}")
+            panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.3g}")
         panel.set_xlabel(text)
         scales.set_places(panel, dataset, named=panel is axes[0])
-    letter(axes[0], dataset.attrs["title"])
-    lines, names = axes[0].get_legend_handles_labels()
-    figure.legend(lines, names, title=scales.clock.replace("since ", "since\n"), loc="outside right upper", alignment="left")
+    letter_panels(axes)
+    set_title(figure, dataset.attrs["title"])
+    add_legend(axes[0], axes[0].get_legend_handles_labels()[0], scales.clock)
     return figure

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib import pyplot
-from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
+from matplotlib.lines import Line2D
 
-from stickslip.figures.panels import letter, sheet, zero_line
-from stickslip.figures.runs.run import MANY
+from stickslip.figures.panels import letter_panels, set_title, zero_line
+from stickslip.figures.runs.curves import MANY
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, means, places
-from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled, unit_shown
 from stickslip.observables.field import slab_of
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from stickslip.solution.evaluation import Readings
 
 TIMES, PLACES = 900, 300
@@ -82,28 +85,28 @@ def _bounces(time: float, end: float, round_trip: float, reflection: float) -> F
 
 
 @styled
-def plot(readings: Readings, start: float | None = None, end: float | None = None) -> Figure:
-    """Draw what `data` returns in a new pyplot figure, which a notebook or `pyplot.show()` displays."""
-    return draw(data(readings, start, end), pyplot.figure())
-
-
-@styled
-def draw(dataset: xr.Dataset, figure: Figure | None = None) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw velocity and stress as images with the contact at the bottom, and below them slip rate and traction of the contact."""
     scales = Scales(dataset)
-    figure = sheet(figure, (7.2, 7.4))
+    figure = sheet((7.2, 7.6), **place)
     axes: Any = figure.subplots(4, 1, sharex=True, height_ratios=(2.2, 2.2, 1.0, 1.0))
-    velocity, stress = dataset.velocity.values, scales.stresses(dataset.stress.values)
+    unit, size = unit_shown(dataset.velocity, dataset.contact_slip_rate)
+    velocity, stress = dataset.velocity.values / size, scales.stresses(dataset.stress.values)
     largest = float(np.abs(velocity).max()) or 1.0
-    _draw_image(axes[0], dataset, velocity, "velocity\n(m/s)", cmap="RdBu_r", vmin=-largest, vmax=largest)
+    _draw_image(axes[0], dataset, velocity, f"velocity\n({unit})", cmap="RdBu_r", vmin=-largest, vmax=largest)
     _draw_image(axes[1], dataset, stress, narrow(scales.name_stress("shear stress")), cmap="viridis")
     time = dataset.contact_time.values / scales.time
-    axes[2].plot(time, dataset.contact_slip_rate, color=GREEN)
-    axes[2].set_ylabel(narrow(label(dataset.contact_slip_rate)))
+    axes[2].plot(time, dataset.contact_slip_rate.values / size, color=GREEN)
+    axes[2].set_ylabel(narrow(label(dataset.contact_slip_rate, (unit, size))))
     zero_line(axes[2])
     axes[3].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
     axes[3].set(ylabel=narrow(scales.name_stress(r"traction $\tau$")), xlabel=scales.clock, xlim=time[[0, -1]])
-    letter(axes[0], dataset.attrs["title"])
+    if dataset.sizes["front"]:
+        lines: Any = (Line2D([], [], color=INK, linewidth=0.6), Line2D([], [], color="white", linewidth=0.6, linestyle=(0, (4, 4))))
+        text = "characteristic: a wave front from the contact"
+        figure.legend([lines], [text], loc="outside lower center", handler_map={tuple: HandlerTuple(ndivide=1)}, handlelength=4)
+    letter_panels(axes)
+    set_title(figure, dataset.attrs["title"])
     figure.align_ylabels()
     return figure
 

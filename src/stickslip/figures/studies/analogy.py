@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
-from stickslip.figures.panels import draw_map, draw_parameters, letter, panels, parameter_variables
-from stickslip.figures.style import GREEN, INK, LIGHT_ORANGE, shown, styled
+from stickslip.figures.panels import draw_map, draw_parameters, letter_panels, panels, parameter_variables, set_title
+from stickslip.figures.sheet import Place
+from stickslip.figures.style import INK, PALE, TWO, shown, styled
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
 LARGEST = 10.0
@@ -21,10 +24,12 @@ LARGEST = 10.0
 TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Ratios that are marked on the scale of colours."""
 NUMBERS: dict[str, tuple[Any, str]] = {
-    "weakening_slip": ("-", r"$-S\,\partial\mu/\partial u = G/h$"),
-    "weakening_rate": ("--", r"$-S\,\partial\mu/\partial v = Z$ (critical)"),
+    "weakening_slip": ("-", r"weakening with slip = stiffness: $-S\,\partial\mu/\partial u = G/h$"),
+    "weakening_rate": ("--", r"weakening with slip rate = impedance: $-S\,\partial\mu/\partial v = Z$"),
 }
 """Line style and legend of the two weakening numbers, by column of the study; a line is drawn where a number is 1."""
+NOT, STANDS = TWO
+"""Colours of points at which the block does not stand for the slab, and at which it does."""
 
 
 def data(found: Analogy) -> xr.Dataset:
@@ -40,50 +45,76 @@ def data(found: Analogy) -> xr.Dataset:
     for one in QUANTITIES:
         about = {"long_name": f"{one.replace('_', ' ')}, slab / block", "units": "1"}
         contents[f"{one}_ratio"] = xr.Variable(dims, found.ratio(one), about)
-    coordinates = parameter_variables(found.problem, short=True, x=found.x, y=found.y)
+    coordinates = parameter_variables(found.problem, x=found.x, y=found.y)
     return xr.Dataset(
-        contents, coords=coordinates, attrs={"title": "Slab and equivalent block, first slip event", "within": found.within}
+        contents, coords=coordinates, attrs={"title": "First slip event: slab against equivalent block", "within": found.within}
     )
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
-    figure, axes = panels(2, 2, (7.6, 6.4), sharex=True, sharey=True)
+    figure, axes = panels(2, 2, (7.2, 6.8), place, sharex=True, sharey=True)
     ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST, LARGEST)}
-    for k, (panel, one) in enumerate(zip(axes.flat, QUANTITIES, strict=False)):
-        ratio = dataset[f"{one}_ratio"]
-        image = draw_map(panel, dataset, ratio.values, **ratios)
-        letter(panel, f"{'abc'[k]}   {ratio.attrs['long_name']}")
-    _draw_stands(axes[1, 1], dataset)
+    for panel, one in zip(axes.flat, QUANTITIES, strict=False):
+        image = draw_map(panel, dataset, dataset[f"{one}_ratio"].values, **ratios)
+    marks = _draw_stands(axes[1, 1], dataset)
     for panel in axes.flat:
         _draw_numbers(panel, dataset)
         draw_parameters(panel, dataset)
         panel.label_outer()
-    bar = figure.colorbar(image, ax=axes, location="right", shrink=0.6, extend="both", label="slab / block")
+    letter_panels(axes.flat, [*(f"ratio of {one.replace('_', ' ')}s" for one in QUANTITIES), "block stands for slab"])
+    bar = figure.colorbar(image, ax=axes, location="right", shrink=0.7, extend="both", label="ratio slab / block, (a) to (c)")
     bar.ax.yaxis.set_major_locator(FixedLocator(TICKS))
     bar.ax.yaxis.set_major_formatter(FixedFormatter([f"{tick:g}" for tick in TICKS]))
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
-    lines = [Line2D([], [], color=INK, linewidth=1.2, linestyle=style, label=text) for style, text in NUMBERS.values()]
-    figure.legend(handles=lines, loc="outside lower center", ncols=2)
+    lines = [
+        Line2D([], [], color=INK, linewidth=1.2, linestyle=style, label=text)
+        for column, (style, text) in NUMBERS.items()
+        if _crosses(dataset, column)
+    ]
+    if any(np.isnan(dataset[f"{one}_ratio"].values).any() for one in QUANTITIES):
+        marks.append(Patch(color=PALE, label="no ratio: an event is missing or does not end"))
+    figure.legend(handles=[*marks, *lines], loc="outside lower center", ncols=1 + (len(marks) + len(lines) > 2))
+    set_title(figure, dataset.attrs["title"])
     return figure
 
 
-def _draw_stands(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw the points at which all answers agree; those with different numbers of pulses are labelled "slab:block"."""
+def _draw_stands(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
+    """Draw the points at which all answers agree; those with different numbers of pulses are labelled "slab:block".
+
+    Return the entries of the key.
+    """
     known = np.isfinite(sum(dataset[f"{one}_ratio"].values for one in QUANTITIES))
     stands = np.where(known, dataset["stands"].values, np.nan)
-    draw_map(axes, dataset, stands, cmap=ListedColormap([LIGHT_ORANGE, GREEN]), vmin=0, vmax=1)
+    draw_map(axes, dataset, stands, cmap=ListedColormap([NOT, STANDS]), vmin=0, vmax=1)
     slab, block = dataset["pulses_slab"].values, dataset["pulses_block"].values
     x, y = shown(dataset["x"]), shown(dataset["y"])
-    for i, j in zip(*np.nonzero(known & (slab != block)), strict=True):
-        axes.text(x[j], y[i], f"{slab[i, j]:g}:{block[i, j]:g}", ha="center", va="center", fontsize=6)
-    letter(axes, f"d   all within {100 * float(dataset.attrs['within']):g} % (green)")
+    differ = list(zip(*np.nonzero(known & (slab != block)), strict=True))
+    for i, j in differ:
+        axes.text(x[j], y[i], f"{slab[i, j]:g}:{block[i, j]:g}", ha="center", va="center", fontsize=7)
+    within = f"{100 * float(dataset.attrs['within']):g} %"
+    marks: list[Artist] = [Patch(color=STANDS, label=f"(d) all three ratios within {within}, same pulses")]
+    marks.append(Patch(color=NOT, label="(d) not so"))
+    if differ:
+        text = r"$\mathrm{n:m}$"
+        marks.append(
+            Line2D(
+                [], [], linestyle="none", marker=text, markersize=14, color=INK, label="(d) n pulses of the slab, m of the block"
+            )
+        )
+    return marks
 
 
 def _draw_numbers(axes: Axes, dataset: xr.Dataset) -> None:
     """Draw the lines on which each of the two weakening numbers is 1."""
     for column, (style, _) in NUMBERS.items():
-        values, look = dataset[column].values, {"colors": INK, "linewidths": 1.2, "linestyles": style}
-        if np.nanmin(values) < 1.0 < np.nanmax(values):
-            axes.contour(shown(dataset["x"]), shown(dataset["y"]), values, levels=[1.0], **look)
+        if _crosses(dataset, column):
+            look = {"colors": INK, "linewidths": 1.2, "linestyles": style}
+            axes.contour(shown(dataset["x"]), shown(dataset["y"]), dataset[column].values, levels=[1.0], **look)
+
+
+def _crosses(dataset: xr.Dataset, column: str) -> bool:
+    """Return True if the weakening number is 1 somewhere on the map."""
+    values = dataset[column].values
+    return bool(np.nanmin(values) < 1.0 < np.nanmax(values))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.figures.panels import letter, panels, zero_line
-from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, label, nearly_flat, quantity, shown, styled, time_unit
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import letter_panels, panels, set_log_ticks, zero_line
+from stickslip.figures.sheet import Place
+from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, nearly_flat, quantity, styled, time_unit, unit_of
 from stickslip.solution.evaluation import Curve, Readings
 
 if TYPE_CHECKING:
@@ -30,15 +32,14 @@ ROWS = ("slip", "slip_rate", "traction")
 
 
 def data(study: Comparison) -> xr.Dataset:
-    """Return the runs from their start to shortly after their last slip event, or one event of each in local time, in SI.
+    """Return the runs from their start to shortly after the last slip event of all, or one event of each in local time, in SI.
 
-    The comparison says which event, if any. Slip counts from the start of the run or of the event. If slabs (Pa) and blocks (N) are
-    drawn together, tractions are divided by the normal stress or force. If the durations differ by more than the factor `APART`,
-    times are divided by the duration drawn.
+    All runs cover the same time, except those that end earlier. The comparison says which event is drawn, if any. Slip counts from
+    the start of the run or of the event. If slabs (Pa) and blocks (N) are drawn together, tractions are divided by the normal
+    stress or force. If the durations differ by more than the factor `APART`, times are divided by the duration drawn.
     """
     runs, event = study.runs, study.event
-    views: dict[str, Readings] = {name: run if event is None else run.window(event) for name, run in runs.items()}
-    spans = {name: _span(run) if event is None else views[name].shown for name, run in runs.items()}
+    views, spans = _whole(runs) if event is None else _windows(runs, event)
     lengths = [end - start for start, end in spans.values()]
     shares = max(lengths) > APART * min(lengths)
     mixed = len({run.problem.load_unit for run in runs.values()}) > 1
@@ -47,25 +48,47 @@ def data(study: Comparison) -> xr.Dataset:
         contents |= _run(f"run{k}", views[name], spans[name], shares=shares, mixed=mixed)
     units = [(length, *time_unit(length)) for length in lengths]
     attributes = {
-        "title": "Runs side by side",
         "runs": list(runs),
-        "spans": [f"{length / size:.4g} {unit}" for length, unit, size in units],
+        "spans": [f"{length / size:.4g} {unit}{'s' if unit in ('year', 'day') else ''}" for length, unit, size in units],
         "shares": int(shares),
         "local": int(event is not None),
+        "sticks": int(any(run.problem.friction.sticks for run in runs.values())),
     }
     return xr.Dataset(contents, attrs=attributes)
 
 
-def _span(run: Solution) -> tuple[float, float]:
-    """Return start and end (s) of what is drawn: up to shortly after the last event.
+def _whole(runs: dict[str, Solution]) -> tuple[dict[str, Readings], dict[str, tuple[float, float]]]:
+    """Return the runs, and start and end (s) of what is drawn of each.
 
-    A run without events, or with one that is not over, is drawn up to its end.
+    That is the same for all, unless the runs last so differently that each is drawn against its own duration.
     """
-    end = float(run.history.span[1])
-    events = run.events
-    if events.empty or events.end.isna().any():
-        return 0.0, end
-    return 0.0, min(end, MARGIN * float(events.end.iloc[-1]))
+    ends = {name: float(run.history.span[1]) for name, run in runs.items()}
+    over = {name: _last_end(run) for name, run in runs.items()}
+    needed = {name: min(ends[name], MARGIN * over[name]) for name in runs}
+    longest = max(needed.values())
+    if longest <= APART * min(needed.values()):
+        # Up to the earliest end of a run, if that leaves out no event.
+        common = min(longest, max(min(ends.values()), *over.values()))
+        needed = {name: min(common, end) for name, end in ends.items()}
+    return dict(runs), {name: (0.0, end) for name, end in needed.items()}
+
+
+def _last_end(run: Solution) -> float:
+    """Return the end (s) of the last event of a run, or of the run if there is none, or one that is not over."""
+    ends = run.events.end
+    return float(run.history.span[1] if ends.empty or ends.isna().any() else ends.iloc[-1])
+
+
+def _windows(runs: dict[str, Solution], event: int) -> tuple[dict[str, Readings], dict[str, tuple[float, float]]]:
+    """Return a window on the event of each run, and its local start and end (s), as far as the run goes.
+
+    They are the same for all, unless the events last so differently that each is drawn against its own duration.
+    """
+    views = {name: run.window(event) for name, run in runs.items()}
+    longest, shortest = (of(views.values(), key=lambda view: view.after) for of in (max, min))
+    if longest.after <= APART * shortest.after:
+        views = {name: run.window(event, longest.before, longest.after) for name, run in runs.items()}
+    return dict(views), {name: view.shown for name, view in views.items()}
 
 
 def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, mixed: bool) -> dict[str, xr.Variable]:
@@ -75,6 +98,9 @@ def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, m
     for row, curve in zip(ROWS, (slip, "slip_rate", "traction"), strict=True):
         along = f"{key}_{row}_time"
         time, values = view.curve(curve, *span)
+        if row == "traction" and not problem.friction.sticks:
+            # Such a law has no friction at rest, where a run may start: that zero would set the scale.
+            values = np.where(values != 0.0, values, np.nan)
         if row == "slip":
             slipped = values if slip == "event_slip" else values - problem.initial_slip
             contents[f"{key}_{row}"] = quantity(along, slipped, "slip", "u-u_0", "m")
@@ -90,9 +116,9 @@ def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, m
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
-    figure, grid = panels(len(ROWS), 1, (6.4, 6.4), sharex=True)
+    figure, grid = panels(len(ROWS), 1, (6.4, 6.2), place, sharex=True)
     names, spans = (np.atleast_1d(dataset.attrs[key]).astype(str).tolist() for key in ("runs", "spans"))
     shares = dataset.attrs["shares"]
     times = [dataset[f"run{k}_slip_time"].values for k in range(len(names))]
@@ -100,8 +126,11 @@ def draw(dataset: xr.Dataset) -> Figure:
     for axes, row in zip(grid[:, 0], ROWS, strict=True):
         _draw_row(axes, dataset, row, size)
     texts = [f"{name} ({span})" for name, span in zip(names, spans, strict=True)] if shares else names
-    figure.legend(grid[0, 0].get_lines()[: len(names)], texts, loc="outside lower center", ncols=2 if len(texts) > 1 else 1)
-    letter(grid[0, 0], dataset.attrs["title"])
+    marks = grid[0, 0].get_lines()[: len(names)]
+    for mark, text in zip(marks, texts, strict=True):
+        mark.set_label(text)
+    add_legend(grid[0, 0], marks)
+    letter_panels(grid[:, 0])
     since = " since each event began" if dataset.attrs["local"] else ""
     grid[-1, 0].set_xlabel(f"time{since}" + (", as a share of each run's own (see legend)" if shares else f" $t$ ({unit})"))
     figure.align_ylabels()
@@ -111,31 +140,25 @@ def draw(dataset: xr.Dataset) -> Figure:
 def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, size: float) -> None:
     """Draw one curve of every run, against time in units of `size` (s)."""
     drawn = [dataset[f"run{k}_{row}"] for k in range(np.size(dataset.attrs["runs"]))]
-    flat = row == "traction" and nearly_flat(*(values.values for values in drawn))
-    for k, values in enumerate(drawn):
+    about = drawn[0].attrs
+    flat = row == "traction" and nearly_flat(*(values.values[np.isfinite(values.values)] for values in drawn))
+    heights = [values.values - values.values[np.isfinite(values.values)][0] if flat else values.values for values in drawn]
+    tops = [top for values in heights if (top := float(np.nanmax(np.abs(values)))) > 0.0]
+    log = row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops)
+    unit, scale = (about["units"], 1.0) if log else unit_of(about["units"], *heights)
+    for k, values in enumerate(heights):
         look = {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k // len(LINE_COLOURS) % len(DASHES)]}
-        heights = values.values - values.values[0] if flat else shown(values)
+        magnitudes = np.where(values != 0.0, np.abs(values), np.nan) if log else values / scale
         # Later lines are thinner, so that runs with the same curve all stay visible.
-        axes.plot(dataset[f"run{k}_{row}_time"].values / size, heights, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
-    about, text = drawn[0].attrs, label(drawn[0])
-    tops = [top for values in drawn if (top := float(np.abs(values).max())) > 0.0]
-    if row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops):
-        _make_logarithmic(axes, min(tops), max(tops))
-        text = text.replace(f"${about['symbol']}$", f"$|{about['symbol']}|$")
-    else:
+        axes.plot(dataset[f"run{k}_{row}_time"].values / size, magnitudes, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
+    symbol = f"|{about['symbol']}|" if log else about["symbol"]
+    if log:
+        # Two decades below the smaller run; rest has no place on the axis.
+        axes.set(yscale="log", ylim=(1e-2 * min(tops), 3.0 * max(tops)))
+        set_log_ticks(axes, "y")
+    elif row != "traction" or dataset.attrs["sticks"]:
         zero_line(axes)
     if flat:
-        text = f"change of {about['long_name']}\n" + axis_text(f"${about['symbol']}$ from its start", "", about["units"])
-    axes.set_ylabel(text)
-
-
-def _make_logarithmic(axes: Axes, least: float, most: float) -> None:
-    """Replace the lines by magnitudes on a logarithmic axis; zeros (rest) are not drawn.
-
-    `least` and `most` are the smallest and the largest of the runs' largest values. The axis begins two decades below the first.
-    """
-    for line in axes.get_lines():
-        values = np.abs(np.asarray(line.get_ydata(), float))
-        line.set_ydata(np.where(values > 0.0, values, np.nan))
-    axes.set_yscale("log")
-    axes.set_ylim(1e-2 * least, 3.0 * most)
+        axes.set_ylabel(f"change of {about['long_name']}\n" + axis_text(f"${symbol}$ from its start", "", unit))
+    else:
+        axes.set_ylabel(axis_text(about["long_name"], symbol, unit))

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.panels import letter, zero_line
-from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import letter_panels, set_title, zero_line
+from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:
@@ -96,42 +100,45 @@ def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], win
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the errors on the left and the runs on the right.
 
     Around a jump, those on the right show slip rate against time and the path over the set K; else slip and slip rate throughout.
     """
-    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
+    figure = sheet((7.2, 5.4), **place)
     axes: Any = figure.subplot_mosaic([["errors", "upper"], ["errors", "lower"]], width_ratios=(1.2, 1))
-    _draw_errors(axes["errors"], dataset)
-    letter(axes["errors"], f"a   {dataset.attrs['title']}")
+    unit = unit_shown(dataset["size"])
+    _draw_errors(axes["errors"], dataset, unit)
+    marks = axes["errors"].get_legend_handles_labels()[0]
     if "jump_time" in dataset.attrs:
+        titles = [f"jump at {float(dataset.attrs['jump_time']):.6g} s", "the same, over the set K"]
         _draw_time(axes["upper"], dataset, "rate")
-        letter(axes["upper"], f"b   The jump at {float(dataset.attrs['jump_time']):.6g} s")
-        _draw_path(axes["lower"], dataset)
+        marks += [*_run_marks(dataset, unit), *_draw_path(axes["lower"], dataset)]
     else:
+        titles = ["slip of the runs", "slip rate of the runs"]
         _draw_time(axes["upper"], dataset, "slip")
-        letter(axes["upper"], "b   The runs, and the nearest rule")
         _draw_time(axes["lower"], dataset, "rate")
-        letter(axes["lower"], "c   Slip rate of the same runs")
-        axes["lower"].get_legend().remove()
+        marks += _run_marks(dataset, unit)
+    letter_panels(axes.values(), ["errors", *titles])
     figure.align_ylabels([axes["upper"], axes["lower"]])
+    add_legend(axes["errors"], marks)
+    set_title(figure, dataset.attrs["title"])
     return figure
 
 
-def _draw_errors(axes: Axes, dataset: xr.Dataset) -> None:
-    size, errors = shown(dataset["size"]), dataset["error"].values
-    for i, rule in enumerate(np.atleast_1d(dataset.attrs["rules"])):
-        values = np.where(errors[i] > 0.0, errors[i], np.nan)
-        axes.loglog(size, values, "o-", color=LINE_COLOURS[i % 4], markersize=3.5, label=f"difference from {rule}")
+def _draw_errors(axes: Axes, dataset: xr.Dataset, unit: tuple[str, float]) -> None:
+    size, errors = shown(dataset["size"], unit), dataset["error"].values
+    rules = np.atleast_1d(dataset.attrs["rules"]).tolist()
+    length = unit_shown(dataset["error"], dataset["change"])
+    for i, rule in enumerate(rules):
+        values = np.where(errors[i] > 0.0, errors[i], np.nan) / length[1]
+        text = f"(a) difference from {'every rule' if len(rules) == 1 and ',' in rule else rule}"
+        axes.loglog(size, values, "o-", color=LINE_COLOURS[i % 4], markersize=3.5, label=text)
     grey: Any = {"color": GREY, "markersize": 3, "linewidth": 1.0}
-    axes.loglog(size, shown(dataset["change"]), "o--", label="difference from the previous size", **grey)
+    axes.loglog(size, shown(dataset["change"], length), "o--", label="(a) difference from the previous size", **grey)
     if dataset.attrs["tends"] and dataset.attrs["order_points"]:
-        _draw_slope(axes, size, errors[int(dataset.attrs["target_row"])], float(dataset.attrs["order"]))
-    axes.set(xlabel=label(dataset["size"]), ylabel=label(dataset["error"]))
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high * (high / low) ** 0.08)
-    axes.legend(loc="best", fontsize=7.5)
+        _draw_slope(axes, size, errors[int(dataset.attrs["target_row"])] / length[1], float(dataset.attrs["order"]))
+    axes.set(xlabel=label(dataset["size"], unit), ylabel=label(dataset["error"], length))
 
 
 def _draw_slope(axes: Axes, size: Floats, error: Floats, order: float) -> None:
@@ -144,28 +151,42 @@ def _draw_slope(axes: Axes, size: Floats, error: Floats, order: float) -> None:
     axes.annotate("1", (np.sqrt(left * right), low), (0, -3), textcoords="offset points", va="top", ha="center", fontsize=8)
 
 
-def _runs(dataset: xr.Dataset) -> list[tuple[str, str, float, str]]:
-    """Return name, colour, line width and legend of each curve; the exact answer comes last and is drawn on top."""
+def _runs(dataset: xr.Dataset) -> list[tuple[str, str, float]]:
+    """Return name, colour and line width of each curve; the exact answer comes last and is drawn on top."""
     drawn = [int(i) for i in np.atleast_1d(dataset.attrs["drawn"])]
-    sizes = dataset["size"].values
-    runs = [(f"run{i}", SHADES[k - len(drawn)], 1.5, f"{sizes[i]:.2g} s") for k, i in enumerate(drawn)]
-    return [*runs, ("exact", INK, 1.0, str(dataset.attrs["target"]))]
+    return [*((f"run{i}", SHADES[k - len(drawn)], 1.5) for k, i in enumerate(drawn)), ("exact", INK, 1.0)]
+
+
+def _run_marks(dataset: xr.Dataset, unit: tuple[str, float]) -> list[Artist]:
+    """Return the entries of the key for the runs, whose sizes are given in a unit (name, size in s)."""
+    sizes = dataset["size"].values[np.atleast_1d(dataset.attrs["drawn"]).astype(int)] / unit[1]
+    texts = [*(f"(b, c) size $L$ = {size:.3g} {unit[0]}" for size in sizes), f"(b, c) exact: {dataset.attrs['target']}"]
+    runs = zip(_runs(dataset), texts, strict=True)
+    return [Line2D([], [], color=colour, linewidth=width, label=text) for (_, colour, width), text in runs]
 
 
 def _draw_time(axes: Axes, dataset: xr.Dataset, name: str) -> None:
-    for run, colour, width, text in _runs(dataset):
-        time = dataset[f"{run}_slip_time" if name == "slip" else f"{run}_time"]
-        axes.plot(shown(time), shown(dataset[f"{run}_{name}"]), color=colour, linewidth=width, label=text)
+    runs = _runs(dataset)
+    times = [dataset[f"{run}_slip_time" if name == "slip" else f"{run}_time"] for run, *_ in runs]
+    values = [dataset[f"{run}_{name}"] for run, *_ in runs]
+    clock, unit = unit_shown(*times), unit_shown(*values)
+    for (_, colour, width), time, value in zip(runs, times, values, strict=True):
+        axes.plot(shown(time, clock), shown(value, unit), color=colour, linewidth=width)
     zero_line(axes)
-    axes.set(xlabel=label(dataset["exact_time"]), ylabel=label(dataset[f"exact_{name}"]))
-    axes.legend(loc="best", fontsize=7, ncols=2 if name == "slip" else 1)
+    axes.set(xlabel=label(times[-1], clock), ylabel=label(values[-1], unit))
 
 
-def _draw_path(axes: Axes, dataset: xr.Dataset) -> None:
+def _draw_path(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
+    """Draw the path of each run over the set K, and return the entries of the key for this set."""
     resistance.draw_set(axes, dataset, CASE, quiet=True)
-    for name, colour, width, _ in _runs(dataset):
-        axes.plot(shown(dataset[f"{name}_rate"]), shown(dataset[f"{name}_load"]), color=colour, linewidth=width)
-    loads = np.concatenate([shown(dataset[f"{name}_load"]) for name, *_ in _runs(dataset)])
-    margin = max(0.35 * np.ptp(loads), 1e-3 * abs(loads).max())
-    axes.set(ylim=(loads.min() - margin, loads.max() + margin), ylabel=label(dataset["exact_load"]))
-    letter(axes, "c   The same, over the set K (grey)")
+    unit, rate = unit_shown(dataset[f"{CASE}_resistance"]), unit_shown(dataset["slip_rate"])
+    loads = [shown(dataset[f"{name}_load"], unit) for name, *_ in _runs(dataset)]
+    for (name, colour, width), load in zip(_runs(dataset), loads, strict=True):
+        axes.plot(shown(dataset[f"{name}_rate"], rate), load, color=colour, linewidth=width)
+    together = np.concatenate(loads)
+    margin = max(0.35 * np.ptp(together), 1e-3 * abs(together).max())
+    axes.set(ylim=(together.min() - margin, together.max() + margin), ylabel=label(dataset["exact_load"], unit))
+    grey: Any = {"color": GREY, "linewidth": 1.0}
+    falling = (dataset[f"{CASE}_slope"].values <= 0).any()
+    marks: list[Artist] = [Line2D([], [], label="(c) set K: stick, stable slip", **grey)]
+    return [*marks, Line2D([], [], linestyle="--", label="(c) set K: unstable slip", **grey)] if falling else marks

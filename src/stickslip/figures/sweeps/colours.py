@@ -1,4 +1,4 @@
-"""Colours of the numbers of a map: a key of few values or a continuous scale, and marks for members without a number."""
+"""Colours of the numbers of a map: a key of few values or a scale, and marks for members without a number."""
 
 from __future__ import annotations
 
@@ -11,17 +11,26 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
-from matplotlib.figure import Figure
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, LogNorm, Normalize, to_hex
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
-from stickslip.figures.style import BLUE, GREY, LIGHT_BLUE, ORANGE, PALE, Floats
-from stickslip.figures.sweeps.varied import Shown
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import set_log_ticks
+from stickslip.figures.style import GREY, PALE, TWO, Floats
+from stickslip.figures.sweeps.varied import ROOM, Shown, folded
 
 FEW = 10
 """Up to this number of different whole numbers, each has its own colour in a key; more are drawn with a scale."""
-TWO = (LIGHT_BLUE, ORANGE)
-"""Colours of no and yes, or of the numbers of a quantity that takes only two."""
+STEPS = 40
+"""Up to this range, each whole number has its own step in the scale."""
+WARM = LinearSegmentedColormap.from_list("warm", ("#FFF4B2", "#FBD150", "#EBAF2F", "#D88D06", "#C06F05", "#A75203", "#8E3501"))
+COOL = LinearSegmentedColormap.from_list("cool", ("#DCF7FF", "#97E2FF", "#5AC8FE", "#31A9F4", "#3389DC", "#346AC2", "#344BA7"))
+"""Colours of whole numbers. They darken evenly, and alternate between warm and cool.
+
+Neighbouring numbers therefore differ in lightness and in the one contrast that colour-blind readers see best; in grey the order
+stays. Their distances are twice those of matplotlib's "viridis".
+"""
 FAILED, HATCH = "#EDEDED", "////"
 """Background of a map, and its hatch, where members failed."""
 
@@ -44,6 +53,13 @@ class Colours:
         return self.cmap(self.norm(value))
 
 
+def shades(count: int) -> list[str]:
+    """Return colours for so many whole numbers, which every reader can tell apart."""
+    if count <= 2:
+        return list(TWO[:count])
+    return [to_hex((WARM, COOL)[k % 2](k / (count - 1))) for k in range(count)]
+
+
 def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
     """Return colours, the same in all panels, for the numbers of a quantity, or for the numbers `drawn` if they are given."""
     known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
@@ -53,6 +69,8 @@ def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
     if known.size and quantity.is_whole and different.size <= FEW:
         return _key(different, [f"{value:.0f}" for value in different])
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    if known.size and quantity.is_whole and high - low <= STEPS:
+        return _steps(int(low), int(high))
     if low == high:
         low, high = low - abs(low or 1.0), high + abs(high or 1.0)
     return Colours(mpl.colormaps["viridis"], LogNorm(low, high) if quantity.is_wide else Normalize(low, high), ())
@@ -60,10 +78,16 @@ def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
 
 def _key(different: Floats, texts: Sequence[str]) -> Colours:
     count = len(different)
-    shades = TWO if count == 2 else [BLUE] if count == 1 else mpl.colormaps["viridis"](np.linspace(0.05, 0.95, count))
     between = 0.5 * (different[1:] + different[:-1])
     edges = np.concatenate([[different[0] - 1.0], between, [different[-1] + 1.0]])
-    return Colours(ListedColormap(list(shades)), BoundaryNorm(edges, count), tuple(zip(different.tolist(), texts, strict=True)))
+    return Colours(ListedColormap(shades(count)), BoundaryNorm(edges, count), tuple(zip(different.tolist(), texts, strict=True)))
+
+
+def _steps(low: int, high: int) -> Colours:
+    """Return a scale with a step for each whole number from `low` to `high`."""
+    count = high - low + 1
+    cmap = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 1.0, count)))
+    return Colours(cmap, BoundaryNorm(np.arange(low, high + 2) - 0.5, count), ())
 
 
 def prepare(axes: Axes, quantity: Shown) -> None:
@@ -73,21 +97,30 @@ def prepare(axes: Axes, quantity: Shown) -> None:
         axes.patch.set(hatch=HATCH, edgecolor=GREY, linewidth=0.0)
 
 
-def explain(figure: Figure, panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist) -> None:
-    """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists."""
+def explain(panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist, own: bool = False, room: int = ROOM) -> None:
+    """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists.
+
+    `own` says that the axes are the user's: then the key stays inside them. `room` is the number of letters along the scale.
+    """
     marks: list[Artist] = [Patch(facecolor=colours.of(value), label=text) for value, text in colours.key]
     marks += [Patch(facecolor=PALE, label="undefined for this run")] if quantity.has(1) else []
     marks += [Patch(facecolor="white", edgecolor=GREY, linewidth=0.5, label="not run")] if quantity.has(3) else []
     marks += more
     scale = not colours.key and quantity.known.size > 0
     if scale:
-        figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=quantity.title, pad=0.02, aspect=25)
-    if marks:
-        heading = None if scale else quantity.title
-        narrow = {"handlelength": 1.3, "columnspacing": 1.2, "handletextpad": 0.5}
-        figure.legend(
-            handles=marks, title=heading, loc="outside lower center", ncols=min(len(marks), 12), title_fontsize=9.0, **narrow
-        )
+        _add_scale(panels, colours, folded(quantity.title, room))
+    add_legend(panels[0], marks, "" if scale else folded(quantity.title, 2 * ROOM), own=own)
+
+
+def _add_scale(panels: Sequence[Axes], colours: Colours, title: str) -> None:
+    figure: Any = panels[0].figure
+    bar = figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=title, pad=0.02, aspect=25)
+    if isinstance(colours.norm, BoundaryNorm):
+        bar.set_ticks(MaxNLocator(8, integer=True))
+        bar.minorticks_off()
+    elif isinstance(colours.norm, LogNorm):
+        set_log_ticks(bar.ax, "y")
+    bar.ax.tick_params(which="both", labelsize=mpl.rcParams["ytick.labelsize"])
 
 
 def failed_area(quantity: Shown) -> list[Artist]:

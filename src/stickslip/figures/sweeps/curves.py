@@ -2,57 +2,100 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
-from stickslip.figures.panels import count_ticks, letter, panels
-from stickslip.figures.style import GREY, LINE_COLOURS, Floats
-from stickslip.figures.sweeps.varied import Shown, scaled, shown, value_text
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import count_ticks, set_log_ticks, set_title
+from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
+from stickslip.figures.sweeps.jumps import jumps
+from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
 
 MOST_CURVES = 4
 """A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""
 SEPARATE = 40
-"""Members of a curve are marked by dots up to this number; more would run together."""
+"""Members of a curve are marked by dots up to this number; more would run together, and only those beside jumps are marked."""
+MARKERS = ("o", "s", "^", "D")
+WIDTHS = (2.8, 2.0, 1.3, 0.8)
+"""Marks of the members of each curve, and the widths of the lines between them."""
+ALL, BESIDE = "members; no line where the result jumps", "members beside a jump, across which no line is drawn"
+"""Explanations of dots and gaps of one curve: of few members, and of many."""
+ENDS = "; lines end where the result jumps"
+"""The explanation of the gaps of several curves, in the heading of their key."""
 
 
-def draw_curves(dataset: xr.Dataset) -> Figure:
-    """Draw the quantity over the longer axis, with a curve for each value of the other, if there is one."""
+def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
+    """Draw the quantity over the longer axis, with a curve for each value of the other, if there is one.
+
+    The line of a curve is interrupted where the quantity jumps between neighbours: a line would show values that no member has.
+    """
     quantity = shown(dataset)
     along = str(quantity.values.dims[int(np.argmax(quantity.values.shape))])
     others = [str(name) for name in quantity.values.dims if name != along]
+    names = names_of(dataset[others[0]]) if others else None
     across = scaled(dataset[along])
-    order = np.argsort(across.values)
-    marker = "o" if len(order) <= SEPARATE else ""
     rows, states = (np.atleast_2d(part.transpose(*others, along).values) for part in (quantity.values, quantity.state))
-    figure, grid = panels(1, 1, (5.4, 3.8))
-    axes = grid[0, 0]
-    for k, row in enumerate(rows):
-        text = value_text(dataset[others[0]][k]) if others else ""
-        look: dict[str, Any] = {"marker": marker, "markersize": 3.0, "linestyle": "none" if across.words else "-"}
-        if quantity.is_whole:
-            look["drawstyle"] = "steps-mid"
-        axes.plot(across.values[order], row[order], color=LINE_COLOURS[k], label=text, **look)
-    for k, state in enumerate(states):
+    axes = one_panel((5.4, 3.8), **place)
+    marks: list[Line2D] = []
+    broken = False
+    for k, (row, state) in enumerate(zip(rows, states, strict=True)):
+        # Later lines are thinner, so that curves that coincide all stay visible.
+        look: dict[str, Any] = {"color": LINE_COLOURS[k], "marker": MARKERS[k], "markersize": 3.5, "linewidth": WIDTHS[k]}
+        broken |= _draw_curve(axes, across, row, quantity, look)
+        if names is not None:
+            marks.append(Line2D([], [], label=names.values[k], linestyle="none" if across.words else "-", **look))
         mark_failed(axes, across.values[state == 2], LINE_COLOURS[k] if others else GREY)
     across.show(axes, "x")
     show_ordinate(axes, quantity)
-    handles, texts = axes.get_legend_handles_labels()
-    if any(texts):
-        figure.legend(handles, texts, loc="outside lower center", ncols=min(len(texts), 4))
-    letter(axes, str(dataset.attrs.get("title", "")))
-    return figure
+    if broken and names is None:
+        text = ALL if rows.shape[1] <= SEPARATE else BESIDE
+        marks.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=BLUE, label=text))
+    crosses = [line for line in axes.get_lines() if line.get_label() == "failed"]
+    heading = "" if names is None else names.full + (ENDS if broken else "")
+    add_legend(axes, [*marks, *crosses], heading, own="ax" in place)
+    if "ax" not in place:
+        set_title(axes, str(dataset.attrs.get("title", "")))
+    return result(axes, **place)
+
+
+def _draw_curve(axes: Axes, across: Scaled, row: Floats, quantity: Shown, look: dict[str, Any]) -> bool:
+    """Draw the members of one curve, and lines between neighbours that no jump divides. Return True if it jumps."""
+    order = np.argsort(across.values)
+    places, values = across.values[order], row[order]
+    if across.words:
+        axes.plot(places, values, linestyle="none", **look)
+        return False
+    with np.errstate(invalid="ignore"):
+        divided = jumps(np.log(values) if quantity.is_wide else values, whole=quantity.is_whole)
+    points = np.stack([places, values], axis=1)
+    segments = np.stack([points[:-1], points[1:]], axis=1)[~divided & np.isfinite(np.diff(values))]
+    axes.add_collection(LineCollection(list(segments), colors=look["color"], linewidths=look["linewidth"]))
+    axes.plot(places, values, linestyle="none", markevery=_marked(values, divided), **look)
+    return bool(divided.any())
+
+
+def _marked(values: Floats, divided: NDArray[np.bool_]) -> list[int]:
+    """Return the places of the members that are marked: all if they are few, else those without a line to both sides."""
+    if len(values) <= SEPARATE:
+        return list(range(len(values)))
+    apart = divided | ~np.isfinite(np.diff(values))
+    beside = np.append(apart, False) | np.append(False, apart)
+    return np.flatnonzero(beside & np.isfinite(values)).tolist()
 
 
 def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
     """Draw crosses at the bottom of the panel at the values whose members failed."""
     if places.size:
         text = "" if "failed" in axes.get_legend_handles_labels()[1] else "failed"
-        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
-        axes.plot(places, np.full(len(places), 0.02), "x", color=colour, markersize=4.0, label=text, **at)
+        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none"}
+        axes.plot(places, np.full(len(places), 0.02), marker="x", color=colour, markersize=4.0, label=text, **at)
 
 
 def show_ordinate(axes: Axes, quantity: Shown) -> None:
@@ -61,8 +104,10 @@ def show_ordinate(axes: Axes, quantity: Shown) -> None:
         axes.set_yticks([])
     elif quantity.is_flag:
         axes.set_yticks([0.0, 1.0], ["no", "yes"])
+        axes.set_ylim(-0.1, 1.1)
     elif quantity.is_wide:
         axes.set_yscale("log")
+        set_log_ticks(axes, "y")
     elif quantity.is_whole:
         count_ticks(axes, 6)
-    axes.set_ylabel(quantity.title)
+    axes.set_ylabel(folded(quantity.title))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,15 +12,14 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from stickslip.figures.panels import letter, panels
+from stickslip.figures.panels import letter_panels, panels, set_title
+from stickslip.figures.sheet import Place, one_panel, result
 from stickslip.figures.style import INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.members import axes_of, draw_members
-from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown, value_text
+from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, Scaled, Shown, names_of, scaled, shown
 from stickslip.sweeps.results.refinement_spec import RefinedMap, RefinementSpec, cells_of
 
 PANELS = 9
@@ -29,20 +28,20 @@ Draw = Callable[[Axes, int], None]
 """A function that draws a map; it receives its axes and the index of the value of the third key."""
 
 
-def draw_maps(dataset: xr.Dataset) -> Figure:
+def draw_maps(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw the first key along x and the second along y; of three keys, the one with the fewest values gives the separate maps."""
     quantity = shown(dataset)
     colours, lengths = colours_of(quantity), quantity.values.sizes
     third = dataset[min(lengths, key=lambda name: lengths[name])] if len(lengths) == 3 else None
 
     def draw_one(axes: Axes, k: int) -> None:
-        at = {} if third is None else {third.name: k}
-        _draw_map(axes, dataset, replace(quantity, values=quantity.values.isel(at), state=quantity.state.isel(at)), colours)
+        cut = quantity if third is None else quantity.at(**{str(third.name): k})
+        _draw_map(axes, dataset, cut, colours, ROOM if third is None else LITTLE)
 
-    return _draw_all(dataset, quantity, colours, third, draw_one)
+    return _draw_all(dataset, quantity, colours, third, draw_one, place=place)
 
 
-def draw_cells(dataset: xr.Dataset) -> Figure:
+def draw_cells(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw the cells over two varied keys, or cuts through them at some coarse values of a third.
 
     For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
@@ -50,10 +49,11 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
     spec = RefinementSpec.read(dataset)
     names = list(spec.columns)
     if dataset.attrs["quantity"] != spec.quantity or len(names) not in (2, 3):
-        return draw_members(dataset)
+        return draw_members(dataset, **place)
     quantity, cells, places = shown(dataset), cells_of(dataset), axes_of(dataset)
     colours, third = colours_of(quantity, cells.answer), None
     if len(names) == 3:
+        places = {name: replace(one, room=LITTLE) for name, one in places.items()}
         third = xr.DataArray(spec.columns[names[2]], name=names[2], attrs=dataset[names[2]].attrs)
 
     def draw_one(axes: Axes, k: int) -> None:
@@ -61,47 +61,59 @@ def draw_cells(dataset: xr.Dataset) -> Figure:
         _draw_cells(axes, quantity, colours, cut, places)
 
     boundary = [Patch(facecolor=INK, label="boundary")] if cells.changes.any() else []
-    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary)
+    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary, place=place)
 
 
 def _draw_all(
-    dataset: xr.Dataset, quantity: Shown, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *more: Artist
-) -> Figure:
+    dataset: xr.Dataset,
+    quantity: Shown,
+    colours: Colours,
+    third: xr.DataArray | None,
+    draw_one: Draw,
+    *more: Artist,
+    place: Place,
+) -> Any:
     """Draw one map, or one for each of some values of a third key, and explain the colours; `more` entries end the key."""
-    title = str(dataset.attrs.get("title", ""))
-    if third is None:
-        figure, grid = panels(1, 1, (5.4, 4.4))
-        draw_one(grid[0, 0], 0)
-        letter(grid[0, 0], title)
-    else:
-        figure, grid = _side_by_side(third, draw_one)
-        figure.suptitle(title, fontsize=9.5, fontweight="bold")
-    explain(figure, list(grid.flat), colours, quantity, *failed_area(quantity), *more)
-    return figure
+    title, marks = str(dataset.attrs.get("title", "")), [*failed_area(quantity), *more]
+    if third is not None:
+        names = names_of(third)
+        grid = _side_by_side(names, draw_one, place)
+        set_title(grid[0].figure, f"{title}. Panels: {names.plain}".removeprefix(". "))
+        # One row of panels is too low for a long name.
+        low = grid[0].get_gridspec().nrows == 1  # type: ignore[union-attr]
+        explain(grid, colours, quantity, *marks, room=LITTLE if low else ROOM)
+        return grid[0].figure
+    axes = one_panel((5.4, 4.4), **place)
+    draw_one(axes, 0)
+    explain([axes], colours, quantity, *marks, own="ax" in place)
+    if "ax" not in place:
+        set_title(axes, title)
+    return result(axes, **place)
 
 
-def _side_by_side(third: xr.DataArray, draw_one: Draw) -> tuple[Figure, NDArray[Any]]:
-    """Return a figure with a panel for each value of a key, or for `PANELS` of them evenly chosen, and its axes."""
-    chosen = np.unique(np.linspace(0, third.size - 1, min(third.size, PANELS)).round().astype(int))
-    columns = min(len(chosen), 3)
+def _side_by_side(names: Names, draw_one: Draw, place: Place) -> list[Axes]:
+    """Draw a panel for each value of a key, or for `PANELS` of them evenly chosen, and return the panels."""
+    count = len(names.values)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, PANELS)).round().astype(int))
+    columns = len(chosen) if len(chosen) <= 3 else 2 if len(chosen) == 4 else 3
     rows = -(-len(chosen) // columns)
-    figure, grid = panels(rows, columns, (2.4 * columns + 1.2, 2.1 * rows + 1.0), sharex=True, sharey=True)
-    for place, axes in enumerate(grid.flat):
-        if place >= len(chosen):
-            axes.set_axis_off()
-            continue
-        draw_one(axes, int(chosen[place]))
-        letter(axes, value_text(third[chosen[place]]))
-        lowest = place + columns >= len(chosen)
-        axes.yaxis.label.set_visible(place % columns == 0)
+    _, grid = panels(rows, columns, (2.0 * columns + 1.4, 2.1 * rows + 1.0), place, sharex=True, sharey=True)
+    drawn = list(grid.flat)[: len(chosen)]
+    for number, axes in enumerate(drawn):
+        draw_one(axes, int(chosen[number]))
+        lowest = number + columns >= len(chosen)
+        axes.yaxis.label.set_visible(number % columns == 0)
         axes.xaxis.label.set_visible(lowest)
         axes.xaxis.set_tick_params(labelbottom=lowest)
-    return figure, grid
+    for axes in list(grid.flat)[len(chosen) :]:
+        axes.remove()
+    letter_panels(drawn, (names.equations[k] for k in chosen))
+    return drawn
 
 
-def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours) -> None:
+def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours, room: int) -> None:
     """Draw one map of a grid, with members that have no such number in pale grey and those not run in white."""
-    x, y = (scaled(dataset[str(name)]) for name in quantity.values.dims)
+    x, y = (replace(scaled(dataset[str(name)]), room=room) for name in quantity.values.dims)
     columns, rows = np.argsort(x.values), np.argsort(y.values)
     values, state = (part.values[columns][:, rows].T for part in (quantity.values, quantity.state))
     prepare(axes, quantity)

@@ -4,42 +4,52 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from typing import Any, Unpack
 
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stickslip.figures.panels import letter, panels
-from stickslip.figures.style import BLUE, GREY, PALE
+from stickslip.figures.legends import add_legend
+from stickslip.figures.panels import letter_panels, panels, set_title
+from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.style import BLUE, GREY, INK, PALE
 from stickslip.figures.sweeps.colours import colours_of, explain
 from stickslip.figures.sweeps.curves import mark_failed, show_ordinate
-from stickslip.figures.sweeps.varied import Scaled, Shown, scaled, shown
+from stickslip.figures.sweeps.varied import LITTLE, ROOM, Scaled, Shown, scaled, shown
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
-SIZE = 12.0
+SIZE = 16.0
 """Area of a point (in square points, as `scatter` takes it)."""
 
 
-def draw_members(dataset: xr.Dataset) -> Figure:
+def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw coloured points over two varied keys; for any other number of keys, draw the quantity against each key in turn."""
     quantity, places = shown(dataset), list(axes_of(dataset).values())
+    title = str(dataset.attrs.get("title", ""))
     if len(places) == 2:
-        figure, grid = panels(1, 1, (5.4, 4.4))
-        _draw_points(grid[0, 0], quantity, *places)
-    else:
-        columns = min(len(places), 3)
-        rows = -(-len(places) // columns)
-        figure, grid = panels(rows, columns, (max(2.6 * columns + 1.0, 5.4), max(2.6 * rows + 0.4, 3.8)), sharey=True)
-        for axes, across in zip(grid.flat, places, strict=False):
-            axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=3.0, rasterized=True)
-            mark_failed(axes, across.values[quantity.state.values == 2])
-            across.show(axes, "x")
-        for axes in list(grid.flat)[len(places) :]:
-            axes.set_axis_off()
-        for axes in grid[:, 0]:
-            show_ordinate(axes, quantity)
-    letter(grid[0, 0], str(dataset.attrs.get("title", "")))
+        axes = one_panel((5.4, 4.4), **place)
+        _draw_points(axes, quantity, places[0], places[1], own="ax" in place)
+        if "ax" not in place:
+            set_title(axes, title)
+        return result(axes, **place)
+    columns = min(len(places), 3)
+    rows = -(-len(places) // columns)
+    figure, grid = panels(rows, columns, (max(2.0 * columns + 1.2, 5.4), 2.4 * rows + 0.8), place, sharey=True)
+    drawn = list(grid.flat)[: len(places)]
+    for axes, across in zip(drawn, places, strict=True):
+        axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=4.0, rasterized=True)
+        mark_failed(axes, across.values[quantity.state.values == 2])
+        replace(across, room=LITTLE if columns > 1 else ROOM).show(axes, "x")
+    for axes in list(grid.flat)[len(places) :]:
+        axes.remove()
+    for axes in grid[:, 0]:
+        show_ordinate(axes, quantity)
+    letter_panels(drawn)
+    dots = Line2D([], [], linestyle="none", marker=".", color=BLUE, label="one dot for each member")
+    crosses = [line for line in drawn[0].get_lines() if line.get_label() == "failed"]
+    add_legend(drawn[0], [*([dots] if len(drawn) > 1 else []), *crosses])
+    set_title(figure, title)
     return figure
 
 
@@ -54,16 +64,15 @@ def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
     return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 
-def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled) -> None:
+def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled, *, own: bool) -> None:
     """Draw a point for each member in the colour of its number, and explain the colours."""
     colours, values, state = colours_of(quantity), quantity.values.values, quantity.state.values
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)
     there = state == 0
-    axes.scatter(x.values[there], y.values[there], c=values[there], s=SIZE, linewidths=0.0, rasterized=True, **colours.options)
+    look: dict[str, Any] = {"s": SIZE, "linewidths": 0.3, "edgecolors": INK, "rasterized": True, **colours.options}
+    axes.scatter(x.values[there], y.values[there], c=values[there], **look)
     x.show(axes, "x")
     y.show(axes, "y")
     crosses = Line2D([], [], color=GREY, marker="x", linestyle="none", label="failed", markersize=4.0)
-    figure = axes.figure
-    assert isinstance(figure, Figure)
-    explain(figure, [axes], colours, quantity, *([crosses] if quantity.has(2) else []))
+    explain([axes], colours, quantity, *([crosses] if quantity.has(2) else []), own=own)

@@ -6,13 +6,15 @@ The dataset of a grid has one dimension for each varied key; those of samples, l
 from __future__ import annotations
 
 import tomllib
+from functools import partial
 from pathlib import Path
+from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
-from stickslip.figures.style import name_system, styled
+from stickslip.figures.sheet import Place, known_to_pyplot
+from stickslip.figures.style import styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_cells, draw_maps
 from stickslip.figures.sweeps.members import draw_members
@@ -23,7 +25,7 @@ from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE
 
 
-def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None) -> Figure:
+def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None, **place: Unpack[Place]) -> Any:
     """Draw a quantity of a sweep over the varied keys, and save the figure if a file is named.
 
     Parameters
@@ -34,13 +36,17 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         Name of the quantity; by default the first one of the sweep.
     path : str or Path, optional
         File to be written, either whole or not at all.
+    **place
+        Where to draw, and how large: `figure`, `size` and `dpi`, and `ax` for one map or one family of curves, as for
+        `solution.plot`.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure. One varied key gives a curve; two give a map, or a family of curves if one of them has at most four values;
-        three give maps side by side. Members that are not a grid are drawn as points; a refined map whose members have all been run
-        is drawn as cells, if the quantity is the refined one and two or three keys are varied.
+    matplotlib.figure.Figure or matplotlib.axes.Axes
+        The figure, or the axes if `ax` was given. One varied key gives a curve, which is interrupted where the quantity jumps; two
+        give a map, or a family of curves if one of them has at most four values; three give maps side by side. Members that are not
+        a grid are drawn as points; a refined map whose members have all been run is drawn as cells, if the quantity is the refined
+        one and two or three keys are varied.
 
     Raises
     ------
@@ -48,10 +54,12 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
         the other keys first.
     """
-    figure = draw(data(dataset, quantity))
-    if path is not None:
-        write_atomically(Path(path), figure.savefig)
-    return figure
+    drawing = draw(data(dataset, quantity), **place)
+    if path is None:
+        return known_to_pyplot(drawing, place)
+    save = partial(styled(drawing.get_figure(root=True).savefig), **({"dpi": place["dpi"]} if "dpi" in place else {}))
+    write_atomically(Path(path), save)
+    return drawing
 
 
 def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
@@ -77,11 +85,8 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
 
 
 def _title(dataset: xr.Dataset) -> str:
-    """Return the title of the scenario, or its body and friction law if it has none."""
-    scenario = tomllib.loads(dataset.attrs.get("scenario", ""))
-    if not scenario:
-        return str(dataset.attrs.get("title", "")).removeprefix("stickslip sweep: ")
-    return str(scenario.get("title") or name_system(scenario["body"]["kind"], scenario["friction"]["kind"]))
+    """Return the title of the scenario, "" if it has none."""
+    return str(tomllib.loads(dataset.attrs.get("scenario", "")).get("title", ""))
 
 
 def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
@@ -91,10 +96,11 @@ def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
 
 
 @styled
-def draw(dataset: xr.Dataset) -> Figure:
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw the kind of figure that suits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
         whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()
-        return draw_cells(dataset) if whole else draw_members(dataset)
-    return draw_curves(dataset) if len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES) else draw_maps(dataset)
+        return draw_cells(dataset, **place) if whole else draw_members(dataset, **place)
+    curves = len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES)
+    return draw_curves(dataset, **place) if curves else draw_maps(dataset, **place)

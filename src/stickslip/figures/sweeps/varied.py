@@ -3,39 +3,44 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from stickslip.figures.style import length_unit, readable, time_unit
+from stickslip.figures.names import parameter_name, plain_name, symbol
+from stickslip.figures.panels import set_log_ticks
+from stickslip.figures.style import axis_text, unit_of
 
 Floats = NDArray[np.float64]
 
 SPREAD = 3.0
 """Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""
-LONG = 60
-"""Number of characters in a line of the title of a key or a scale."""
-NARROW = 500.0
-"""Logarithmic axes that span less than this factor have ticks at 1, 2, 5, 10, ...: powers of ten alone would be too few."""
+ROOM = 42
+"""Number of letters in a line of the name of an axis, a key or a scale."""
+LITTLE = 26
+"""The same for one of several panels side by side."""
 WIDE = 100.0
 """Positive numbers of a quantity that span more than this factor are drawn on a logarithmic axis or scale of colours."""
-_TEXTS = {"m s-1": "m/s", "J m-2": "J/m²"}
-"""Units as readers expect to see them."""
+CROWDED = 34
+"""If the words along a horizontal axis have more letters than this together, they are slanted."""
 
 
 @dataclass(frozen=True)
 class Scaled:
-    """Numbers as they are drawn, in a unit of `size` SI units; words are placed at 0, 1, 2, ..."""
+    """Numbers as they are drawn, in a unit of `size` SI units; words are placed at 0, 1, 2, ...
+
+    `room` is the number of letters in a line of the label.
+    """
 
     values: Floats
     label: str
     size: float = 1.0
     log: bool = False
     words: tuple[str, ...] = ()
+    room: int = ROOM
 
     @property
     def edges(self) -> Floats:
@@ -50,36 +55,33 @@ class Scaled:
     def show(self, axes: Axes, which: str) -> None:
         """Set label, scale and ticks of the axis named "x" or "y"."""
         axis = getattr(axes, f"{which}axis")
-        axis.set_label_text(self.label)
+        axis.set_label_text(folded(self.label, self.room))
         if self.log:
             getattr(axes, f"set_{which}scale")("log")
-            if self.values.max() < NARROW * self.values.min():
-                axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-                axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-                axis.set_minor_locator(NullLocator())
+            set_log_ticks(axes, which)
         if self.words:
-            axis.set_ticks(np.unique(self.values), [self.words[int(k)] for k in np.unique(self.values)])
+            axis.set_ticks(range(len(self.words)), self.words)
+            getattr(axes, f"set_{which}lim")(-0.5, len(self.words) - 0.5)
+            if which == "x" and sum(len(word) for word in self.words) * ROOM > CROWDED * self.room:
+                axis.set_ticks(axis.get_ticklocs(), self.words, rotation=30, ha="right", rotation_mode="anchor")
 
 
-def scaled(variable: xr.DataArray, name: str = "") -> Scaled:
-    """Return a varied key in a readable unit, under `name` if it is given; its values decide whether the axis is logarithmic."""
-    name = name or str(variable.name)
+def scaled(variable: xr.DataArray) -> Scaled:
+    """Return a varied key in a readable unit; its values decide whether the axis is logarithmic."""
+    name = parameter_name(str(variable.name), variable.attrs.get("long_name", ""))
     if not np.issubdtype(variable.dtype, np.number):
         words, places = np.unique(np.array(variable.values.tolist(), str), return_inverse=True)
         return Scaled(places.astype(float), name, words=tuple(words.tolist()))
     values = np.asarray(variable.values, float)
-    known = np.abs(values[np.isfinite(values)])
-    unit, size = unit_of(variable.attrs.get("units", "1"), float(known.max()) if known.size else 1.0)
-    return Scaled(values / size, name + (f" ({unit})" if unit != "1" else ""), size, is_logarithmic(values))
+    log = is_logarithmic(values)
+    unit, size = unit_of(variable.attrs.get("units", "1"), values, log=log)
+    return Scaled(values / size, axis_text(name, "", unit), size, log)
 
 
-def unit_of(units: str, largest: float) -> tuple[str, float]:
-    """Return a unit in which a quantity whose largest value (in SI) is given can be read, and its size in SI units."""
-    if units in ("m", "s") and largest > 0.0:
-        return length_unit(largest) if units == "m" else time_unit(largest)
-    if units in ("Pa", "N"):
-        return readable(largest, units)
-    return _TEXTS.get(units, units), 1.0
+def folded(text: str, room: int = ROOM) -> str:
+    """Return a text in lines of up to `room` letters; a symbol and the unit stay with the last word."""
+    whole = text.replace(" $", "\0$").replace(" (", "\0(")
+    return textwrap.fill(whole, room, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
 def is_logarithmic(values: Floats) -> bool:
@@ -92,13 +94,30 @@ def is_logarithmic(values: Floats) -> bool:
     return abs(float(log) - 0.5) < abs(linear - 0.5)
 
 
-def value_text(variable: xr.DataArray) -> str:
-    """Return one value of a varied key with its name and unit, for a legend or a title, as in "thickness 12.5 km"."""
-    name = str(variable.name).rpartition(".")[2].replace("_", " ")
+@dataclass(frozen=True)
+class Names:
+    """The names of a varied key that has one value in each panel or for each curve."""
+
+    full: str
+    plain: str
+    symbol: str
+    values: tuple[str, ...]
+
+    @property
+    def equations(self) -> tuple[str, ...]:
+        """The values, each as an equation if the key has a symbol, as in "$h$ = 12.5 km"."""
+        return tuple(f"{self.symbol} = {value}" if self.symbol else value for value in self.values)
+
+
+def names_of(variable: xr.DataArray) -> Names:
+    """Return the names of a varied key, and its values as texts in one unit."""
+    about = str(variable.name), str(variable.attrs.get("long_name", ""))
     if not np.issubdtype(variable.dtype, np.number):
-        return f"{name} {variable.item()}"
-    unit, size = unit_of(variable.attrs.get("units", "1"), abs(float(variable)))
-    return f"{name} {float(variable) / size:.4g}" + (f" {unit}" if unit != "1" else "")
+        values = [str(value) for value in variable.values.tolist()]
+    else:
+        unit, size = unit_of(variable.attrs.get("units", "1"), variable.values)
+        values = [f"{value:.4g}" + ("" if unit == "1" else f" {unit}") for value in variable.values / size]
+    return Names(parameter_name(*about), plain_name(*about), symbol(*about), tuple(values))
 
 
 @dataclass(frozen=True)
@@ -130,11 +149,16 @@ class Shown:
         """Return True if some member is in this state."""
         return bool((self.state == state).any())
 
+    def at(self, **places: int) -> Shown:
+        """Return the quantity at these places of some of its keys."""
+        return replace(self, values=self.values.isel(places), state=self.state.isel(places))
+
 
 def shown(dataset: xr.Dataset) -> Shown:
     """Return the quantity of a figure's dataset in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
-    known = np.abs(values.values[np.isfinite(values.values)])
-    unit, size = unit_of(values.attrs.get("units", "1"), float(known.max(initial=0.0)))
-    title = textwrap.fill(values.attrs.get("long_name", str(values.name)) + (f" ({unit})" if unit != "1" else ""), LONG)
+    known = values.values[np.isfinite(values.values)]
+    wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
+    unit, size = unit_of(values.attrs.get("units", "1"), known, log=wide)
+    title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
     return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs)

@@ -23,7 +23,7 @@ class HyperbolicRate(FrictionLaw):
 
     static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient muD at high slip rate", at_least=0)
-    alpha: Number = quantity("s/m", "inverse of the slip rate at which half of the change is complete", at_least=0)
+    alpha: Number = quantity("s/m", "weakening parameter alpha: inverse of the slip rate at half of the change", at_least=0)
 
     @staticmethod
     @override

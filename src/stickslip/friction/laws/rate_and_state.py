@@ -44,8 +44,8 @@ class RateAndState(FrictionLaw):
     example: ClassVar = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": "1 mm", "rate": "1e-6 m/s"}
 
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
-    a: float = quantity("1", "direct effect: immediate increase of friction per factor e of slip rate", above=0)
-    b: float = quantity("1", "evolution effect: decrease of friction as the state falls by a factor e", at_least=0)
+    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
+    b: float = quantity("1", "evolution effect b: decrease of friction as the state falls by a factor e", at_least=0)
     distance: Number = quantity("m", "slip over which the state renews itself (Dc)", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")

@@ -1,0 +1,80 @@
+"""Names of parameters in figures, made from their declared meaning: "normal stress S on the contact, ..." has the symbol S.
+
+Declarations write symbols as plain words (rho, muS, u0, d2, v_s); figures typeset them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+GREEK = {
+    **{"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "eta": "η", "theta": "θ", "kappa": "κ", "lambda": "λ"},
+    **{"mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "psi": "ψ", "omega": "ω"},
+}
+"""Greek letters by the names under which declarations and formulas write them."""
+_SYMBOL = re.compile(rf"(?P<letter>{'|'.join(GREEK)}|[A-Z]|[b-df-z](?!\w)|[a-z](?=\d|_))_?(?P<index>\d|(?<=_)[a-z]|(?<!_)[A-Zcd]|)")
+_CONNECTED = ("of", "in", "per", "at", "that")
+"""Words before a symbol that is not the parameter's own, as in "exponent of v"."""
+_FORMULA = ".parameters."
+"""Part of the names of the parameters of a formula, which users choose."""
+_INSTRUCTIONS = ("run.duration", "run.events", "run.creep_rtol", "run.shortest_event")
+"""Entries of a scenario whose meaning says what the run is to do; they go by their own names."""
+
+
+def parameter_name(name: str, meaning: str) -> str:
+    """Return the name of a parameter for an axis or a legend, with its symbol as mathtext.
+
+    Parameters
+    ----------
+    name : str
+        Its place in a scenario, such as "friction.alpha" or "friction.values[2]".
+    meaning : str
+        Its declared meaning; what follows a comma, a colon, a semicolon or a bracket is left out.
+
+    Returns
+    -------
+    str
+        The name, such as "normal stress $S$ on the contact".
+    """
+    return _typeset(_words(name, meaning), lambda letter, index: f"${_tex(letter)}{f'_{{{index}}}' if index else ''}$")
+
+
+def plain_name(name: str, meaning: str) -> str:
+    """Return the name of a parameter as plain text, such as "density ρ"."""
+    return _typeset(_words(name, meaning), lambda letter, index: GREEK.get(letter, letter) + index)
+
+
+def symbol(name: str, meaning: str) -> str:
+    """Return the symbol of a parameter as mathtext, such as "$S$", or "" if its meaning has none."""
+    words = parameter_name(name, meaning).split()
+    own = (word for word, before in zip(words, ["", *words], strict=False) if word[0] == "$" and before not in _CONNECTED)
+    return next(own, "")
+
+
+def _words(name: str, meaning: str) -> str:
+    """Return the words that name a parameter: the beginning of its meaning, or its own name where the meaning is about others."""
+    last = name.rpartition(".")[2]
+    index = last[last.find("[") :] if "[" in last else ""
+    if _FORMULA in name:
+        return last
+    if name in _INSTRUCTIONS or not meaning:
+        return last.replace("_", " ")
+    return re.split(r"\s*[,;:(]", meaning, maxsplit=1)[0].replace("`", "") + (f" {index}" if index else "")
+
+
+def _typeset(text: str, show: Callable[[str, str], str]) -> str:
+    """Return a text in which the words that are symbols are replaced by what `show` makes of their letter and index."""
+    words = text.split()
+    for place, word in enumerate(words):
+        found = _SYMBOL.fullmatch(word)
+        # The article "a" is not followed by "of", and ends no text.
+        if found is None and word == "a" and (words[place + 1 :] or ["of"])[0] == "of":
+            words[place] = show("a", "")
+        elif found is not None:
+            words[place] = show(found["letter"], found["index"])
+    return " ".join(words)
+
+
+def _tex(letter: str) -> str:
+    return f"\\{letter}" if letter in GREEK else letter

@@ -1,0 +1,162 @@
+"""Curves of a run against time: the interval, units, scales and limits of their axes, and marks of shocks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from stickslip.figures.panels import set_log_ticks, zero_line
+from stickslip.figures.style import (
+    BLUE,
+    FORCES,
+    GREEN,
+    GREY,
+    INK,
+    PURPLE,
+    VERMILLION,
+    Floats,
+    axis_text,
+    clock,
+    curve_label,
+    nearly_flat,
+    time_unit,
+    unit_of,
+)
+from stickslip.solution.evaluation import Curve, Readings
+
+COLOURS: dict[str, str] = {
+    "slip": BLUE,
+    "event_slip": BLUE,
+    "slip_rate": GREEN,
+    "traction": VERMILLION,
+    "load": INK,
+    "state": PURPLE,
+    "friction": VERMILLION,
+}
+"""Colour of each curve, the same in all figures."""
+MANY = 60
+"""If there are more shocks than this, they are not marked: the marks would hide the curves."""
+BRIEF = 0.01
+"""The start from rest is left out if it takes less than this share of the time that is shown."""
+Span = tuple[float, float]
+"""First and last time that are drawn, s."""
+
+
+def interval(readings: Readings, start: float | None, end: float | None) -> Span:
+    """Return the interval (s) that is asked for; the default is what the run or the window shows."""
+    return readings.shown[0] if start is None else start, readings.shown[1] if end is None else end
+
+
+def set_time(axes: Axes, readings: Readings, span: Span) -> None:
+    """Set the label of the time axis."""
+    axes.set_xlabel(f"{clock(readings)} ({time_unit(span[1] - span[0])[0]})")
+
+
+def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
+    """Draw one curve against time, with its label; the slip rate on a logarithmic axis if the friction law never sticks."""
+    time, values = readings.curve(name, *span)
+    settled = after_start(readings, time, span)
+    log = name == "slip_rate" and not readings.problem.friction.sticks
+    if log:
+        # A contact that never sticks slips at widely different rates.
+        values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
+    state = readings.problem.friction.state
+    if name == "state" and state is not None:
+        size, text = 1.0, axis_text("state", "", state.unit)
+    else:
+        unit, size = unit_of(_unit(readings, name), values, log=log)
+        text = curve_label(name, unit, readings.problem.load_unit)
+    axes.plot(time / time_unit(span[1] - span[0])[1], values / size, color=COLOURS[name])
+    axes.set_ylabel(text)
+    if log:
+        axes.set_yscale("log")
+        fit_height(axes, [values / size])
+        set_log_ticks(axes, "y")
+    elif name in ("slip", "event_slip", "slip_rate"):
+        zero_line(axes)
+
+
+def _unit(readings: Readings, name: Curve) -> str:
+    known = {"slip": "m", "event_slip": "m", "slip_rate": "m/s"}
+    return known.get(name, readings.problem.load_unit)
+
+
+def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
+    """Return True for the times after the start from rest, which is not drawn where it would set the limits of an axis.
+
+    A contact whose law never sticks starts at a slip rate of 0, far below all that follow, and a block accelerates from there
+    within one period. If no more is shown than that, all times count.
+    """
+    if readings.problem.friction.sticks or span[0] > 0.0 or "event_slip" in readings.curves:
+        return np.ones(time.shape, bool)
+    lasts = 0.0 if readings.problem.body.has_waves else readings.problem.body.round_trip_time
+    if lasts > BRIEF * (span[1] - span[0]):
+        lasts = 0.0
+    # Of the two limits at the start of a slab, the first is the state at rest.
+    return np.asarray((time > lasts) | ((time == 0.0) & (np.arange(len(time)) > 0) & (lasts == 0.0)))
+
+
+def fit_height(axes: Axes, values: Sequence[Floats]) -> None:
+    """Set the limits of the vertical axis to those of the given values, with a margin."""
+    known = np.concatenate(values)
+    known = known[np.isfinite(known)]
+    if not known.size:
+        return
+    low, high = float(known.min()), float(known.max())
+    if axes.get_yscale() == "log":
+        room = max((high / low) ** 0.08, 1.3)
+        axes.set_ylim(low / room, high * room)
+    else:
+        room = 0.08 * (high - low) or 0.05 * abs(high) or 1.0
+        axes.set_ylim(low - room, high + room)
+
+
+def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
+    """Draw traction and load against time, as changes from the problem's initial load if they hardly change."""
+    units = readings.problem.load_unit
+    names = [FORCES[name] if units == "N" else name for name in ("traction", "load")]
+    (time, load), (_, traction) = (readings.curve(name, *span) for name in ("load", "traction"))
+    change = nearly_flat(load, traction)
+    offset = readings.problem.load if change else 0.0
+    unit, size = unit_of(units, load - offset, traction - offset)
+    seconds = time_unit(span[1] - span[0])[1]
+    axes.plot(time / seconds, (load - offset) / size, color=INK, linewidth=1.0, linestyle="--", label=rf"{names[1]} $\beta$")
+    axes.plot(time / seconds, (traction - offset) / size, color=VERMILLION, label=rf"{names[0]} $\tau$")
+    text = f"{names[0]}, {names[1]}".replace("force, ", "and\n")
+    axes.set_ylabel(f"change of\n{text.replace(chr(10), ' ')} ({unit})" if change else f"{text} ({unit})")
+    if change or min(load.min(), traction.min()) < 0.5 * max(load.max(), traction.max()):
+        zero_line(axes)
+    else:
+        fit_height(axes, [load / size, traction / size])
+
+
+def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: bool = False) -> None:
+    """Draw the friction coefficient and the load over the normal load, against time or against slip."""
+    normal, slip = readings.problem.normal, readings.curves[0]
+    (time, load), (_, traction) = (readings.curve(name, *span) for name in ("load", "traction"))
+    across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
+    traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
+    if against_slip:
+        moved = getattr(readings, slip)(time)
+        unit, size = unit_of("m", moved)
+        across = moved / size
+        axes.set_xlabel(curve_label(slip, unit))
+    else:
+        name = "spring force" if readings.problem.load_unit == "N" else "load"
+        axes.plot(across, load / normal, color=INK, linewidth=1.0, linestyle="--", label=rf"{name} over normal load, $\beta/S$")
+    axes.plot(across, traction / normal, color=VERMILLION, label=r"friction coefficient $\mu=\tau/S$")
+    axes.set_ylabel(curve_label("friction"))
+    fit_height(axes, [traction / normal] if against_slip else [traction / normal, load / normal])
+
+
+def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:
+    """Mark the shocks (jumps of the slip rate) by dotted lines, with an entry in the legend of the last panel."""
+    times = np.asarray(readings.shocks["time"], dtype=float)
+    times = times[(times >= span[0]) & (times <= span[1])]
+    size = time_unit(span[1] - span[0])[1]
+    for panel in panels:
+        for k, at in enumerate(times if times.size <= MANY else ()):
+            name = "shock (jump of the slip rate)" if k == 0 and panel is panels[-1] else None
+            panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0, label=name)

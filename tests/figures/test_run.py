@@ -1,0 +1,117 @@
+"""The default figure of a run shows what happens, on axes that are set by what happens."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import stickslip as ss
+from stickslip.figures.runs.run import draw
+from tests.figures.labels import size_of
+
+mpl.use("Agg")
+
+NEVER_STICK = ["velocity-steps-block", "slide-hold-slide-block", "rate-and-state-slab", "rate-and-state-block"]
+
+
+@cache
+def run(name: str) -> ss.Solution:
+    return ss.load_scenario(name).run()
+
+
+def panel(figure: Figure, text: str, across: str = "time") -> Axes:
+    """Return the panel whose ordinate and abscissa have these names; panels in one column share the name of the abscissa."""
+    return next(
+        axes for axes in figure.axes if axes.get_ylabel().startswith(text) and (axes.get_xlabel() or "time").startswith(across)
+    )
+
+
+def drawn(axes: Axes) -> np.ndarray:
+    """Return the finite points of the last curve of a panel, without the marks of shocks and of zero."""
+    points = next(line for line in reversed(axes.lines) if len(line.get_xdata()) > 2).get_xydata()
+    return np.asarray(points[np.isfinite(points).all(axis=1)], float)
+
+
+@pytest.mark.parametrize("name", NEVER_STICK)
+def test_the_response_fills_its_axes(name: str) -> None:
+    """Slip rate, friction against time and against slip: the curves take more than 60 % of the height."""
+    figure = draw(run(name))
+    for axes in (panel(figure, "slip rate"), panel(figure, "friction"), panel(figure, "friction", "slip")):
+        low, high = axes.get_ylim()
+        values = drawn(axes)[:, 1]
+        assert low < values.min() < values.max() < high
+        if axes.get_yscale() == "log":
+            low, high, values = np.log(low), np.log(high), np.log(values)
+        assert np.ptp(values) > 0.6 * (high - low)
+
+
+def test_friction_after_velocity_steps_is_that_of_steady_sliding() -> None:
+    """mu0 + (a - b) ln(v/v0): at the end of 50 s at 10 µm/s relative 1e-6, in both panels, against slip at 0.7 mm."""
+    figure = draw(run("velocity-steps-block"))
+    steady = 0.6 + (0.010 - 0.013) * np.log(10.0)
+    time, friction = drawn(panel(figure, "friction")).T
+    assert np.interp(249.9, time, friction) == pytest.approx(steady, rel=1e-6, abs=0.0)
+    axes = panel(figure, "friction", "slip")
+    slip, friction = drawn(axes).T
+    assert np.interp(0.69e-3 / size_of(axes.get_xlabel()), slip, friction) == pytest.approx(steady, rel=1e-6, abs=0.0)
+    assert friction.max() > 0.63  # the peak after the step to 100 µm/s
+    assert panel(figure, "pull rate").get_yscale() == "log"
+
+
+@pytest.mark.parametrize("name", NEVER_STICK)
+def test_friction_is_traction_over_normal_load_at_its_slip(name: str) -> None:
+    solution = run(name)
+    axes = panel(draw(solution), "friction", "slip")
+    time, traction = solution.curve("traction")
+    points = np.stack([solution.slip(time) / size_of(axes.get_xlabel()), traction / solution.problem.normal], axis=1)
+    shown = drawn(axes)
+    first = len(points) - len(shown)
+    np.testing.assert_array_equal(shown, points[first:])
+    # Left out is the start from rest: a period of the block (milliseconds), of a slab the state at rest itself.
+    body = solution.problem.body
+    assert time[first - 1] <= (0.0 if body.has_waves else body.round_trip_time)
+
+
+def test_a_figure_of_the_start_alone_shows_it() -> None:
+    """Within one period the block of the velocity steps still accelerates from 0: nothing is left out but 0 itself."""
+    solution = run("velocity-steps-block")
+    period = solution.problem.body.round_trip_time
+    rates = drawn(panel(draw(solution, 0.0, period), "slip rate"))[:, 1]
+    whole = drawn(panel(draw(solution), "slip rate"))[:, 1]
+    assert rates.min() < 1e-3 * whole.min()
+
+
+def test_loads_of_a_block_are_forces() -> None:
+    """In names and units, also where friction is drawn as a coefficient."""
+    figure = draw(run("fig6-block-reconstructed"))
+    assert figure.axes[2].get_ylabel() == "friction and\nspring force (TN)"
+    assert {text.get_text().split()[0] for text in figure.legends[0].get_texts()} == {"spring", "friction"}
+    assert run("fig6-block-reconstructed").plot.load().axes[0].get_ylabel() == r"spring force $\beta$ (TN)"
+    assert "spring force" in draw(run("velocity-steps-block")).legends[0].get_texts()[0].get_text()
+
+
+def test_every_line_has_an_entry_in_the_legend() -> None:
+    figure = draw(run("fig6-slab"))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        r"load $\beta$",
+        r"traction $\tau$",
+        "shock (jump of the slip rate)",
+    ]
+    tides = {text.get_text() for text in draw(run("tides-block")).legends[0].get_texts()}
+    assert {"range of the tone", "pull rate without its tone"} <= tides
+    assert "shock (jump of the slip rate)" not in tides
+
+
+def test_stresses_far_from_zero_are_not_drawn_from_zero() -> None:
+    axes = panel(draw(run("stress-pulse-slab")), "traction")
+    low, high = axes.get_ylim()
+    assert 5.0 < low < high < 7.0  # MPa
+
+
+def test_panels_have_letters_in_their_order() -> None:
+    assert [axes.get_title(loc="left") for axes in draw(run("velocity-steps-block")).axes] == ["(a)", "(b)", "(c)", "(d)", "(e)"]

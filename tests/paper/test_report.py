@@ -1,0 +1,174 @@
+"""The page with the report on the paper: its structure, its links, and the numbers that readers see."""
+
+from __future__ import annotations
+
+import re
+from base64 import b64decode
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from stickslip.paper.claims import STATEMENTS
+from stickslip.paper.report import number, symbols, with_unit
+
+EMPTY = {"meta", "img"}
+"""Elements without an end tag."""
+PHRASES = {"p", "h1", "h2", "h3", "summary", "span", "a", "b", "sub", "caption", "code"}
+BLOCKS = {"p", "h1", "h2", "table", "div", "section", "figure", "details", "ul", "li", "nav", "main", "header", "footer"}
+
+
+class Page(HTMLParser):
+    """The elements of a page in their order, each with its attributes and the elements around it, and its visible text."""
+
+    def __init__(self, source: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.open: list[str] = []
+        self.elements: list[tuple[str, dict[str, str], tuple[str, ...]]] = []
+        self.text: list[tuple[tuple[str, ...], str]] = []
+        self.feed(source)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert len(attrs) == len(dict(attrs)), f"an attribute of {tag} is given twice"
+        self.elements.append((tag, {name: value or "" for name, value in attrs}, tuple(self.open)))
+        if tag not in EMPTY:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if not {"style", "title"} & set(self.open):
+            self.text.append((tuple(self.open), data))
+
+    def having(self, tag: str) -> list[dict[str, str]]:
+        return [attributes for name, attributes, _ in self.elements if name == tag]
+
+    def place(self, tag: str, **wanted: str) -> int:
+        """Return the place of the first element with this tag and these attributes."""
+        return next(i for i, (name, found, _) in enumerate(self.elements) if name == tag and wanted.items() <= found.items())
+
+    def within(self, tag: str) -> str:
+        return "".join(text for around, text in self.text if tag in around)
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Page:
+    return Page((folder / "report.html").read_text(encoding="utf-8"))
+
+
+def test_elements_are_nested_and_ids_are_unique(page: Page) -> None:
+    for tag, _, around in page.elements:
+        assert not (tag in BLOCKS and PHRASES & set(around)), (tag, around)
+    ids = [attributes["id"] for _, attributes, _ in page.elements if "id" in attributes]
+    assert len(set(ids)) == len(ids) > 7 + 20
+
+
+def test_headings_descend_one_level_at_a_time(page: Page) -> None:
+    levels = [int(tag[1]) for tag, _, _ in page.elements if re.fullmatch("h[1-6]", tag)]
+    assert levels.count(1) == 1
+    assert levels[0] == 1
+    assert all(later - earlier <= 1 for earlier, later in pairwise(levels))
+
+
+def test_the_table_of_verdicts_comes_first_then_figures_then_claims(page: Page) -> None:
+    contents, verdicts = page.place("nav"), page.place("table", **{"class": "verdicts"})
+    picture, claim = page.place("img"), page.place("details")
+    assert contents < verdicts < picture < claim
+    assert verdicts == page.place("table")
+    last = max(i for i, (tag, _, _) in enumerate(page.elements) if tag == "img")
+    assert last < claim
+
+
+def test_every_claim_is_in_the_table_and_folded_behind_its_verdict(page: Page) -> None:
+    unfolded = page.having("details")
+    assert len(unfolded) == len(STATEMENTS)
+    assert not any("open" in attributes for attributes in unfolded)
+    assert [tag for tag, _, around in page.elements if around[-1:] == ("details",)] == ["summary", "div"] * len(STATEMENTS)
+    table, claims = page.within("tbody"), page.within("summary")
+    for n, claim in STATEMENTS.items():
+        assert claim in table
+        assert f"{n}. {claim}" in claims
+        place = page.place("div", id=f"claim-{n}")
+        assert page.elements[place][2][-1] == "details"
+
+
+def test_links_lead_to_places_on_the_page_or_to_files_beside_it(page: Page, folder: Path) -> None:
+    ids = {attributes["id"] for _, attributes, _ in page.elements if "id" in attributes}
+    links = [attributes["href"] for attributes in page.having("a")]
+    inside = {link[1:] for link in links if link.startswith("#")}
+    assert inside <= ids
+    assert inside >= {"verdicts", "figures", "claims", "constants", "cases"} | {f"claim-{n}" for n in STATEMENTS}
+    beside = [link for link in links if not link.startswith("#")]
+    assert beside
+    assert all((folder / link).is_file() for link in beside)
+
+
+def test_the_report_needs_nothing_from_elsewhere(page: Page, folder: Path) -> None:
+    source = (folder / "report.html").read_text(encoding="utf-8")
+    assert "://" not in source
+    assert "url(" not in source
+    assert not {"script", "link", "iframe", "object"} & {tag for tag, _, _ in page.elements}
+    assert all(attributes["src"].startswith("data:image/svg+xml;base64,") for attributes in page.having("img"))
+
+
+def test_pictures_are_described_and_are_those_of_the_folder(page: Page, folder: Path) -> None:
+    pictures = page.having("img")
+    for n, attributes in enumerate(pictures, 1):
+        assert len(attributes["alt"]) > 60
+        code = attributes["src"].partition("base64,")[2]
+        assert b64decode(code) == (folder / f"figure{n}.svg").read_bytes()
+    assert len(pictures) == 7
+
+
+def test_visible_numbers_have_meaningful_digits(page: Page, folder: Path) -> None:
+    text = " ".join(text for _, text in page.text)
+    assert not re.search(r"\b(None|nan|inf)\b", text)
+    for found in re.findall(r"\d[\d.]*", text):
+        assert len(found.replace(".", "").strip("0")) <= 8, found
+    assert not re.search(r"(?<![\w-])[\d.]+e[+-]\d", text)
+    digits = re.findall(r"\d\.\d{12,}", (folder / "claims.csv").read_text(encoding="utf-8"))
+    assert len(digits) > 20, "the table keeps all digits"
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected"),
+    [
+        (1.0 / 3.0, "", "0.333333"),
+        (0.0, "m/s", "0 m/s"),
+        (-2.9914e-12, "m/s", "−2.9914 × 10⁻¹² m/s"),
+        (9.8e6, "Pa s/m", "9.8 × 10⁶ Pa s/m"),
+        (999_999.4, "m", "999999 m"),
+        (64471887.24235731, "Pa", "64.4719 MPa"),
+        (3.43e10, "Pa", "34.3 GPa"),
+        (624.998698, "Pa", "624.999 Pa"),
+        (480.0 * 31_557_600.0, "s", "480 years"),
+        (93_880.0, "s", "93880 s"),
+        (0.02001218, "year", "7.30945 days"),
+        (4.990767e-7, "year", "15.7497 s"),
+        (50.0, "1/m", "50 /m"),
+    ],
+)
+def test_numbers_are_given_in_readable_units(value: float, unit: str, expected: str) -> None:
+    assert with_unit(value, unit) == expected
+
+
+def test_what_is_no_number_is_no_number_for_readers_either() -> None:
+    assert (number(float("nan")), number(float("-inf")), with_unit(None, "m")) == ("–", "−∞", "–")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("S (μS − μD) < K", "S (μ<sub>S</sub> − μ<sub>D</sub>) &lt; K"),
+        ("u0 = uc + 1, αc/2, such a duct", "u<sub>0</sub> = u<sub>c</sub> + 1, α<sub>c</sub>/2, such a duct"),
+        ("(β − μ0S)", "(β − μ<sub>0</sub>S)"),
+        ("fig5-slab-u0-1e-2", "fig5-slab-u0-1e-2"),
+        ("mass × 1e-06 on 1e+06 kg/m²", "mass × 10⁻⁶ on 10⁶ kg/m²"),
+    ],
+)
+def test_indices_are_subscripts_and_powers_of_ten_are_written_out(text: str, expected: str) -> None:
+    assert str(symbols(text)) == expected
