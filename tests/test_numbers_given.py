@@ -133,6 +133,8 @@ class Masked(np.ndarray):
         (b"1 km", "b'1 km'"),
         ("", "''"),
         ("ten km", "'ten km'"),
+        ("10,5 km", "'10,5 km': write a decimal point"),
+        (np.timedelta64(3, "s"), "timedelta64"),
         ("10", "'10': write a number without quotes"),
         ("nan", "'nan': write a number without quotes"),
         ("10 " + "m" * 70, f"'10 {'m' * 53}...: longer than 64 characters"),

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from decimal import Decimal
-from numbers import Real
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from stickslip.foundation.arguments import as_float, shown
+from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
@@ -89,7 +88,7 @@ def to_number(value: Any, unit: str, infinite: Collection[str] = ()) -> float:
             return float(without_unit(value, unit))
         except InputError as error:
             raise InputError(f"{as_text(value)}: {error}") from None
-    if isinstance(value, bool) or not isinstance(value, Real | Decimal) or (isinstance(value, Decimal) and value.is_snan()):
+    if not (is_number(value) or (isinstance(value, Decimal) and not value.is_snan())):
         raise InputError(shown(value))
     if isinstance(value, int) and abs(value) > LARGEST_INTEGER:
         raise InputError("a whole number beyond 1e300")
@@ -136,7 +135,7 @@ def _hint(text: str) -> str:
     try:
         float(text)
     except ValueError:
-        return ""
+        return ": write a decimal point" if split_quantity(text.replace(",", ".", 1)) else ""
     return ": write a number without quotes"
 
 

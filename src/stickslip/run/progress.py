@@ -57,7 +57,7 @@ class Report(NamedTuple):
         ]
         if self.pace > 0.0:
             parts.append(f"{about_time(self.pace)} a second")
-        if math.isfinite(self.left):
+        if 1.0 <= self.left < math.inf:
             parts.append(f"{about_time(self.left)} left")
         return ", ".join(parts)
 

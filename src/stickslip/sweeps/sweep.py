@@ -46,7 +46,9 @@ class SweepProgress(NamedTuple):
     def __str__(self) -> str:
         parts = [f"{self.done} of {self.members} members"]
         if self.rate > 0.0:
-            parts += [f"{number(self.rate, 3)} a second", f"{about_time(self.left)} left"]
+            parts.append(f"{number(self.rate, 3)} a second")
+        if self.left >= 1.0:
+            parts.append(f"{about_time(self.left)} left")
         return ", ".join([*parts, *([f"{self.failed} failed"] if self.failed else [])])
 
 
