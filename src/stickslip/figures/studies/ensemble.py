@@ -212,7 +212,7 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
     if not many:
         axes.set_ylim(bottom=0.0)
         count_ticks(axes)
-    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="number of events with slip ≥ $x$")
+    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="events with slip ≥ $x$")
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:
