@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import PALE, label, shown
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 LETTERS = 13.0
 """Number of letters of a title in an inch; longer titles are broken into lines."""

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, set_log_ticks, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
 from stickslip.figures.sweeps.jumps import jumps
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
+from stickslip.solution.place import Place
 
 MOST_CURVES = 4
 """A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""

@@ -12,11 +12,12 @@ from matplotlib.lines import Line2D
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, panels, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import BLUE, GREY, INK, PALE
 from stickslip.figures.sweeps.colours import colours_of, explain
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Scaled, Shown, scaled, shown
+from stickslip.solution.place import Place
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 SIZE = 16.0
