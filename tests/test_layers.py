@@ -53,7 +53,7 @@ ROOMS = {
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
-    "figures": (("style",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
+    "figures": (("names", "style"), ("sheet",), ("legends", "panels"), ("contact", "runs", "sweeps"), ("studies",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (("output", "names", "overrides"), ("long_run", "options"), ("commands",), ("main",)),
 }

@@ -232,6 +232,11 @@ def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
     figure = regularise.draw(dataset)
     assert len(labels(figure)) == 6
     assert all(has_unit(text) for text in labels(figure))
+    key = [text.get_text() for text in figure.legends[0].get_texts()]
+    runs = [text for text in key if text.startswith("(b, c)")]
+    assert len(runs) == len(np.atleast_1d(dataset.attrs["drawn"])) + 1
+    assert runs[-1] == f"(b, c) exact: {dataset.attrs['target']}"
+    assert sum(text.startswith("(a)") for text in key) == len(rules) + 1
     if "jump_time" in dataset.attrs:
         assert dataset.attrs["jump_time"] == pytest.approx(5.212841, rel=1e-6, abs=0.0)
         assert f"{study.verdict.order.power:.2f}" in {text.get_text() for text in figure.axes[0].texts}
@@ -254,6 +259,16 @@ def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:
     for axes in figure.axes:
         assert axes.get_title(loc="left")
         assert axes.get_xlabel()
+        assert axes.has_data()
+    key = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"(b) measured, median", "(b) measured, least to most", "(b) predicted", "(c) member 0", "(c) others"} <= set(key)
+
+
+def test_an_ensemble_without_events_has_no_panels_for_them() -> None:
+    study = ss.studies.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=-1e6), 100.0, members=2)
+    figure = ensemble.draw(ensemble.data(study))
+    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(b)"]
+    assert not any("(c)" in text.get_text() or "(d)" in text.get_text() for text in figure.legends[0].get_texts())
 
 
 def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:

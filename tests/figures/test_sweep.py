@@ -162,6 +162,15 @@ def test_one_key_is_a_curve_with_gaps() -> None:
     assert figure.axes[0].get_ylabel() == "pulses of all slip events"
 
 
+def test_members_without_a_number_are_marked_by_why_they_have_none() -> None:
+    values = np.array([1.5, np.nan, np.nan, np.nan, 5.0])
+    figure = ss.figures.plot_sweep(grid(values, ALPHA, status=[0, 0, FAILED, NOT_RUN, 0]), "answer")
+    marks = {line.get_label(): line.get_xdata().tolist() for line in figure.axes[0].lines[1:]}
+    places = AXES[ALPHA]
+    assert marks == {"undefined for this run": [places[1]], "failed": [places[2]], "not run": [places[3]]}
+    assert legend(figure) == list(marks)
+
+
 def test_few_values_of_a_second_key_are_a_family_of_curves() -> None:
     values = np.add.outer(0.5 * np.arange(9), np.array([0.0, 10.0]))
     figure = ss.figures.plot_sweep(grid(values, ALPHA, STRESS), "answer")

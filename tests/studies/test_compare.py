@@ -133,6 +133,35 @@ def test_runs_of_very_different_lengths_share_no_seconds() -> None:
     assert "share of each run's own" in Comparison(runs).plot().axes[-1].get_xlabel()
 
 
+def test_runs_of_different_size_share_an_axis_in_one_unit() -> None:
+    """In units of their own, 0.27 m/s of the block would look larger than 4.1 m/s of the slab."""
+    runs = {name: ss.load_scenario(name).run() for name in ("cycles-block", "fig6-slab")}
+    slip_rate = Comparison(runs).plot().axes[1]
+    assert slip_rate.get_ylabel() == "slip rate $v$ (m/s)"
+    tops = [float(np.max(line.get_ydata())) for line in slip_rate.get_lines()[:2]]
+    assert tops == pytest.approx([run.events.peak_rate.max() for run in runs.values()], rel=1e-2, abs=0.0)
+
+
+def test_very_different_sizes_are_seen_on_a_logarithmic_axis() -> None:
+    for axes in compare("fig7-block-critical", "fig7-slab-critical").plot().axes[:2]:
+        assert axes.get_yscale() == "log"
+        low, high = axes.get_ylim()
+        for line in axes.get_lines():
+            heights = np.asarray(line.get_ydata())
+            assert np.nanmax(heights) < high
+            assert (heights > low).mean() > 0.2
+
+
+def test_runs_without_later_events_end_together() -> None:
+    early, late = (ss.load_scenario("fig6-slab").run() for _ in range(2))
+    short = ss.simulate(early.problem, 6.5)
+    dataset = data(Comparison({"short": short, "long": late}))
+    assert float(dataset.run0_slip_time.max()) == float(dataset.run1_slip_time.max()) == 6.5
+    dataset = data(Comparison({"cut": ss.simulate(early.problem, 3.0), "long": late}))
+    assert float(dataset.run0_slip_time.max()) == 3.0
+    assert float(dataset.run1_slip_time.max()) == pytest.approx(40.0 / 7.0, rel=1e-9, abs=0.0)
+
+
 def test_one_event_of_each_run_is_shown_in_local_time() -> None:
     runs = {rule: ss.load_scenario(f"second-event-{rule}").run() for rule in ("maxwell", "maximal")}
     dataset = data(Comparison(runs, 1))

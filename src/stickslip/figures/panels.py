@@ -18,12 +18,15 @@ from numpy.typing import NDArray
 
 from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import PALE, label, shown
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 LETTERS = 13.0
 """Number of letters of a title in an inch; longer titles are broken into lines."""
+BESIDE = 0.7
+"""Width (inches) of the labels beside the axis of a panel."""
 NARROW = 500.0
 """Logarithmic axes that span less than this factor have ticks at 1, 2, 5, 10, ...: powers of ten alone would be too few."""
 
@@ -53,7 +56,9 @@ def set_title(where: Any, title: str) -> None:
         return
     figure = where.figure
     line = "".join(letter if letter.isprintable() else " " for letter in title)
-    text = textwrap.fill(" ".join(line.split()), max(int(LETTERS * figure.get_figure(root=True).get_size_inches()[0]), 20))
+    # The title of a panel begins beside its axis, that of a figure at the edge.
+    room = figure.get_figure(root=True).get_size_inches()[0] - (BESIDE if isinstance(where, Axes) else 0.0)
+    text = textwrap.fill(" ".join(line.split()), max(int(LETTERS * room), 20))
     if isinstance(where, Axes):
         where.set_title(text, parse_math=False)
     else:

@@ -10,14 +10,15 @@ from __future__ import annotations
 import math
 import re
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack, cast
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack, cast
 
 import matplotlib as mpl
 from matplotlib.backends.registry import BackendFilter, backend_registry
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,27 +36,6 @@ MOST_DOTS = 30_000
 """Largest number of dots along one side: a picture with more takes gigabytes of memory."""
 HOW_TO_SIZE = 'two lengths in inches, a text such as "16 x 10 cm" or "3.5 x 5 in", "single column" or "double column"'
 _SIZE = re.compile(r"\s*([\d.]+)\s*([a-z]*)\s*[x×*]\s*([\d.]+)\s*([a-z]+)\s*")
-
-
-class Place(TypedDict, total=False):
-    """Where a figure is drawn, and how large.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Axes to draw in, for figures of one panel. They get no title.
-    figure : matplotlib.figure.Figure or SubFigure
-        An empty figure to draw in. It keeps its size unless `size` is given.
-    size : (float, float) or str
-        Width and height in inches, a text with a unit ("16 x 10 cm"), "single column" or "double column".
-    dpi : float
-        Dots per inch, on the screen and in files.
-    """
-
-    ax: Axes
-    figure: Figure | SubFigure
-    size: tuple[float, float] | str
-    dpi: float
 
 
 class StickslipFigure(Figure):

@@ -5,7 +5,7 @@ that dataset. The data published beside a figure are therefore the data that wer
 
 Rules that all figures follow:
 
-1. **Place.** Every function that draws takes the keywords of `sheet.Place` (ax, figure, size, dpi) and begins with
+1. **Place.** Every function that draws takes the keywords of `Place` (ax, figure, size, dpi) and begins with
    `sheet(usual size, **place)`, or with `one_panel(usual size, **place)` for a figure of one panel, which ends with
    `return result(axes, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls pyplot; a method
    for users returns `known_to_pyplot(draw(dataset, **place), place)`.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stickslip.figures.sheet import Place
+    from stickslip.solution.place import Place
     from stickslip.solution.solution import Solution
 
 MOST_VALUES = 20_000_000

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from stickslip.figures.sheet import Place
+    from stickslip.solution.place import Place
 
 MAX_PIECES = 200_000
 """Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""

@@ -16,7 +16,7 @@ from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import (
     GREEN,
     GREY,
@@ -33,6 +33,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from stickslip.figures.contact import resistance
 from stickslip.figures.contact.resistance import load_unit
 from stickslip.figures.panels import letter_panels, zero_line
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, VERMILLION, Floats, curve_quantity, label, shown, styled, unit_shown
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from stickslip.figures.panels import letter_panels, panels
-from stickslip.figures.sheet import Place
 from stickslip.figures.style import LINE_COLOURS, curve_quantity, label, quantity, shown, styled
 from stickslip.friction import FrictionLaw
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,11 +11,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, set_title, zero_line
-from stickslip.figures.sheet import Place, known_to_pyplot, sheet
+from stickslip.figures.sheet import known_to_pyplot, sheet
 from stickslip.figures.style import BLUE, GREY, INK, Floats, axis_text, quantity, spans_decades, styled, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Fit, Smooth
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,9 +14,10 @@ from matplotlib.patches import Patch
 from stickslip.contact.regime_map import RegimeMap
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import draw_map, draw_parameters, parameter_variables, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

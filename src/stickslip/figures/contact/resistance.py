@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
 from stickslip.figures.panels import letter_panels, panels
-from stickslip.figures.sheet import Place
 from stickslip.figures.style import (
     BLUE,
     GREY,
@@ -28,6 +27,7 @@ from stickslip.figures.style import (
     unit_shown,
 )
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

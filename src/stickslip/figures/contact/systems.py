@@ -11,10 +11,10 @@ from matplotlib.patches import Polygon, Rectangle
 
 from stickslip.bodies import as_slab
 from stickslip.figures.panels import letter_panels, panels
-from stickslip.figures.sheet import Place
 from stickslip.figures.style import BLUE, GREY, INK, PALE, VERMILLION, quantity, styled
 from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.problem import Problem
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

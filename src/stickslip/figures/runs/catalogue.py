@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, letter_panels, set_scale, set_title, zero_line
 from stickslip.figures.runs.slab_panels import last_large_event
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -37,6 +37,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
+from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, panels, zero_line
-from stickslip.figures.sheet import Place
 from stickslip.figures.style import (
     GREY,
     INK,
@@ -24,6 +23,7 @@ from stickslip.figures.style import (
     unit_of,
     unit_shown,
 )
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

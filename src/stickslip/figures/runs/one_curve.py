@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Unpack
 
 from stickslip.figures.panels import set_title
 from stickslip.figures.runs.curves import draw_curve, interval, set_time
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import styled, title_of
 from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,9 +8,10 @@ from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.runs.curves import draw_curve, draw_friction, draw_stress, interval, mark_shocks, set_time
 from stickslip.figures.runs.loading import draw_loading
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import styled, title_of
 from stickslip.solution.evaluation import Readings
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,9 +12,10 @@ from matplotlib.lines import Line2D
 from stickslip.figures.panels import letter_panels, set_title, zero_line
 from stickslip.figures.runs.curves import MANY
 from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, means, places
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled, unit_shown
 from stickslip.observables.field import slab_of
+from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.tables import shocks_table

@@ -15,8 +15,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
 from stickslip.figures.panels import draw_map, draw_parameters, letter_panels, panels, parameter_variables, set_title
-from stickslip.figures.sheet import Place
 from stickslip.figures.style import INK, PALE, TWO, shown, styled
+from stickslip.solution.place import Place
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
 LARGEST = 10.0

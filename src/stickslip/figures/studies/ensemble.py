@@ -16,8 +16,9 @@ from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, letter_panels, set_log_ticks, set_scale
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, WIDE, curve_quantity, quantity, styled, time_unit, unit_of
+from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from stickslip.studies.ensemble import Ensemble
@@ -212,7 +213,7 @@ def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
     if not many:
         axes.set_ylim(bottom=0.0)
         count_ticks(axes)
-    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="number of events with slip ≥ $x$")
+    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="events with slip ≥ $x$")
 
 
 def _draw_starts(axes: Axes, dataset: xr.Dataset) -> None:

@@ -14,8 +14,9 @@ from matplotlib.lines import Line2D
 from stickslip.figures.contact import resistance
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, set_title, zero_line
-from stickslip.figures.sheet import Place, sheet
+from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.solution.place import Place
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:

@@ -13,13 +13,16 @@ from numpy.typing import NDArray
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, set_log_ticks, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
 from stickslip.figures.sweeps.jumps import jumps
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
+from stickslip.solution.place import Place
 
 MOST_CURVES = 4
 """A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""
+MISSING = {1: ("|", "undefined for this run"), 2: ("x", "failed"), 3: ("_", "not run")}
+"""Mark and explanation of members without a number, by their state."""
 SEPARATE = 40
 """Members of a curve are marked by dots up to this number; more would run together, and only those beside jumps are marked."""
 MARKERS = ("o", "s", "^", "D")
@@ -47,19 +50,20 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     broken = False
     for k, (row, state) in enumerate(zip(rows, states, strict=True)):
         # Later lines are thinner, so that curves that coincide all stay visible.
-        look: dict[str, Any] = {"color": LINE_COLOURS[k], "marker": MARKERS[k], "markersize": 3.5, "linewidth": WIDTHS[k]}
+        width = 1.5 if names is None else WIDTHS[k]
+        look: dict[str, Any] = {"color": LINE_COLOURS[k], "marker": MARKERS[k], "markersize": 3.5, "linewidth": width}
         broken |= _draw_curve(axes, across, row, quantity, look)
         if names is not None:
             marks.append(Line2D([], [], label=names.values[k], linestyle="none" if across.words else "-", **look))
-        mark_failed(axes, across.values[state == 2], LINE_COLOURS[k] if others else GREY)
+        mark_missing(axes, across.values, state, LINE_COLOURS[k] if others else GREY, k)
     across.show(axes, "x")
     show_ordinate(axes, quantity)
     if broken and names is None:
         text = ALL if rows.shape[1] <= SEPARATE else BESIDE
         marks.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=BLUE, label=text))
-    crosses = [line for line in axes.get_lines() if line.get_label() == "failed"]
+    marks += missing_marks(axes)
     heading = "" if names is None else names.full + (ENDS if broken else "")
-    add_legend(axes, [*marks, *crosses], heading, own="ax" in place)
+    add_legend(axes, marks, heading, own="ax" in place)
     if "ax" not in place:
         set_title(axes, str(dataset.attrs.get("title", "")))
     return result(axes, **place)
@@ -90,18 +94,26 @@ def _marked(values: Floats, divided: NDArray[np.bool_]) -> list[int]:
     return np.flatnonzero(beside & np.isfinite(values)).tolist()
 
 
-def mark_failed(axes: Axes, places: Floats, colour: str = GREY) -> None:
-    """Draw crosses at the bottom of the panel at the values whose members failed."""
-    if places.size:
-        text = "" if "failed" in axes.get_legend_handles_labels()[1] else "failed"
-        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none"}
-        axes.plot(places, np.full(len(places), 0.02), marker="x", color=colour, markersize=4.0, label=text, **at)
+def mark_missing(axes: Axes, places: Floats, state: NDArray[Any], colour: str = GREY, row: int = 0) -> None:
+    """Mark at the bottom of the panel, in a row for each curve, the values whose members have no number, by why they have none."""
+    at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none", "markersize": 4.0}
+    for which, (marker, text) in MISSING.items():
+        if (state == which).any():
+            here = places[state == which]
+            axes.plot(here, np.full(len(here), 0.02 + 0.03 * row), marker=marker, color=colour, label=text, **at)
+
+
+def missing_marks(*panels: Axes) -> list[Line2D]:
+    """Return an entry of the key for each reason why members have no number that is marked in these panels."""
+    found = {str(line.get_label()): line for axes in panels for line in axes.get_lines()}
+    return [found[text] for _, text in MISSING.values() if text in found]
 
 
 def show_ordinate(axes: Axes, quantity: Shown) -> None:
     """Set label, scale and ticks of the axis of the quantity."""
     if not quantity.known.size:
         axes.set_yticks([])
+        axes.text(0.5, 0.5, "no member has this number", transform=axes.transAxes, ha="center", color=GREY)
     elif quantity.is_flag:
         axes.set_yticks([0.0, 1.0], ["no", "yes"])
         axes.set_ylim(-0.1, 1.1)

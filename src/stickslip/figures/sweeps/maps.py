@@ -15,11 +15,12 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 from stickslip.figures.panels import letter_panels, panels, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.members import axes_of, draw_members
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, Scaled, Shown, names_of, scaled, shown
+from stickslip.solution.place import Place
 from stickslip.sweeps.results.refinement_spec import RefinedMap, RefinementSpec, cells_of
 
 PANELS = 9

@@ -12,11 +12,12 @@ from matplotlib.lines import Line2D
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, panels, set_title
-from stickslip.figures.sheet import Place, one_panel, result
+from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import BLUE, GREY, INK, PALE
 from stickslip.figures.sweeps.colours import colours_of, explain
-from stickslip.figures.sweeps.curves import mark_failed, show_ordinate
+from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Scaled, Shown, scaled, shown
+from stickslip.solution.place import Place
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 SIZE = 16.0
@@ -39,7 +40,7 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     drawn = list(grid.flat)[: len(places)]
     for axes, across in zip(drawn, places, strict=True):
         axes.plot(across.values, quantity.values.values, ".", color=BLUE, markersize=4.0, rasterized=True)
-        mark_failed(axes, across.values[quantity.state.values == 2])
+        mark_missing(axes, across.values, quantity.state.values)
         replace(across, room=LITTLE if columns > 1 else ROOM).show(axes, "x")
     for axes in list(grid.flat)[len(places) :]:
         axes.remove()
@@ -47,8 +48,7 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
         show_ordinate(axes, quantity)
     letter_panels(drawn)
     dots = Line2D([], [], linestyle="none", marker=".", color=BLUE, label="one dot for each member")
-    crosses = [line for line in drawn[0].get_lines() if line.get_label() == "failed"]
-    add_legend(drawn[0], [*([dots] if len(drawn) > 1 else []), *crosses])
+    add_legend(drawn[0], [*([dots] if len(drawn) > 1 else []), *missing_marks(*drawn)])
     set_title(figure, title)
     return figure
 

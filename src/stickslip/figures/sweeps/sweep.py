@@ -13,13 +13,14 @@ from typing import Any, Unpack
 import numpy as np
 import xarray as xr
 
-from stickslip.figures.sheet import Place, known_to_pyplot
+from stickslip.figures.sheet import known_to_pyplot
 from stickslip.figures.style import styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_cells, draw_maps
 from stickslip.figures.sweeps.members import draw_members
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE

@@ -1,0 +1,30 @@
+"""The keywords with which users say where a figure is drawn, and how large."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypedDict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+
+class Place(TypedDict, total=False):
+    """Where a figure is drawn, and how large.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+        Axes to draw in, for figures of one panel. They get no title.
+    figure : matplotlib.figure.Figure or SubFigure
+        An empty figure to draw in. It keeps its size unless `size` is given.
+    size : (float, float) or str
+        Width and height in inches, a text with a unit ("16 x 10 cm"), "single column" or "double column".
+    dpi : float
+        Dots per inch, on the screen and in files.
+    """
+
+    ax: Axes
+    figure: Figure | SubFigure
+    size: tuple[float, float] | str
+    dpi: float
