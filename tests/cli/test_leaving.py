@@ -26,13 +26,13 @@ main({arguments!r})
     ("module", "arguments"),
     [
         ("typer", ["--help"]),
-        ("rich", ["--help"]),
+        ("rich", ["run", "fig6-slab"]),
         ("stickslip.cli.commands.sweep", ["run", "fig6-slab"]),
         ("numpy", ["run", "fig6-slab"]),
-        ("numpy.random", ["check", "fig6-slab"]),
+        ("stickslip.scenarios.examine", ["check", "fig6-slab"]),
         ("numba", ["run", "fig6-slab"]),
         ("stickslip.run.simulate", ["run", "fig6-slab"]),
-        ("pandas", ["run", "fig6-slab"]),
+        ("xarray", ["run", "fig6-slab", "--out", "a.nc"]),
         ("matplotlib", ["check", "fig6-slab", "--figure", "k.png"]),
     ],
 )

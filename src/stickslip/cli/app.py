@@ -20,7 +20,7 @@ from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
-from stickslip.cli.help import Command, prose_of, sections_of
+from stickslip.cli.help import Command, prose_of, sections_of, write_list
 from stickslip.foundation.errors import InputError, nearest
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
@@ -74,7 +74,7 @@ class Commands(TyperGroup):
         """Write the names of all commands, each with the first sentence of its help, and the options."""
         for heading, commands in GROUPS.items():
             with formatter.section(heading):
-                formatter.write_dl([(one.__name__, prose_of(one).partition("\n\n")[0]) for one in commands])
+                write_list(formatter, [(one.__name__, prose_of(one).partition("\n\n")[0]) for one in commands])
         sections_of(self, ctx, formatter)
 
 

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from inspect import cleandoc
+from textwrap import wrap
 from typing import Any
 
 from typer.core import TyperArgument, TyperCommand
 
 from stickslip.cli.names import CHOICES
+
+WIDEST_TERM = 28
+"""Largest width (columns) of the terms of a list; the explanation of a longer one begins below it."""
+LEAST_WIDTH = 20
+"""Smallest width (columns) of explanations."""
 
 
 def prose_of(command: Callable[..., Any]) -> str:
@@ -40,4 +46,15 @@ def sections_of(command: Any, ctx: Any, formatter: Any) -> None:
     for heading, records in sections.items():
         if records:
             with formatter.section(heading):
-                formatter.write_dl(records)
+                write_list(formatter, records)
+
+
+def write_list(formatter: Any, records: list[tuple[str, str]]) -> None:
+    """Write terms, each with its explanation beside it or, after a long term, below it; words with hyphens stay whole."""
+    start = min(max(len(term) for term, _ in records), WIDEST_TERM) + 2
+    width = max(formatter.width - formatter.current_indent - start, LEAST_WIDTH)
+    for term, text in records:
+        lines = wrap(text, width, break_on_hyphens=False, break_long_words=False) or [""]
+        first = f"{term:{start}}{lines.pop(0)}" if len(term) <= start - 2 else term
+        for line in (first, *(f"{'':{start}}{one}" for one in lines)):
+            formatter.write(f"{'':{formatter.current_indent}}{line}".rstrip() + "\n")

@@ -42,7 +42,7 @@ def ensemble(
     members are apart.
 
     \b
-      stickslip ensemble fig6-slab --duration "30000 years" --events 65 --figure a.png
+      stickslip ensemble fig6-slab --duration "30000 years" --events 65 -f a.png
       stickslip ensemble cycles-block --size 1e-6 --out events.csv
       stickslip ensemble mine.toml --members 20 --size 1e-6 --seed 1
 
