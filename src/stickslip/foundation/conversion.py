@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Sequence
 from decimal import Decimal
 from typing import Any, Protocol, TypeVar
@@ -19,6 +20,10 @@ SAME = 1e-12
 """Relative difference up to which the definitions of a unit in two libraries count as the same."""
 NO_UNIT = "dimensionless"
 """Name of the unit of a pure number in pint."""
+
+
+_COMMA = re.compile(r"(?P<whole>[+-]?[\d_]+),(?P<part>\d+)(?P<rest>(?:[eE][+-]?\d+)?(?:\s*[^\d\s,][^,]*)?)")
+"""A number with a decimal comma, and what may follow it."""
 
 
 class WithUnit(Protocol):
@@ -132,11 +137,20 @@ def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
 def _hint(text: str) -> str:
     if len(text) > LONGEST:
         return f": longer than {LONGEST} characters"
+    point = decimal_point(text)
+    if point:
+        return f": write {shown(point)}, with a decimal point"
     try:
         float(text)
     except ValueError:
         return ": write a decimal point" if split_quantity(text.replace(",", ".", 1)) else ""
     return ": write a number without quotes"
+
+
+def decimal_point(text: str) -> str | None:
+    """Return a text that begins with a number with a decimal comma, with a point in its place; None if it is no such text."""
+    found = _COMMA.fullmatch(text.strip())
+    return f"{found['whole']}.{found['part']}{found['rest']}" if found else None
 
 
 def without_unit(value: Any, unit: str) -> Any:

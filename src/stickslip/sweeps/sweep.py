@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
@@ -209,6 +210,11 @@ def check_out(path: Path, what: str = "sweep: out") -> Path:
         raise InputError(f"{what} {path}: the name must end in .zarr")
     if not path.parent.is_dir():
         raise InputError(f"{what} {path}: there is no folder {path.parent}")
+    if os.path.lexists(path) and not path.is_dir():
+        raise InputError(f"{what} {path}: is a file, where a sweep needs a folder: choose another name")
+    folder = path if path.is_dir() else path.parent
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(f"{what} {path}: the folder {folder} is not writable")
     return path
 
 
