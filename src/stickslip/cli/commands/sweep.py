@@ -97,7 +97,7 @@ def sweep(
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.sweep_summary import show_sweep
+    from stickslip.cli.output.sweep_summary import show_slowest, show_sweep
     from stickslip.cli.overrides import load
     from stickslip.sweeps.design.axis_text import typed_axes
     from stickslip.sweeps.execution.outcome import NOT_RUN
@@ -124,6 +124,7 @@ def sweep(
     )
     if figure is not None:
         _check_can_be_drawn(plan)
+    spent: SweepProgress | None = None
     resources: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
     with _losses():
         if refine is not None:
@@ -133,10 +134,12 @@ def sweep(
             _show_estimate(plan, resources)
             return
         else:
-            found = _found(plan, out, resources)
+            found, spent = _found(plan, out, resources)
     if figure is not None:
         _draw(found, refine or plan.work.names[0], figure, look)
     code = show_sweep(chosen.title or chosen.name, found)
+    if spent is not None:
+        show_slowest(plan, spent)
     announce(out, figure)
     if (found.status == NOT_RUN).any():
         raise KeyboardInterrupt
@@ -204,11 +207,19 @@ def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
         yield tell
 
 
-def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> xr.Dataset:
+def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
+    """Return the results of a sweep and its last progress."""
     from stickslip.sweeps.sweep import carry_out, runner_of
 
+    last: list[SweepProgress] = []
     with runner_of(**resources) as (run, _), _progress_of(plan) as tell:
-        return carry_out(plan, out, run, tell)
+
+        def note(progress: SweepProgress) -> None:
+            last[:] = [progress]
+            tell(progress)
+
+        found = carry_out(plan, out, run, note)
+    return found, last[0] if last else None
 
 
 def _refined(plan: Plan, axes: list[Axis], options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:

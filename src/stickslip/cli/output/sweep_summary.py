@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
     from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.execution.plan import Plan
     from stickslip.sweeps.results.changes import Change
+    from stickslip.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
-"""Number of reasons for failures that are shown."""
+"""Number of reasons for failures, and of slow members, that are shown."""
+SLOW, NOTICED = 20.0, 0.5
+"""A member is slow if it takes more than this multiple of the mean processor time of a member, and more than this time (s)."""
 
 
 def show_estimate(plan: Plan, found: Estimate) -> None:
@@ -69,6 +72,29 @@ def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.nd
         if code >= FIRST_FAILURE:
             _show_reasons(reasons[status == code].tolist())
     screen.print()
+
+
+def show_slowest(plan: Plan, spent: SweepProgress) -> None:
+    """Print which members took most of the time, if a few did."""
+    usual = spent.seconds / max(spent.members, 1)
+    slow = {member: took for member, took in spent.alone.items() if took > max(SLOW * usual, NOTICED)}
+    if not slow:
+        return
+    count, share = len(slow), sum(slow.values()) / spent.seconds
+    named = []
+    for member, took in list(slow.items())[:FIRST]:
+        values = plan.design.values(np.array([member]))
+        units = {parameter.name: parameter.unit for parameter in plan.design.parameters}
+        at = ", ".join(f"{name} = {_valued(column[0], units[name])}" for name, column in values.items())
+        named.append(f"{about_time(took)} at {at}")
+    more = f"; and {count - FIRST} others" if count > FIRST else ""
+    members = "1 member" if count == 1 else f"{count} members"
+    total = f"{100.0 * share:.0f} % of the processor time ({about_time(spent.seconds)})"
+    say(console(), f"{members} took {total}: {'; '.join(named)}{more}")
+
+
+def _valued(value: Any, unit: str) -> str:
+    return clean(value) if isinstance(value, str) else with_unit(float(value), unit)
 
 
 def _show_reasons(reasons: list[str]) -> None:
