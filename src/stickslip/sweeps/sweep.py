@@ -195,8 +195,8 @@ def _finish(store: ResultStore, unfinished: dict[int, ChunkResult], run: Runner,
     most = os.cpu_count() or 1
     parts = [(chunk, one.later[i : i + most]) for chunk, one in unfinished.items() for i in range(0, len(one.later), most)]
     values = ({name: column[some] for name, column in store.plan.values(chunk).items()} for chunk, some in parts)
-    for number, found in run(store.plan.work, enumerate(values)):
-        chunk, some = parts[number]
+    for part, found in run(store.plan.work, enumerate(values)):
+        chunk, some = parts[part]
         unfinished[chunk].fill(some, found)
         store.write(chunk, unfinished[chunk])
         tally.add(chunk, found, some)
