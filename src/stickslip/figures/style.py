@@ -17,7 +17,8 @@ Rules that all figures follow:
    its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and unit.
    Stress of a slab and force of a block have names of their own (`FORCES`).
 5. **Parameters** have the words and the symbol of their declared meaning (`names.parameter_name`) and their unit.
-6. **Legends.** Every line, band, marker and colour is explained in the figure, in a legend or by a text beside it.
+6. **Legends.** Every line, band, marker and colour is explained in the figure, in a key (`legends.add_legend`) or by a text beside
+   it. A panel without data is left out.
 """
 
 from __future__ import annotations
@@ -48,8 +49,8 @@ BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", 
 INK, GREY, PALE = "#222222", "#7A7A7A", "#D9D9D9"
 # Colours of lines, in the order in which they are taken.
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, INK)
-# Colours of large areas.
-LIGHT_BLUE, LIGHT_ORANGE = "#D6E6F4", "#F8D9C4"
+# Colour of large areas.
+LIGHT_BLUE = "#D6E6F4"
 # Colours of areas of two kinds: no and yes, regular and irregular.
 TWO = (LIGHT_BLUE, ORANGE)
 
