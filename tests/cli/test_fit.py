@@ -102,7 +102,7 @@ def test_names_are_completed(points):
 
 
 CASES = [
-    (["fit"], "Missing argument"),
+    (["fit"], "fit: DATA is missing; `stickslip fit --help` explains it"),
     (["fit", "no.csv"], "no.csv: no such file"),
     (["fit", "data.csv", "--law", "hyperbolic"], "fit: law 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'?"),
     (["fit", "data.csv", "--law", "linear-slip-weakening"], "fit: linear-slip-weakening depends on slip, but the points"),

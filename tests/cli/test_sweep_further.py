@@ -48,7 +48,7 @@ def test_sweep_draws_axes_of_words(command):
         (["--refine", "slip"], "refine: slip is not a whole number: give the factor by which it must change"),
         (["--refine", "pulses", "--dry-run"], "sweep: --refine needs a grid of --vary"),
         (["--refine", "pulses", "--design", "lhs", "-m", "4"], "sweep: --refine needs a grid of --vary"),
-        (["--refine", "pulses", "--depth", "-1"], "refinement: the depth must be 0 or more"),
+        (["--refine", "pulses", "--depth", "-1"], "refine: depth must be a whole number, 0 or more, got -1"),
         (["--scheduler", "nowhere"], "sweep: no dask scheduler answers at nowhere"),
         (["--workers", "0"], "sweep: workers must be 1 or more, got 0"),
         (["--workers", "2", "--threads", "2"], "sweep: give one of threads, workers"),

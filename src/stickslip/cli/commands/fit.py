@@ -10,7 +10,7 @@ import typer
 
 from stickslip.cli.names import complete_fitted, complete_table, complete_template
 from stickslip.cli.options import Dpi, FigureFile, Size, option
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -65,9 +65,8 @@ def fit(
     from stickslip.cli.output.fits import show_result
     from stickslip.friction import Points
 
-    check_target(out, "--out", (".toml",))
     look = Look(dpi, size)
-    check_target(figure, "--figure")
+    check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
     if out is not None:

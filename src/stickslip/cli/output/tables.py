@@ -69,7 +69,7 @@ def print_words(screen: Console, headings: Sequence[str], rows: Rows, styles: Ma
     short = [min(_width(heading, whole, j), WIDEST) for j, heading in enumerate(headings[:-1])]
     styled = styles or {}
     if sum(short) + GAP * len(short) + LEAST_PROSE > screen.width:
-        _stack(screen, rows, styled)
+        _stack(screen, rows, styled, headings if len(headings) > 3 else [""] * len(headings))
         return
     made = _table() if any(headings) else Table.grid(padding=(0, GAP - 1, 0, 0))
     for j, heading in enumerate(headings):
@@ -81,12 +81,15 @@ def print_words(screen: Console, headings: Sequence[str], rows: Rows, styles: Ma
     screen.print(made)
 
 
-def _stack(screen: Console, rows: Rows, styles: Mapping[str, str]) -> None:
+def _stack(screen: Console, rows: Rows, styles: Mapping[str, str], headings: Sequence[str]) -> None:
     for row in rows:
         if len(row) == 1:
             say(screen, f"\n{row[0]}", style="bold")
             continue
-        say(screen, "  ".join(filter(None, row[:-1])), style=styles.get(row[0]))
+        others = (f"{heading} {text}".lstrip() for heading, text in zip(headings[1:-1], row[1:-1], strict=True) if text)
+        say(screen, "  ".join((row[0], *others)), style=styles.get(row[0]))
+        if not row[-1]:
+            continue
         screen.print(Padding(row[-1], (0, 0, 0, INDENT)), style=styles.get(row[0]))
 
 
