@@ -133,7 +133,7 @@ class Masked(np.ndarray):
         (b"1 km", "b'1 km'"),
         ("", "''"),
         ("ten km", "'ten km'"),
-        ("10,5 km", "'10,5 km': write a decimal point"),
+        ("10,5 km", "'10,5 km': write '10.5 km', with a decimal point"),
         (np.timedelta64(3, "s"), "timedelta64"),
         ("10", "'10': write a number without quotes"),
         ("nan", "'nan': write a number without quotes"),

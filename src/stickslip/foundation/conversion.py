@@ -143,7 +143,7 @@ def _hint(text: str) -> str:
     try:
         float(text)
     except ValueError:
-        return ": write a decimal point" if split_quantity(text.replace(",", ".", 1)) else ""
+        return ""
     return ": write a number without quotes"
 
 
