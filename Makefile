@@ -10,8 +10,9 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
+# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them.
 test: lint
-	$(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .

@@ -79,7 +79,7 @@ def readings(run: ss.Solution) -> dict[str, Callable[[], Any]]:
     found: dict[str, Callable[[], Any]] = {
         "history": lambda: [np.asarray(part).tobytes() for part in store if isinstance(part, np.ndarray)],
         "values": lambda: [run.slip(times), run.slip_rate(times, "left"), run.traction(times), run.load(times, "left")],
-        "events": lambda: run.catalogue(0.0, energies=True).to_numpy(float),
+        "events": lambda: run.catalogue(0.0, energy=True).to_numpy(float),
         "shocks": lambda: run.shocks.select_dtypes("number").to_numpy(float),
         "energy": lambda: run.energy(times[::4]).to_array().to_numpy(),
         "energetics": lambda: run.energetics().to_numpy(float),

@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 HERE = Path(__file__).resolve().parents[1] / "src"
+MAP = ("--map", "alpha=0.01..10:40:log", "--map", "normal_stress=10 MPa..500 MPa:30")
 COMMANDS = {
     "import stickslip": None,
     "stickslip --version": ["--version"],
@@ -32,6 +33,7 @@ COMMANDS = {
     "stickslip run fig5-slab-printed": ["run", "fig5-slab-printed"],
     "stickslip run fig6-slab --out": ["run", "fig6-slab", "--out", "{folder}/run.nc"],
     "stickslip run fig6-slab --figure": ["run", "fig6-slab", "--figure", "{folder}/run.png"],
+    "stickslip check --map, 40 x 30": ["check", "fig6-slab", *MAP, "--figure", "{folder}/map.png"],
 }
 """Commands as a newcomer types them, and their arguments; None is the import alone."""
 START = "from stickslip.cli.main import main; main()"

@@ -55,7 +55,13 @@ ROOMS = {
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("legends", "panels"), ("contact", "runs", "sweeps"), ("studies",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
-    "cli": (("output", "names", "overrides"), ("long_run", "options"), ("commands",), ("main",)),
+    "cli": (
+        ("output", "names", "overrides", "mistyped"),
+        ("long_run", "options", "help", "stored"),
+        ("commands",),
+        ("app",),
+        ("main",),
+    ),
 }
 """The same inside some folders."""
 LAZY_DOORS = {"solution/accessors.py"}

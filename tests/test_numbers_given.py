@@ -133,6 +133,8 @@ class Masked(np.ndarray):
         (b"1 km", "b'1 km'"),
         ("", "''"),
         ("ten km", "'ten km'"),
+        ("10,5 km", "'10,5 km': write a decimal point"),
+        (np.timedelta64(3, "s"), "timedelta64"),
         ("10", "'10': write a number without quotes"),
         ("nan", "'nan': write a number without quotes"),
         ("10 " + "m" * 70, f"'10 {'m' * 53}...: longer than 64 characters"),
@@ -338,7 +340,7 @@ def test_runs_take_times_with_units(problem: ss.Problem, tmp_path: Any) -> None:
 def test_studies_take_times_with_units(problem: ss.Problem) -> None:
     found = ss.studies.ensemble(problem, "10 s", members=2, max_events=2, event_rate="1 mm/s")
     assert (found.reference.duration, found.event_rate) == (10.0, 1e-3)
-    compared = ss.studies.compare("fig6-slab", "fig6-slab", until="0.1 min")
+    compared = ss.studies.compare("fig6-slab", "fig6-slab", duration="0.1 min")
     assert {run.duration for run in compared.runs.values()} == {6.0}
     softened = ss.studies.regularise(problem, "2 s", sizes=["50 ms", 0.02, 10 * UREG.ms], rules=["perfect-delay"])
     assert softened.sizes.tolist() == [0.05, 0.02, 0.01]

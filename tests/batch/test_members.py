@@ -12,7 +12,7 @@ from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
-from stickslip.trajectory.status import BAD_PARAMETERS, STATUSES
+from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED, STATUSES
 
 from .cases import CASES, SLAB, Case, by_solution, one
 
@@ -180,3 +180,29 @@ def test_values_must_fit_together() -> None:
         run_members(scenario, {"friction.beta": np.ones(2)}, ("slip",))
     with pytest.raises(InputError, match="did you mean 'slip'"):
         run_members(scenario, {"friction.alpha": np.ones(2)}, ("slipp",))
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_long_members_run_after_all_others_or_are_left_for_later_with_the_same_bits(
+    threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario, values = CASES["coulomb block"].scenario, {"run.duration": np.array([1e3, 2e5, 2e3, 1e5, 1e3])}
+    done: list[str] = []
+    chunk, alone = run._Batch.chunk, run.run_alone
+    monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
+    monkeypatch.setattr(run, "CHUNK", 2)
+    monkeypatch.setattr(run, "SMALLEST_CHUNK", 1)
+    monkeypatch.setattr(run._Batch, "chunk", lambda *given: (chunk(*given), done.append("chunk"))[0])
+    monkeypatch.setattr(run, "run_alone", lambda *given: done.append("alone") or alone(*given))
+    members = run_members(scenario, values, QUANTITIES, threads)
+    assert done == ["chunk"] * (len(done) - 2) + ["alone", "alone"]
+    assert (sorted(members.alone), members.later) == ([1, 3], [])
+    assert sum(members.alone.values()) <= members.seconds
+    others = run_members(scenario, values, QUANTITIES, threads, defer=True)
+    assert (others.alone, others.later) == ({}, [1, 3])
+    assert others.status.tolist() == [Stop.FINISHED, INTERRUPTED, Stop.FINISHED, INTERRUPTED, Stop.FINISHED]
+    late = run_members(scenario, {"run.duration": values["run.duration"][others.later]}, QUANTITIES, threads)
+    for quantity, column in others.results.items():
+        assert np.isnan(column[others.later]).all() or quantity in ("irregular", "branches")
+        column[others.later] = late.results[quantity]
+        assert column.tobytes() == members.results[quantity].tobytes(), quantity

@@ -1,5 +1,6 @@
 """What each command says when all is well."""
 
+import io
 import os
 import re
 import subprocess
@@ -10,9 +11,12 @@ from pathlib import Path
 import pandas
 import pytest
 from PIL import Image
+from typer.main import get_command
 
 from stickslip import __version__
+from stickslip.cli.app import app
 from stickslip.cli.names import (
+    CHOICES,
     STARTERS,
     complete_law,
     complete_pull,
@@ -21,11 +25,15 @@ from stickslip.cli.names import (
     complete_scenario,
     complete_source,
 )
+from stickslip.cli.output.files import CATALOGUES
+from stickslip.cli.output.pictures import FILMS
+from stickslip.figures.runs import animation
+from stickslip.io import catalogue_rows
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from tests.limits import limit_of_process
 
-COMMANDS = ["run", "check", "new", "fit", "compare", "sweep", "analogy", "export", "regularise", "ensemble", "paper"]
+COMMANDS = ["new", "check", "run", "show", "export", "fit", "compare", "sweep", "analogy", "ensemble", "regularise", "paper"]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -33,6 +41,34 @@ def test_help_says_what_it_does_with_an_example(command, name):
     shown = command(name, "--help")
     assert shown.code == 0
     assert f"stickslip {name} " in shown.out.partition("Usage")[2].partition("\n")[2]
+
+
+OPTIONS = [("run", "selection"), ("new", "friction"), ("new", "pull"), ("regularise", "by")]
+OPTIONS += [("sweep", name) for name in ("quantity", "refine", "design", "series")]
+
+
+def test_every_option_with_fixed_names_is_tested_below():
+    assert {name for _, name in OPTIONS} == set(CHOICES)
+
+
+@pytest.mark.parametrize(("name", "option"), OPTIONS)
+def test_help_names_all_that_an_option_accepts(command, monkeypatch: pytest.MonkeyPatch, name: str, option: str):
+    monkeypatch.setenv("COLUMNS", "200")
+    shown = " ".join(command(name, "--help").out.split())
+    assert f"One of: {', '.join(CHOICES[option]())}." in shown.partition(f"--{option}")[2]
+
+
+@pytest.mark.parametrize("width", [60, 80])
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_fits_the_terminal_and_breaks_no_name(command, monkeypatch: pytest.MonkeyPatch, name: str, width: int):
+    monkeypatch.setenv("COLUMNS", str(width))
+    shown = command(name, "--help").out
+    typed = re.compile(r"^ +(stickslip|--)")  # examples are shown as they are typed
+    assert all(len(line.rstrip()) <= width for line in shown.splitlines() if width == 80 or not typed.match(line))
+    for one in get_command(app).get_command(None, name).params:
+        for option in one.opts:
+            if option.startswith("--"):
+                assert re.search(rf"{option}\b", shown), option
 
 
 def test_without_arguments_the_help_is_shown(command):
@@ -50,7 +86,9 @@ def test_version_prints_the_version(command):
 def test_figures_have_the_size_and_the_dots_asked_for(command, tmp_path):
     """16 cm x 10 cm at 300 dots per inch, one column of 3.5 inches, 200 dots per inch by default; a PDF in points of 1/72 inch."""
     assert command("check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10 cm", "--dpi", "300").code == 0
-    assert command("run", "fig6-slab", "--energy", "b.png", "--friction", "c.png", "--size", "single column").code == 0
+    assert (
+        command("run", "fig6-slab", "--energy-figure", "b.png", "--friction-figure", "c.png", "--size", "single column").code == 0
+    )
     assert command("run", "fig6-slab", "--figure", "d.pdf", "--size", "3.5x5in").code == 0
     sizes = []
     for name in ("a.png", "b.png", "c.png"):
@@ -59,6 +97,37 @@ def test_figures_have_the_size_and_the_dots_asked_for(command, tmp_path):
     assert sizes[0] == pytest.approx((16 / 2.54 * 300, 10 / 2.54 * 300), abs=1.0)
     assert [width for width, _ in sizes[1:]] == [700, 700]
     assert b"/MediaBox [ 0 0 252 360 ]" in (tmp_path / "d.pdf").read_bytes()
+
+
+def test_a_scenario_comes_from_standard_input(command, monkeypatch: pytest.MonkeyPatch):
+    def piped(text: str) -> None:
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+
+    text = command("new", "fig6-slab").out
+    for name in ("run", "check"):
+        piped(text)
+        assert command(name, "-").out == command(name, "fig6-slab").out
+    piped(text)
+    compared = command("compare", "-", "fig6-slab").out
+    assert re.search(r"^stdin +1 +23\.4402", compared, re.MULTILINE)
+    for wrong, message in (
+        ("", "standard input: is empty; `stickslip new slab > mine.toml` writes"),
+        (text.replace("alpha = 1.0", "alpha = 1,0"), "standard input: line 22: 'alpha = 1,0"),
+        (text.replace("thickness", "thicknes"), "standard input: [body] thicknes is unknown; did you mean 'thickness'?"),
+    ):
+        piped(wrong)
+        shown = command("run", "-")
+        assert (shown.code, shown.out) == (2, "")
+        assert shown.err.startswith(f"stickslip: {message}")
+
+
+def test_a_pipe_between_two_commands_works(tmp_path: Path):
+    stickslip = f"'{sys.executable}' -c 'from stickslip.cli.main import main; main()'"
+    done = subprocess.run(
+        f"{stickslip} new fig6-slab | {stickslip} run -", shell=True, cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "1 slip event\n" in done.stdout
 
 
 def test_help_is_fast_because_it_compiles_and_validates_nothing():
@@ -212,7 +281,7 @@ def test_regularise_takes_sizes_with_units(command):
 
 
 def test_ensemble_says_what_members_share_and_how_they_part(command, tmp_path: Path):
-    options = ("--members", "2", "--until", "1e13", "--events", "6", "--out", "a.csv", "--figure", "a.svg")
+    options = ("--members", "2", "--duration", "1e13", "--events", "6", "--out", "a.csv", "--figure", "a.svg")
     shown = command("ensemble", "fig6-slab", *options)
     assert shown.code == 0
     assert shown.err == ""
@@ -233,7 +302,7 @@ def test_ensemble_says_what_members_share_and_how_they_part(command, tmp_path: P
 
 
 def test_ensemble_shows_events_around_the_first_that_is_lost(command):
-    shown = command("ensemble", "fig6-slab", "--until", "1e13", "--events", "65", "--members", "2")
+    shown = command("ensemble", "fig6-slab", "--duration", "1e13", "--events", "65", "--members", "2")
     first, last = re.search(r"^\d+ slip events, of them (\d+) to (\d+)$", shown.out, re.MULTILINE).groups()
     lost = re.search(r"^Sequences differ from event (\d+) of \d+ on", shown.out, re.MULTILINE)[1]
     assert int(first) < int(lost) <= int(last) == int(first) + 11
@@ -270,12 +339,12 @@ def test_the_shell_completes_laws_pulls_and_rules():
 
 
 def test_run_draws_the_catalogue(command, tmp_path: Path):
-    assert "written: events.png" in command("run", "cycles-block", "--catalog-figure", "events.png").out
+    assert "written: events.png" in command("run", "cycles-block", "--catalogue-figure", "events.png").out
     assert [path.name for path in tmp_path.iterdir()] == ["events.png"]
 
 
 def test_run_draws_where_the_energy_is(command, tmp_path: Path):
-    assert "written: energy.svg" in command("run", "fig6-block-reconstructed", "--energy", "energy.svg").out
+    assert "written: energy.svg" in command("run", "fig6-block-reconstructed", "--energy-figure", "energy.svg").out
     assert [path.name for path in tmp_path.iterdir()] == ["energy.svg"]
 
 
@@ -311,6 +380,11 @@ def test_the_shell_completes_scenarios(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_the_completed_starters_are_those_that_exist():
     assert set(STARTERS) == set(templates.STARTERS)
+
+
+def test_the_suffixes_of_files_are_those_that_can_be_written():
+    assert FILMS == animation.SUFFIXES
+    assert CATALOGUES == catalogue_rows.SUFFIXES
 
 
 def test_paper_says_what_it_wrote(command, monkeypatch: pytest.MonkeyPatch):

@@ -1,28 +1,56 @@
 """Every failure is one line on standard error and an exit code, and nothing is written."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.templates import template
 from stickslip.trajectory.status import STATUSES
 
+BAD = template("slab").replace("thickness =", "thicknes =")
+FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
 CASES = [
-    (["rn"], "No such command 'rn'. Did you mean 'run'?"),
+    (["rn"], "there is no command 'rn'; did you mean 'run'?"),
+    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, check, compare, ensemble, export,"),
+    (["fig6-slab"], "'fig6-slab' is a scenario, not a command: did you mean `stickslip run fig6-slab` or `stickslip check fig6-"),
     (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
-    (["run", "fig6-slab", "--figur", "a.png"], "No such option: --figur"),
+    (["run", "fig6-slab", "--figur", "a.png"], "run: there is no option --figur; did you mean '--figure'? `stickslip run --help`"),
+    (["run", "fig6-slab", "--catalog", "a.csv"], "run: there is no option --catalog; did you mean '--catalogue'?"),
+    (["run", "fig6-slab", "-q"], "run: there is no option -q; `stickslip run --help` explains it, with examples"),
+    (["--versio"], "there is no option --versio; did you mean '--version'? `stickslip --help` shows all"),
+    (["run", "fig6-slab", "--duration", "480", "years"], "run: 'years' is too much; a text with spaces stands in quotes, as "),
+    (["run", "fig6-slab", "--duration"], "Option '--duration' needs a value"),
+    (["run", "fig6-slab", "--duration", "12,5"], "run: --duration must be a number in s or a text with a unit such as"),
+    (["run", "fig6-slab", "--events", "1.5"], "run: --events must be a whole number, got '1.5'"),
+    (["run", "fig6-slab", "--max-pieces", "0"], "run: --max-pieces must be a whole number, at least 1, got '0'"),
+    (["run", "fig6-slab", "--rtol", "1,5"], "run: --rtol must be a number, got '1,5': write 1.5"),
+    (["run", "fig6-slab", "--figure", "a.png", "--path", "./a.png"], "--path a.png: is the file of --figure already"),
+    (["run", "fig6-slab", "--out", f"{'a' * 300}.nc"], f"--out {'a' * 60}: cannot be a file: File name too long"),
+    (["run", "fig6-slab", "--figure", "folder.png"], "--figure folder.png: is a folder"),
+    (["run", "fig6-slab", "--figure", "pipe.png"], "--figure pipe.png: exists and is not an ordinary file"),
+    (["run", "fig6-slab", "--catalogue", "folder.csv"], "--catalogue folder.csv: is a folder"),
+    (["compare", "fig6-slab", "fig6-slab", "--figure", "pipe.png"], "--figure pipe.png: exists and is not an ordinary file"),
+    (["export", "fig6-slab", "folder.txt"], "FILE folder.txt: is a folder"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "bad.zarr"], "--out bad.zarr: is a file, where a sweep needs a folder"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1", "--figure", "a.png"],
+        "sweep: --figure draws one to three keys, but here no key",
+    ),
+    (["sweep", "fig6-slab", *FOUR_KEYS, "--figure", "a.png"], "sweep: --figure draws one to three keys, but here 4 keys vary"),
     (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
     (["check", "fig6-slap"], "fig6-slap: no such file"),
-    (["check", "."], ".: cannot be read: Is a directory"),
+    (["check", "."], ".: is a folder, not a scenario; its scenarios: bad.toml"),
     (["new", "--friction", "coulomb"], "new: which scenario? `stickslip new --list` lists them"),
     (["new", "blok"], "no scenario 'blok'; did you mean 'block'?"),
     (["run", "fig6-slab", "--out", "a.csv"], "--out a.csv: the name must end in .nc"),
     (["run", "fig6-slab", "--out", "no/a.nc"], "--out no/a.nc: there is no folder no"),
     (["run", "fig6-slab", "--figure", "a.xyz"], "--figure a.xyz: the name must end in .png or .pdf or .svg"),
     (["run", "fig6-slab", "--out", "a.nc", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
-    (["run", "fig6-slab", "--duration", "10 kg"], "run: --until must be a number in s or a text with a unit"),
-    (["run", "fig6-slab", "--duration", "0"], "run: --until must be greater than 0 s, got 0"),
-    (["run", "fig6-slab", "--duration", "nan"], "run: --until must be finite, got nan"),
+    (["run", "fig6-slab", "--duration", "10 kg"], "run: --duration must be a number in s or a text with a unit"),
+    (["run", "fig6-slab", "--duration", "0"], "run: --duration must be greater than 0 s, got 0"),
+    (["run", "fig6-slab", "--duration", "nan"], "run: --duration must be finite, got nan"),
     (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
     (
         ["run", "fig6-slab", "--creep-rtol", "1e-6"],
@@ -32,16 +60,16 @@ CASES = [
         ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
         "run: --shortest-event must be 0 here: only under a slab with a",
     ),
-    (["run", "fig6-slab", "--energies"], "run: --energies belongs to --catalog FILE"),
+    (["run", "fig6-slab", "--energy"], "run: --energy belongs to --catalogue FILE"),
     (
-        ["run", "fig5-slab-printed", "--energies", "--creep-rtol", "1e-6", "--catalog", "events.csv"],
-        "run: --energies and --creep-rtol exclude each other",
+        ["run", "fig5-slab-printed", "--energy", "--creep-rtol", "1e-6", "--catalogue", "events.csv"],
+        "run: --energy and --creep-rtol exclude each other",
     ),
     (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
     (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
     (["run", "fig6-block-printed", "--creep-rtol", "1e-6"], "run: --creep-rtol must be 0 here: leaps over creep need a slab"),
     (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
-    (["run", "fig6-slab", "--rtol", "much"], "Invalid value for '--rtol'"),
+    (["run", "fig6-slab", "--rtol", "much"], "run: --rtol must be a number, got 'much'"),
     (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
     (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["check", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
@@ -78,18 +106,21 @@ CASES = [
     (["run", "fig6-slab", "--animation", "no/a.gif"], "--animation no/a.gif: there is no folder no"),
     (["run", "fig6-slab", "--space-time", "a.gif"], "--space-time a.gif: the name must end in .png or .pdf or .svg"),
     (
-        ["run", "fig6-slab", "--catalog", "a.csv", "--animation", "a.gif", "--figure", "a.png"],
+        ["run", "fig6-slab", "--catalogue", "a.csv", "--animation", "a.gif", "--figure", "a.png"],
         "run: a catalogue keeps slip events only, no history: leave --figure, --animation away",
     ),
     (["paper", "--out", "bad.toml/paper"], "--out bad.toml/paper:"),
-    (["compare"], "Missing argument"),
+    (["compare"], "compare: RUNS is missing; `stickslip compare --help` explains it, with examples"),
     (["compare", "fig6-slab"], "compare: needs two runs or more, got 1"),
     (["compare", "fig6-slab", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean"),
     (["compare", "fig6-slab", "no.nc"], "no.nc: no such file"),
     (["compare", "fig6-slab", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
     (["compare", "fig6-slab", "fig6-slab", "--event", "1"], "compare: fig6-slab has no slip event 1: it has 1, counted from 0"),
     (["compare", "fig6-slab", "fig6-slab", "--out", "a.nc"], "--out a.nc: the name must end in .csv"),
-    (["compare", "fig6-slab", "fig6-slab", "--until", "1 kg"], "compare: --until must be a number in s or a text with a unit"),
+    (
+        ["compare", "fig6-slab", "fig6-slab", "--duration", "1 kg"],
+        "compare: --duration must be a number in s or a text with a unit",
+    ),
     (["analogy", "fig6-slab"], 'analogy: give two --map, as --map "friction.alpha=0.01..10:20:log", got 0'),
     (["analogy", "fig6-slab", "--map", "alpha=1..2", "--map", "alpha=1..2"], "analogy: needs two different parameters"),
     (["analogy", "fig6-block-printed", *2 * ["--map", "mass=1..2"]], "analogy: needs two different parameters"),
@@ -116,10 +147,10 @@ CASES = [
     (["regularise", "fig4-loop", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
     (["ensemble", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
     (["ensemble", "fig6-slab", "--members", "0"], "ensemble: members must be a whole number from 1 to 1000, got 0"),
-    (["ensemble", "fig6-slab", "--members", "many"], "Invalid value for '--members'"),
+    (["ensemble", "fig6-slab", "--members", "many"], "ensemble: --members must be a whole number, got 'many'"),
     (["ensemble", "fig6-slab", "--size", "1"], "ensemble: size must lie between 1e-15 and 0.01, got 1.0"),
     (["ensemble", "fig6-slab", "--seed", "-1"], "ensemble: seed must be a whole number, 0 or more, got -1"),
-    (["ensemble", "fig6-slab", "--until", "1 kg"], "ensemble: --until must be a number in s or a text with a unit"),
+    (["ensemble", "fig6-slab", "--duration", "1 kg"], "ensemble: --duration must be a number in s or a text with a unit"),
     (["ensemble", "fig6-slab", "--events", "0"], "ensemble: --events must be"),
     (["ensemble", "fig6-slab", "--rtol", "1"], "ensemble: --rtol must be at most 0.01, got 1"),
     (["ensemble", "fig6-slab", "--out", "a.txt"], "--out a.txt: the name must end in .csv or .nc"),
@@ -129,14 +160,19 @@ CASES = [
 
 @pytest.mark.parametrize(("arguments", "message"), CASES)
 def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, arguments: list[str], message: str):
-    (tmp_path / "bad.toml").write_text(command("new", "slab").out.replace("thickness =", "thicknes ="))
+    (tmp_path / "bad.toml").write_text(BAD)
+    (tmp_path / "bad.zarr").touch()
+    for name in ("folder.png", "folder.csv", "folder.txt"):
+        (tmp_path / name).mkdir()
+    os.mkfifo(tmp_path / "pipe.png")
+    before = sorted(tmp_path.iterdir())
     shown = command(*arguments)
     assert shown.code == 2
     assert shown.out == ""
     assert shown.err.startswith(f"stickslip: {message}")
     assert shown.err.count("\n") == 1
     assert shown.err.strip().isprintable()
-    assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
+    assert sorted(tmp_path.iterdir()) == before
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -144,6 +180,25 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_
     monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
     shown = command("run", "fig6-slab", "--out", "a.nc")
     assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: the folder . is not writable\n")
+
+
+def test_a_write_protected_file_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "a.nc").touch()
+    monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda path, mode: Path(path).is_dir() or mode != os.W_OK)
+    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    shown = command("run", "fig6-slab", "--out", "a.nc")
+    assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: exists and is write-protected: choose another name\n")
+
+
+def test_a_folder_that_refuses_files_is_found_before_the_run(command, monkeypatch: pytest.MonkeyPatch):
+    def refuses(**_: object) -> None:
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr("stickslip.cli.output.files.TemporaryFile", refuses)
+    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    shown = command("run", "fig6-slab", "--figure", "a.png")
+    assert (shown.code, shown.out) == (2, "")
+    assert shown.err == "stickslip: --figure a.png: nothing can be written in the folder .: Read-only file system\n"
 
 
 def test_ctrl_c_gives_one_line(command, monkeypatch: pytest.MonkeyPatch):

@@ -83,7 +83,7 @@ def test_noisy_points_are_announced_in_one_line_by_run_and_once_by_check(command
     text = with_law("slab", RATE_LAW, ["x"])
     start, end = text.index("[friction]"), text.index("# The motion")
     Path("noisy.toml").write_text(f'{text[:start]}[friction]\nkind = "table"\nfile = "data.csv"\n{text[end:]}')
-    run = command("run", "noisy.toml", "--until", "1 s")
+    run = command("run", "noisy.toml", "--duration", "1 s")
     assert run.code == 0
     (line,) = run.err.splitlines()
     assert line.startswith(

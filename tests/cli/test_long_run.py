@@ -19,34 +19,34 @@ from tests.long_runs.problems import differences
 
 
 def test_a_run_continues(command, tmp_path: Path):
-    assert command("run", "cycles-block", "--until", "20 years", "--out", "run.nc").code == 0
-    shown = command("run", "--resume", "run.nc", "--until", "50 years")
+    assert command("run", "cycles-block", "--duration", "20 years", "--out", "run.nc").code == 0
+    shown = command("run", "--resume", "run.nc", "--duration", "50 years")
     assert shown.code == 0
     assert "11 slip events" in shown.out
     assert "written: run.nc" in shown.out
     problem = ss.load_scenario("cycles-block").problem
     assert differences(ss.open_solution(tmp_path / "run.nc"), ss.simulate(problem, 50 * ss.YEAR)) == []
-    assert command("run", "cycles-block", "--resume", "run.nc", "--until", "60 years", "--out", "longer.nc").code == 0
+    assert command("run", "cycles-block", "--resume", "run.nc", "--duration", "60 years", "--out", "longer.nc").code == 0
     assert ss.open_solution(tmp_path / "run.nc").duration == 50 * ss.YEAR
     assert ss.open_solution(tmp_path / "longer.nc").duration == 60 * ss.YEAR
 
 
 def test_a_catalogue_continues(command, tmp_path: Path):
-    shown = command("run", "cycles-block", "--until", "100 years", "--catalog", "events.csv")
+    shown = command("run", "cycles-block", "--duration", "100 years", "--catalogue", "events.csv")
     assert shown.code == 0
     for text in ("finished: the run reached its duration", "22 slip events", "written: events.csv", "events.checkpoint.nc"):
         assert text in shown.out
-    assert command("run", "--resume", "events.checkpoint.nc", "--until", "200 years").code == 0
+    assert command("run", "--resume", "events.checkpoint.nc", "--duration", "200 years").code == 0
     whole = ss.simulate(ss.load_scenario("cycles-block").problem, 200 * ss.YEAR).events
     pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole, check_exact=True)
 
 
 def test_a_run_stops_after_the_requested_events(command, tmp_path: Path):
-    shown = command("run", "cycles-block", "--until", "10000 years", "--events", "3", "--out", "run.nc")
+    shown = command("run", "cycles-block", "--duration", "10000 years", "--events", "3", "--out", "run.nc")
     assert "enough events: the run reached the requested number of slip events" in shown.out
     assert "3 slip events" in shown.out
     (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", "[run]\nevents = 4\n"))
-    assert "4 slip events" in command("run", "mine.toml", "--until", "10000 years").out
+    assert "4 slip events" in command("run", "mine.toml", "--duration", "10000 years").out
     scenario = ss.load_scenario(tmp_path / "mine.toml")
     assert scenario.max_events == 4
     (tmp_path / "again.toml").write_text(scenario.to_toml())
@@ -56,14 +56,17 @@ def test_a_run_stops_after_the_requested_events(command, tmp_path: Path):
 REFUSED = [
     (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
     (["run", "cycles-block", "--events", "0"], "run: --events must be a whole number above 0, got 0"),
-    (["run", "cycles-block", "--catalog", "events.txt"], "--catalog events.txt: the name must end in .csv or .parquet or .nc"),
-    (["run", "cycles-block", "--catalog", "no/events.csv"], "--catalog no/events.csv: there is no folder no"),
-    (["run", "cycles-block", "--catalog", "a.csv", "--out", "a.nc"], "run: a catalogue keeps slip events only, no history: leave"),
+    (["run", "cycles-block", "--catalogue", "events.txt"], "--catalogue events.txt: the name must end in .csv or .parquet or .nc"),
+    (["run", "cycles-block", "--catalogue", "no/events.csv"], "--catalogue no/events.csv: there is no folder no"),
+    (
+        ["run", "cycles-block", "--catalogue", "a.csv", "--out", "a.nc"],
+        "run: a catalogue keeps slip events only, no history: leave",
+    ),
     (["run", "--resume", "run.nc", "--rtol", "1e-8"], "run: --resume goes on as the run began: leave --rtol, --creep-rtol,"),
     (["run", "--resume", "run.nc", "--creep-rtol", "1e-6"], "run: --resume goes on as the run began: leave --rtol, --creep-rtol,"),
     (["run", "--resume", "none.nc"], "none.nc: no such file"),
     (["run", "--resume", "bad.nc"], "bad.nc: not a netCDF file that can be read"),
-    (["run", "--resume", "run.nc", "--until", "1 s"], "run.nc: the run has already reached"),
+    (["run", "--resume", "run.nc", "--duration", "1 s"], "run.nc: the run has already reached"),
     (["run", "fig6-slab", "--resume", "run.nc"], "run.nc: is a run of another problem than fig6-slab: its body is SpringBlock("),
 ]
 
@@ -83,7 +86,7 @@ def test_bad_input_gives_one_line_and_changes_nothing(command, tmp_path: Path, a
 
 def test_creep_is_leapt_over(command, tmp_path: Path):
     """By the option and by the scenario's key; the summary says so; a run and a catalogue go on."""
-    shown = command("run", "fig5-slab-printed", "--until", "2.6 days", "--creep-rtol", "1e-5", "--out", "run.nc")
+    shown = command("run", "fig5-slab-printed", "--duration", "2.6 days", "--creep-rtol", "1e-5", "--out", "run.nc")
     assert shown.code == 0
     assert re.search(
         r"creep_rtol 1e-05: 1 leap over 39\d\d\d round trips, error at most 1\.\de-10 m of slip, 0\.\d+ s of time", shown.out
@@ -95,12 +98,12 @@ def test_creep_is_leapt_over(command, tmp_path: Path):
     (tmp_path / "again.toml").write_text(scenario.to_toml())
     assert ss.load_scenario(tmp_path / "again.toml") == scenario
     assert "creep_rtol 1e-05: no leaps over creep" in command("run", "mine.toml").out
-    for option in (["--out", "again.nc"], ["--catalog", "events.csv"]):
-        assert command("run", "mine.toml", "--until", "2.6 days", *option).code == 0
+    for option in (["--out", "again.nc"], ["--catalogue", "events.csv"]):
+        assert command("run", "mine.toml", "--duration", "2.6 days", *option).code == 0
     assert differences(ss.open_solution(tmp_path / "again.nc"), ss.open_solution(tmp_path / "run.nc")) == []
     whole = ss.simulate(scenario.problem, 3 * 86_400.0, creep_rtol=1e-5)
     for file in ("run.nc", "events.checkpoint.nc"):
-        assert "2 leaps over 4" in command("run", "--resume", file, "--until", "3 days").out
+        assert "2 leaps over 4" in command("run", "--resume", file, "--duration", "3 days").out
     assert differences(ss.open_solution(tmp_path / "run.nc"), whole) == []
     pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole.events, check_exact=True)
 
@@ -122,7 +125,7 @@ def heeds_ctrl_c() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("heeds_ctrl_c")
-@pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalog", "run.csv"]])
+@pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalogue", "run.csv"]])
 def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
     @contextmanager
     def interrupting(_: str) -> Iterator[Progress]:
@@ -156,7 +159,7 @@ def test_progress_is_shown_in_sensible_units():
 
 def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
     """The summary says so, and check beforehand; 0 is another scenario, and stays one when it is written."""
-    shown = command("run", "fig5-slab-printed", "--until", "2 hours", "--out", "run.nc")
+    shown = command("run", "fig5-slab-printed", "--duration", "2 hours", "--out", "run.nc")
     assert shown.code == 0
     assert re.search(r"creep_rtol 1e-06 \(automatic; 0 runs every round trip\): 1 leap over 1\d\d\d round trips", shown.out)
     assert "automatic: leaps over creep after 200" in re.sub(r"\s+", " ", command("check", "fig5-slab-printed").out)
@@ -172,7 +175,7 @@ def test_creep_is_leapt_over_by_default(command, tmp_path: Path):
 
 def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.run.options.MAX_PIECES", 500)
-    arguments = "run", "fig5-slab-printed", "--until", "10 minutes", "--out", "run.nc"
+    arguments = "run", "fig5-slab-printed", "--duration", "10 minutes", "--out", "run.nc"
     shown = command(*arguments)
     assert shown.code == 1
     assert "too many pieces" in shown.out

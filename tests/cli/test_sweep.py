@@ -6,9 +6,11 @@ import pytest
 import xarray as xr
 from typer import Context
 
-from stickslip.cli.names import complete_design, complete_quantity, complete_vary
+from stickslip.cli.names import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
+from stickslip.sweeps.design.quantities import QUANTITIES
 from stickslip.sweeps.sweep import SweepProgress
 
+ALL = f"allowed: {', '.join(QUANTITIES)}"
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
 
 
@@ -33,6 +35,23 @@ def test_sweep_accepts_quantities_series_and_tables(command, tmp_path: Path):
         assert set(found) == {"slip", "heat", "series_slip", "series_load", "status", "reason"}
         assert found["body.thickness"].values.tolist() == [1000.0, 2000.0]
         assert found.sizes == {"member": 2, "time": 7}
+
+
+def test_words_are_varied_in_a_grid_that_continues_and_in_a_table(command, tmp_path: Path):
+    rules = ["perfect-delay", "minimal", "maximal"]
+    grid = ["sweep", "fig6-slab", "-v", f"run.selection={','.join(rules)}", "-v", "alpha=0.1,1", "-v", "thickness=5km,10km"]
+    first = command(*grid, "-q", "slip", "--out", "map.zarr", "--chunk", "4")
+    assert first.code == 0
+    assert "3 x 2 x 2 = 12 members over run.selection, friction.alpha, body.thickness" in first.out
+    again = command(*grid, "-q", "slip", "--out", "map.zarr", "--chunk", "4", "--figure", "map.png")
+    assert again.out == f"{first.out}written: map.png\n"
+    (tmp_path / "members.csv").write_text("run.selection,alpha\n" + "".join(f"{rule},1\n" for rule in rules))
+    assert (
+        command("sweep", "fig6-slab", "--list", "members.csv", "-q", "slip", "--out", "list.zarr", "--figure", "list.png").code == 0
+    )
+    with xr.open_zarr("map.zarr") as found, xr.open_zarr("list.zarr") as listed:
+        assert found["run.selection"].values.tolist() == listed["run.selection"].values.tolist() == rules
+        assert found.slip.sel({"friction.alpha": 1.0, "body.thickness": 10e3}).values.tolist() == listed.slip.values.tolist()
 
 
 def test_sweep_draws_samples(command):
@@ -66,7 +85,11 @@ def test_failures_are_counted_with_their_reasons(command):
         (["-v", "alpa=1,2"], "--vary: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
         (["-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
         (["-v", "thickness=1..2 kg:3"], "--vary: body.thickness must be a number in m"),
-        (["-v", "alpha=1,2", "-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
+        (
+            ["-v", "alpha=1,2", "-q", "slips"],
+            f"sweep: quantity 'slips' is unknown; did you mean 'slip'? allowed: {', '.join(QUANTITIES)}",
+        ),
+        (["-v", "alpha=1,2", "-q", "xyz"], f"sweep: quantity 'xyz' is unknown; {ALL}"),
         (["-v", "alpha=1,2", "--series", "slop"], "sweep: series 'slop' is unknown; did you mean 'slip'?"),
         (["-v", "alpha=1,2", "--design", "sobol"], "sweep: design 'sobol' is unknown; allowed: grid, lhs, random"),
         (["-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
@@ -96,12 +119,17 @@ def test_progress_is_shown_in_one_line():
 def test_keys_quantities_and_designs_are_completed():
     from typer.main import get_command
 
-    from stickslip.cli.main import app
+    from stickslip.cli.app import app
 
     context = Context(get_command(app))
     context.params = {"scenario": "fig6-slab"}
     assert complete_vary(context, "friction.") == ["friction.static=", "friction.dynamic=", "friction.alpha="]
     context.params = {"scenario": "no such"}
     assert complete_vary(context, "friction.") == []
+    context.params = {"scenario": "fig6-slab"}
+    assert complete_axis(context, "friction.") == ["friction.static=", "friction.dynamic=", "friction.alpha="]
+    assert complete_axis(context, "run.") == []
+    assert complete_series("sl") == ["slip", "slip_rate"]
+    assert complete_series("slip,") == ["slip,slip_rate", "slip,traction", "slip,load"]
     assert complete_quantity("recu") == ["recurrence", "recurrence_cv"]
     assert complete_design("") == ["grid", "random", "lhs"]

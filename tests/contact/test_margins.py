@@ -15,7 +15,6 @@ from stickslip.contact.margins import margins
 from stickslip.contact.regime_map import Axis, put_both, regime_map
 from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.friction import LAWS
-from stickslip.problem.parameters import parameters
 from tests.friction.drawn import laws
 
 from .laws import SLAB
@@ -46,7 +45,7 @@ def test_contacts_of_all_laws_have_the_margins_that_they_have_alone(drawn):
 @given(law=KINDS, data=st.data())
 def test_a_map_over_any_two_numbers_has_the_margins_of_its_points(law, data):
     problem = problem_of(law)
-    numbers = [one for one in parameters(problem) if not one.declared.whole and 1e-300 < one.value < np.inf]
+    numbers = [one for one in problem.parameters.values() if not one.declared.whole and 1e-300 < one.value < np.inf]
     one, other = data.draw(st.lists(st.sampled_from(numbers), min_size=2, max_size=2, unique_by=lambda found: found.name))
     axes = [Axis(axis.name, 0.7 * axis.value, 1.4 * axis.value, 3) for axis in (one, other)]
     found = regime_map(problem, *axes)

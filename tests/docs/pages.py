@@ -13,10 +13,12 @@ from __future__ import annotations
 import io
 import re
 import shlex
+import sys
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import patch
 
 from stickslip.cli.main import main
 
@@ -37,11 +39,12 @@ class Block:
 
 @dataclass(frozen=True)
 class Command:
-    """A line `$ stickslip ...` and the lines shown below it."""
+    """A line `$ stickslip ...` and the lines shown below it; `before` are the arguments of a command whose output it reads."""
 
     arguments: list[str]
     into: str | None
     shown: list[str]
+    before: list[str] | None = None
 
     @property
     def code(self) -> int:
@@ -74,14 +77,19 @@ def commands_of(block: Block) -> Iterator[Command]:
         if ">" in words:
             into = words[words.index(">") + 1]
             words = words[: words.index(">")]
-        yield Command(words[1:], into, [line.strip() for line in shown if line.strip()])
+        before = None
+        if "|" in words:
+            before, words = words[1 : words.index("|")], words[words.index("|") + 1 :]
+        yield Command(words[1:], into, [line.strip() for line in shown if line.strip()], before)
 
 
 def run_command(command: Command) -> tuple[int, str]:
     """Exit code and everything that is said, on either stream."""
-    out, err = io.StringIO(), io.StringIO()
+    out, err, given = io.StringIO(), io.StringIO(), ""
+    if command.before is not None:
+        given = run_command(Command(command.before, None, []))[1]
     code = 0
-    with redirect_stdout(out), redirect_stderr(err):
+    with patch.object(sys, "stdin", io.TextIOWrapper(io.BytesIO(given.encode()))), redirect_stdout(out), redirect_stderr(err):
         try:
             main(command.arguments)
         except SystemExit as stop:

@@ -132,9 +132,9 @@ def test_block_and_slab_catalogues_have_the_same_columns() -> None:
     for kind in ("slab, rate law", "block, rate law"):
         run = ss.simulate(delayed(kind, 1.0), 30.0)
         assert list(run.events) == list(EVENT_COLUMNS)
-        assert list(run.catalogue(0.0, energies=True)) == [*EVENT_COLUMNS, *ENERGY_COLUMNS]
+        assert list(run.catalogue(0.0, energy=True)) == [*EVENT_COLUMNS, *ENERGY_COLUMNS]
         may_lack = ["recurrence", "amplification"] if kind.startswith("block") else ["recurrence"]
-        assert not run.catalogue(0.0, energies=True).drop(columns=may_lack).isna().any(axis=None)
+        assert not run.catalogue(0.0, energy=True).drop(columns=may_lack).isna().any(axis=None)
 
 
 def test_columns_of_the_catalogue_agree_with_each_other() -> None:
@@ -154,7 +154,7 @@ def test_columns_of_the_catalogue_agree_with_each_other() -> None:
 
 def test_a_run_without_events_has_the_columns_too() -> None:
     still = ss.simulate(ss.Problem(SLAB, RATE, initial_load=1e6), 10.0)
-    table = still.catalogue(energies=True)
+    table = still.catalogue(energy=True)
     assert list(table) == [*EVENT_COLUMNS, *ENERGY_COLUMNS]
     assert len(table) == 0
 

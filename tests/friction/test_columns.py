@@ -45,6 +45,11 @@ def test_slips_are_read_with_units_also_from_a_frame(heading: str, factor: float
     np.testing.assert_allclose(read.places, [-factor, 2.0 * factor], rtol=1e-15)
 
 
+def test_units_are_converted_to_the_last_digit() -> None:
+    numbers = [0.1 * i for i in range(1, 100)]
+    assert Points.read({"u (mm)": numbers, "mu": numbers}).places.tolist() == [one / 1000 for one in numbers]
+
+
 def test_a_file_a_frame_a_mapping_points_and_lists_make_the_same_law(tmp_path: Path) -> None:
     wanted = FromTable(rate=[0.0, 0.001, 0.02], friction=[0.7, 0.6, 0.4])
     frame = pd.DataFrame({"v (mm/s)": [0, 1, 20], "mu": [0.7, 0.6, 0.4]})

@@ -206,7 +206,7 @@ def test_a_function_a_text_and_the_built_in_law_give_one_run() -> None:
 
 TEXTS = [
     ("coulomb", "'coulomb' is not a formula; the laws of the package are classes, such as ss.friction.Coulomb(...)"),
-    ("data/points.csv", "'data/points.csv' is not a formula; measured points make a law with ss.friction.FromTable"),
+    ("data/points.csv", "'data/points.csv' is not a formula; measured points make a law with ss.friction.FromTable(file)"),
     (
         "mu_d + 0.5/(1 + v)",
         "'mu_d' is neither u, v, pi nor a declared parameter; allowed: u, v; parameters get values in ss.friction.",
@@ -225,6 +225,16 @@ def test_a_text_that_is_no_formula_is_refused_in_one_line(text: str, message: st
     assert str(caught.value).startswith("Problem: friction: ")
     assert message in str(caught.value)
     assert str(caught.value).isprintable()
+
+
+def test_a_part_that_is_a_function_is_refused_with_what_makes_it_a_law() -> None:
+    part = r"must be a friction law, got function; FromFunction makes one of a function"
+    for make in (
+        lambda rate: ss.friction.SlipPlusRate(FromFunction(lambda u: 0.1), rate),
+        lambda rate: ss.friction.LaggedFriction(rate, 1),
+    ):
+        with pytest.raises(InputError, match=part):
+            make(lambda v: 0.5)
 
 
 def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:

@@ -70,8 +70,8 @@ def test_netcdf_holds_scenario_status_and_units(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "unit"), [("slab that heals", "J m-2"), ("block that heals", "J")])
 def test_netcdf_names_the_units_of_energies(name: str, unit: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
-    table = ss.catalogue(problem, duration, tmp_path / "events.nc", energies=True)
-    same(table, ss.catalogue(problem, duration, energies=True))
+    table = ss.catalogue(problem, duration, tmp_path / "events.nc", energy=True)
+    same(table, ss.catalogue(problem, duration, energy=True))
     with xr.open_dataset(tmp_path / "events.nc", engine="h5netcdf", decode_times=False) as file:
         assert {file[name].attrs["units"] for name in ENERGY_COLUMNS} == {unit}
 
@@ -94,8 +94,8 @@ def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeyp
     """As those of the whole run, and taken up too: relative 1e-12 of the largest, for sums run over other pieces."""
     monkeypatch.setattr(module, "CAPACITY", 64)
     problem, duration = RUNS[name]
-    whole = ss.simulate(problem, duration).catalogue(energies=True)
-    ss.catalogue(problem, 0.7 * duration, tmp_path / "events.csv", energies=True)
+    whole = ss.simulate(problem, duration).catalogue(energy=True)
+    ss.catalogue(problem, 0.7 * duration, tmp_path / "events.csv", energy=True)
     found = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     assert list(found.columns) == list(whole.columns)
     for energy in ENERGY_COLUMNS:

@@ -217,7 +217,7 @@ def test_event_that_begins_and_ends_at_the_same_rate_gains_no_kinetic_energy_at_
     """Events are cut where the slip rate passes a threshold: what the mass holds there is the same at both ends."""
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     threshold = 0.3 * float(run.events["peak_rate"].min())
-    table, rows = run.energetics(threshold), run.catalogue(threshold, energies=True)
+    table, rows = run.energetics(threshold), run.catalogue(threshold, energy=True)
     assert (abs(run.slip_rate(rows.end)) == pytest.approx(threshold, rel=1e-6)) or name.startswith("slab")
     assert (rows.balance.abs() < 1e-9 * rows.released).all()
     waves = np.zeros(len(rows))

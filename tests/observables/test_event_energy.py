@@ -16,7 +16,7 @@ from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab, scaled_rate
 @pytest.mark.parametrize("name", RUNS)
 def test_every_event_balances(name: str) -> None:
     """To 1e-9 of what it released, however late it is."""
-    table = ss.simulate(*RUNS[name], rtol=1e-12).catalogue(energies=True)
+    table = ss.simulate(*RUNS[name], rtol=1e-12).catalogue(energy=True)
     assert len(table) > 0
     assert table.end.notna().all()
     assert (table.balance.abs() < 1e-9 * table.released).all()
@@ -29,13 +29,13 @@ def test_balance_of_an_event_notices_a_wrong_slip_rate(name: str) -> None:
     run = ss.simulate(*RUNS[name], rtol=1e-12)
     wrong = scaled_rate(run.history.store, 1.001)
     run = replace(run, history=History(wrong, run.problem, run.history.round_trip_time, run.history.ramp, run.history.duration))
-    table = run.catalogue(energies=True)
+    table = run.catalogue(energy=True)
     assert (table.balance.abs() > 1e-7 * table.released).all()
 
 
 def test_energies_of_events_are_those_of_the_run() -> None:
     run = ss.simulate(*RUNS["slab, contact mass"], rtol=1e-12)
-    table = run.catalogue(0.0, energies=True)
+    table = run.catalogue(0.0, energy=True)
     ends, starts = run.energy(table.end), run.energy(table.start)
     for name, sign in (("stored", -1.0), ("work", 1.0), ("heat", 1.0)):
         ours = table["released" if name == "stored" else name]

@@ -52,5 +52,5 @@ def test_too_few_events_give_missing_values() -> None:
 
 def test_energies_are_described_where_the_table_has_them() -> None:
     run = ss.load_scenario("cycles-block").run()
-    found = ss.studies.catalogue_statistics(run.catalogue(energies=True))
+    found = ss.studies.catalogue_statistics(run.catalogue(energy=True))
     assert found.loc["released", "variation"] < 1e-9

@@ -99,6 +99,14 @@ def bowed(force: float, rate: float = 0.5) -> ss.Solution:
     return ss.simulate(other, 0.2, max_pieces=20_000)
 
 
+def test_the_tube_has_the_numbers_of_its_description() -> None:
+    event = ss.simulate(TUBE).events.iloc[0]
+    assert event.start == pytest.approx(10.7e-6, rel=0, abs=0.05e-6)
+    assert event.slip == pytest.approx(1.93e-3, rel=0, abs=0.005e-3)
+    assert event.peak_rate == pytest.approx(4.94, rel=0, abs=0.005)
+    assert TUBE.problem.body.two_way_time == pytest.approx(6.25e-6, rel=1e-12, abs=0)
+
+
 def test_the_string_moves_as_helmholtz_found() -> None:
     """At the middle it sticks and slips for half a period 1/f each, at twice the rate of the bow; friction is constant."""
     run = ss.simulate(STRING)

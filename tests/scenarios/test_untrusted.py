@@ -197,8 +197,8 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["run", "fig6-slab", "--until", "1e300"], "run: --until must lie within 1e+50 s, got 1e+300"),
-        (["run", "fig6-slab", "--until", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
+        (["run", "fig6-slab", "--duration", "1e300"], "run: --duration must lie within 1e+50 s, got 1e+300"),
+        (["run", "fig6-slab", "--duration", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
         (
             ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "random", "--members", "1000000000000"],
             "sweep: the design random: members must be a whole number from 1 to 10000000, got",

@@ -84,7 +84,7 @@ def test_compare_accepts_files_scenarios_and_solutions(tmp_path: Path) -> None:
     found = compare(saved, "fig6-slab", scenario, ss.open_solution(saved))
     assert list(found.runs) == ["saved", "fig6-slab", "fig6-slab (2)", "run"]
     assert found.table.slip.nunique() == 1
-    longer = compare("fig6-slab", scenario, until=7.0, rtol=1e-6)
+    longer = compare("fig6-slab", scenario, duration=7.0, rtol=1e-6)
     assert [(run.duration, run.rtol) for run in longer.runs.values()] == [(7.0, 1e-6)] * 2
 
 
@@ -103,9 +103,9 @@ def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
     for arguments, options, message in (
         (("fig6-slab",), {}, "needs two"),
         (("fig6-slab", "fig6-slap"), {}, "did you mean 'fig6-slab'"),
-        (("fig6-slab", done), {"until": 3.0}, "has been run: leave until and rtol away"),
+        (("fig6-slab", done), {"duration": 3.0}, "has been run: leave duration and rtol away"),
         (FIG6, {"names": ["one"]}, "names: 2 are needed, got 1"),
-        (FIG6, {"until": -1.0}, "until must be greater than 0 s, got -1"),
+        (FIG6, {"duration": -1.0}, "duration must be greater than 0 s, got -1"),
         (FIG6, {"rtol": 1.0}, "rtol must be at most"),
         (FIG6, {"event": 1}, "fig6-block-reconstructed has no slip event 1: it has 1"),
     ):

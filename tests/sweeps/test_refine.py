@@ -166,8 +166,8 @@ def test_a_jump_by_a_factor_is_refined_by_bisection() -> None:
         ({ALPHA: (0.05, 2.0)}, {}, "friction.alpha must be an array or a list: a tuple"),
         ({"run.selection": ["maxwell", "minimal"]}, {}, "run.selection needs two or more numbers"),
         ({ALPHA: [1, 2]}, {"factor": 1.0}, "factor must be above 1"),
-        ({ALPHA: [1, 2]}, {"depth": -1}, "depth must be 0 or more"),
-        ({ALPHA: [1, 2]}, {"depth": 2.5}, "whole numbers"),
+        ({ALPHA: [1, 2]}, {"depth": -1}, "depth must be a whole number, 0 or more, got -1"),
+        ({ALPHA: [1, 2]}, {"depth": 2.5}, "depth must be a whole number, 0 or more, got 2.5"),
         ({ALPHA: [1, 2]}, {"quantities": ["pulse"]}, "did you mean 'pulses'"),
     ],
 )

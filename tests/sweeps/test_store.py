@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -284,7 +285,7 @@ def test_the_command_continues_a_stopped_sweep(
         main([*command[:4], "--out", "first.zarr", "--chunk", "1"])  # compiles what is needed, which is announced
     capsys.readouterr()
     stop = Stop(2)
-    monkeypatch.setattr("stickslip.cli.commands.sweep.so_far", lambda report: stop(report) or "")
+    monkeypatch.setattr("stickslip.run.progress_line.progress_line", lambda _: nullcontext(stop))
     with pytest.raises(SystemExit) as ended:
         main(command)
     assert ended.value.code == 130

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import Empty, SimpleQueue
+from threading import Lock
+from time import thread_time
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stickslip.batch.batch_support import why_not
 from stickslip.batch.kernels.engine import engine_address
@@ -42,14 +46,25 @@ class BatchResult(NamedTuple):
         What ended each run: codes of `stickslip.trajectory.status.STATUSES`.
     reason : dict of int to str
         Why the parameters of a member are invalid, in one line, by the index of the member.
+    seconds : float
+        Processor time of all members, s.
+    alone : dict of int to float
+        Processor time (s) of each member that ran by itself, because its history is long or because it creeps for long.
+    later : list of int
+        Members that must run by themselves and have been left for later (see `defer`); their status is INTERRUPTED.
     """
 
     results: dict[str, Floats]
     status: Integers
     reason: dict[int, str]
+    seconds: float
+    alone: dict[int, float]
+    later: list[int]
 
 
-def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1) -> BatchResult:
+def run_members(
+    scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str], threads: int = 1, *, defer: bool = False
+) -> BatchResult:
     """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
     Parameters
@@ -62,6 +77,9 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
         Names from `stickslip.batch.QUANTITIES`.
     threads : int
         Number of threads.
+    defer : bool
+        If true, do not run members that must run by themselves, and list them in `later`: each may take as long as thousands of
+        others. If false, they run after all others.
 
     Returns
     -------
@@ -84,8 +102,11 @@ def run_members(scenario: Scenario, values: Mapping[str, Floats], quantities: Se
     batch = _Batch(scenario, arrays, quantities, count)
     for chunk in chunks(count, threads):
         batch.queue.put(chunk)
-    batch.run(threads)
-    return BatchResult(batch.results, batch.status, batch.reason)
+    batch.run(batch.work, threads)
+    waiting = [long.place for long in batch.long]
+    if not defer:
+        batch.run(batch.work_alone, threads)
+    return BatchResult(batch.results, batch.status, batch.reason, batch.seconds, batch.alone, sorted(waiting) if defer else [])
 
 
 def chunks(count: int, threads: int) -> Iterator[slice]:
@@ -112,8 +133,19 @@ def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequen
     return arrays
 
 
+class _Long(NamedTuple):
+    """A member that must run by itself: its index in the batch, and what the setup says about its contact equation."""
+
+    place: int
+    irregular: float
+    branches: float
+
+
 class _Batch:
-    """A batch in progress: a queue of chunks that are still to be done, and the results of those that are."""
+    """A batch in progress: a queue of chunks that are still to be done, and the results of those that are.
+
+    Members that must run by themselves are set aside and run after all others, so that they hold nobody up.
+    """
 
     def __init__(self, scenario: Scenario, values: Values, quantities: Sequence[str], count: int) -> None:
         self.scenario, self.values, self.wants_events = scenario, values, not OF_EVENTS.isdisjoint(quantities)
@@ -124,14 +156,18 @@ class _Batch:
         self.stop = np.zeros(1, np.int64)
         self.engine = engine_address()
         self.alike: dict[int, Alike] = {}
+        self.long: deque[_Long] = deque()
+        self.seconds = 0.0
+        self.alone: dict[int, float] = {}
+        self.counting = Lock()
 
-    def run(self, threads: int) -> None:
-        """Run all chunks on the given number of threads. An error, or Ctrl-C, ends every thread."""
+    def run(self, work: Callable[[], object], threads: int) -> None:
+        """Do the same work on the given number of threads. An error, or Ctrl-C, ends every thread."""
         if threads == 1:
-            self.work()
+            work()
             return
         with ThreadPoolExecutor(threads) as pool:
-            done = [pool.submit(self.work) for _ in range(threads)]
+            done = [pool.submit(work) for _ in range(threads)]
             try:
                 for one in done:
                     one.result()
@@ -141,13 +177,30 @@ class _Batch:
 
     def work(self) -> None:
         """Run chunks on one thread until the queue is empty or the batch is to stop."""
-        work = new_workspace()
+        start, work = thread_time(), new_workspace()
         while self.stop[0] == 0:
             try:
                 chunk = self.queue.get_nowait()
             except Empty:
-                return
+                break
             work = self.chunk(chunk, work)
+        with self.counting:
+            self.seconds += thread_time() - start
+
+    def work_alone(self) -> None:
+        """Run members that were set aside, one after the other, until none is left or the batch is to stop."""
+        while self.stop[0] == 0:
+            try:
+                long = self.long.popleft()
+            except IndexError:
+                return
+            start, out = thread_time(), np.full((1, len(COLUMNS)), np.nan)
+            code = run_alone(self.member(long.place), LARGEST_CAPACITY, self.stop, out[0])
+            self.keep(np.array([long.place]), np.array([code]), out, (long.irregular, long.branches))
+            took = thread_time() - start
+            with self.counting:
+                self.seconds += took
+                self.alone[long.place] = took
 
     def chunk(self, chunk: slice, work: Workspace) -> Workspace:
         """Run one chunk. Returns the workspace, which may have been replaced by a larger one."""
@@ -183,17 +236,22 @@ class _Batch:
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
-                n, work.stage[lane] = work.member[lane], Stage.FREE
-                codes[n] = run_alone(self.member(places[n]), LARGEST_CAPACITY, self.stop, out[n])
+                n, work.stage[lane] = int(work.member[lane]), Stage.FREE
+                self.long.append(_Long(int(places[n]), float(setups.irregular[n]), float(setups.branches[n])))
+        self.keep(places, codes, out, (setups.irregular, setups.branches))
+        return work
+
+    def keep(self, places: Integers, codes: Integers, out: Floats, contact: tuple[ArrayLike, ArrayLike]) -> None:
+        """Keep the codes and the numbers `out` of members with these indices; `contact` holds their `irregular` and `branches`."""
         reduced = Reduced.of(out)
-        reduced.irregular, reduced.branches = setups.irregular, setups.branches
+        reduced.irregular, reduced.branches = contact
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes
         for name, column in self.results.items():
             column[places] = out[:, COLUMNS.index(name)]
+        branches = np.broadcast_to(contact[1], len(places))
         for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():
-            self.reason[int(places[n])] = NO_START if setups.branches[n] > 0 else NO_BRANCH
-        return work
+            self.reason[int(places[n])] = NO_START if branches[n] > 0 else NO_BRANCH
 
     def member(self, n: int) -> Scenario:
         """Return the scenario of one member. Raises InputError if its parameters are invalid."""

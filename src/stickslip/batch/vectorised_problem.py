@@ -9,8 +9,8 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from typing import Any, NamedTuple, TypeVar
+from dataclasses import fields, replace
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,9 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
 def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
     """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
     made = copy.copy(owner)
+    kept = {field.name for field in fields(cast(Any, owner))}  # what follows from the numbers, and is remembered, does not go along
+    for name in set(vars(made)) - kept:
+        del vars(made)[name]
     vars(made).update(numbers)
     return made
 

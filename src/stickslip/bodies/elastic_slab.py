@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -119,7 +120,7 @@ class ElasticSlab:
         """True if the contact has a mass, so that its slip rate cannot jump."""
         return self.contact_mass > 0.0
 
-    @property
+    @cached_property
     def reflection(self) -> float:
         """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
 
@@ -129,7 +130,7 @@ class ElasticSlab:
             return -1.0
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
 
-    @property
+    @cached_property
     def is_driven_rigidly(self) -> bool:
         """True if the driver reflects the whole wave with its sign reversed, r = -1."""
         return bool(np.all(self.reflection == -1.0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.files import check_target
+from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
     from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
-    from stickslip.run.progress import Progress
+    from stickslip.run.progress import Progress, Report
     from stickslip.solution.solution import Solution
 
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Request:
     """The options of `stickslip run` as they were typed.
 
-    `overrides` are those that replace numbers of the scenario: until, events, rtol, creep_rtol, shortest_event and selection.
+    `overrides` are those that replace numbers of the scenario: duration, events, rtol, creep_rtol, shortest_event and selection.
     """
 
     scenario: str | None
@@ -34,36 +34,37 @@ class Request:
     overrides: Mapping[str, Any]
     max_pieces: int | None
     out: Path | None
-    catalog: Path | None
-    energies: bool
+    catalogue: Path | None
+    energy: bool
     pictures: Pictures
 
     def check(self) -> None:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
-        check_target(self.out, "--out", (".nc",))
+        check_targets(
+            Target("--out", self.out, (".nc",)), Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets()
+        )
         self.pictures.check()
         if self.scenario is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
-        as_begun = (self.catalog, *(self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")))
+        as_begun = (self.catalogue, *(self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")))
         if self.resume is not None and any(option is not None for option in as_begun):
-            options = "--rtol, --creep-rtol, --shortest-event, --selection and --catalog"
+            options = "--rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
             raise InputError(f"run: --resume goes on as the run began: leave {options} away")
         if self.keeps_events_only and (self.out or self.pictures.wanted):
             options = ", ".join([*["--out"] * (self.out is not None), *self.pictures.wanted])
             raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
-        if self.energies and self.catalog is None:
-            raise InputError("run: --energies belongs to --catalog FILE")
-        if self.catalog is not None:
-            from stickslip.io.catalogue_rows import SUFFIXES, check_catalogue
+        if self.energy and self.catalogue is None:
+            raise InputError("run: --energy belongs to --catalogue FILE")
+        if self.catalogue is not None:
+            from stickslip.io.catalogue_rows import check_catalogue
 
-            check_target(self.catalog, "--catalog", SUFFIXES)
-            check_catalogue(self.catalog, "--catalog")
+            check_catalogue(self.catalogue, "--catalogue")
 
     @property
     def keeps_events_only(self) -> bool:
         """True if only slip events are kept, and no history."""
         if self.resume is None:
-            return self.catalog is not None
+            return self.catalogue is not None
         from stickslip.io.netcdf import is_catalogue  # imports xarray, which takes a while
 
         return is_catalogue(self.resume)
@@ -71,7 +72,7 @@ class Request:
     @property
     def duration(self) -> float | None:
         """The duration that was typed, s, or None."""
-        typed: float | None = read(read_duration, self.overrides["until"], "run", "until")
+        typed: float | None = read(read_duration, self.overrides["duration"], "run", "duration")
         return typed
 
     @property
@@ -97,7 +98,7 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
     if request.resume is None:
         chosen = request.load()
         request.pictures.check_problem(chosen.problem)
-        with progress(chosen.name) as report:
+        with _watched(request, chosen.problem, chosen.name) as report:
             return chosen, chosen.run(report, **keep)
     from stickslip.io.netcdf import open_solution
     from stickslip.run.options import RunOptions
@@ -105,25 +106,42 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
 
     stopped = open_solution(request.resume)
     check_same(request, stopped.problem)
-    with progress(request.resume.stem) as report:
+    with _watched(request, stopped.problem, request.resume.stem) as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
         options = RunOptions.to_continue(stopped, request.duration, request.events, **others)
         solution = resume_run(stopped, request.resume, options)
     return Scenario.of(solution, request.resume.stem), solution
 
 
+@contextmanager
+def _watched(request: Request, problem: Problem, name: str) -> Iterator[Progress]:
+    """Show the progress of a run that keeps its history, and say when that becomes long. Yields the callback."""
+    from stickslip.cli.output.growth import Growth
+    from stickslip.run.options import MAX_PIECES
+
+    growth = Growth(problem, request.out or request.resume, request.max_pieces or MAX_PIECES, request.max_pieces is not None)
+    growth.tell_limit()
+    with progress(name) as report:
+
+        def told(about: Report) -> None:
+            growth.look(about)
+            report(about)
+
+        yield told
+
+
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     """Run and keep only slip events, from the start or from a checkpoint. Raises InputError."""
-    from stickslip.run.catalogue import catalogue_of, check_energies
+    from stickslip.run.catalogue import catalogue_of, check_energy
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import PausedCatalogue
 
     if request.resume is None:
         chosen = request.load()
-        check_energies(chosen.creep_rtol, request.energies, "run", "--energies and --creep-rtol")
+        check_energy(chosen.creep_rtol, request.energy, "run", "--energy and --creep-rtol")
         with progress(chosen.name) as report:
             options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
-            return chosen, catalogue_of(chosen.problem, options, request.catalog, energies=request.energies)
+            return chosen, catalogue_of(chosen.problem, options, request.catalogue, energy=request.energy)
     paused = PausedCatalogue.read(request.resume)
     check_same(request, paused.stopped.problem)
     with progress(request.resume.stem) as report:

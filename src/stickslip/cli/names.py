@@ -1,4 +1,7 @@
-"""Complete names for the shell."""
+"""The names that options accept: for the shell, which completes them, and for help, which lists them.
+
+Nothing is imported before the shell or the help asks.
+"""
 
 from __future__ import annotations
 
@@ -11,23 +14,51 @@ from typer import Context  # typer evaluates the annotation at run time
 STARTERS = ("slab", "block")
 """Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
 
+RESULTS = (".nc", ".csv", ".parquet")
+"""Suffixes of the files that hold results of runs and catalogues."""
 
-def _completion(module: str, names: str) -> Callable[[str], list[str]]:
-    """Return a function that completes the names in a module's table, which it imports only when the shell asks."""
-
-    def complete(incomplete: str) -> list[str]:
-        found: Iterable[str] = getattr(import_module(f"stickslip.{module}"), names)
-        return [name for name in found if name.startswith(incomplete)]
-
-    return complete
+Names = Callable[[], list[str]]
+"""A function that returns all names that an option accepts."""
 
 
-complete_law = _completion("friction", "LAWS")
-complete_pull = _completion("loading", "HISTORIES")
-complete_rule = _completion("problem.selection_rule", "SELECTION_RULES")
-complete_regularisation = _completion("studies.regularisations", "KINDS")
-complete_quantity = _completion("sweeps.design.quantities", "QUANTITIES")
-complete_design = _completion("sweeps.design.design", "KINDS")
+def _table(module: str, table: str) -> Names:
+    """Return a function that imports a module and returns the names in one of its tables."""
+
+    def names() -> list[str]:
+        found: Iterable[str] = getattr(import_module(f"stickslip.{module}"), table)
+        return list(found)
+
+    return names
+
+
+def _completion(names: Names) -> Callable[[str], list[str]]:
+    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
+
+
+CHOICES: dict[str, Names] = {
+    "friction": _table("friction", "LAWS"),
+    "pull": _table("loading", "HISTORIES"),
+    "selection": _table("problem.selection_rule", "SELECTION_RULES"),
+    "by": _table("studies.regularisations", "KINDS"),
+    "quantity": _table("sweeps.design.quantities", "QUANTITIES"),
+    "refine": _table("sweeps.design.quantities", "QUANTITIES"),
+    "design": _table("sweeps.design.design", "KINDS"),
+    "series": _table("solution.evaluation", "CURVES"),
+}
+"""The names that each option with a fixed set of values accepts, by option."""
+
+complete_law = _completion(CHOICES["friction"])
+complete_pull = _completion(CHOICES["pull"])
+complete_rule = _completion(CHOICES["selection"])
+complete_regularisation = _completion(CHOICES["by"])
+complete_quantity = _completion(CHOICES["quantity"])
+complete_design = _completion(CHOICES["design"])
+
+
+def complete_series(incomplete: str) -> list[str]:
+    """Return the lists of curves that begin with what is typed: names of curves with commas between them."""
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in CHOICES["series"]() if name.startswith(last) and name not in before.split(",")]
 
 
 def complete_fitted(incomplete: str) -> list[str]:
@@ -61,6 +92,11 @@ def complete_source(incomplete: str) -> list[str]:
     return _complete_files(incomplete, (".toml", ".nc"))
 
 
+def complete_result(incomplete: str) -> list[str]:
+    """Return the files and folders that begin with what is typed and may be results: of runs, catalogues and sweeps."""
+    return [name.removesuffix("/") if name.endswith(".zarr/") else name for name in _files(incomplete, RESULTS)]
+
+
 def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
     from stickslip.scenarios import library
 
@@ -90,12 +126,21 @@ def complete_template(incomplete: str) -> list[str]:
 
 def complete_vary(context: Context, incomplete: str) -> list[str]:
     """Return the keys that a sweep can vary in the scenario on the command line, as far as they begin with what is typed."""
+    return [f"{name}=" for name in _parameters(context) if name.startswith(incomplete)]
+
+
+def complete_axis(context: Context, incomplete: str) -> list[str]:
+    """Return the parameters of the scenario on the command line that can be an axis of a map, as `complete_vary` does."""
+    found = (name for name in _parameters(context) if name.startswith(("body.", "friction.")))
+    return [f"{name}=" for name in found if name.startswith(incomplete)]
+
+
+def _parameters(context: Context) -> list[str]:
     from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
     from stickslip.sweeps.design.parameter_paths import parameter_paths
 
     try:
-        found = parameter_paths(load_scenario(context.params["scenario"]))
-        return [f"{one.name}=" for one in found if one.name.startswith(incomplete)]
+        return [one.name for one in parameter_paths(load_scenario(context.params["scenario"]))]
     except (InputError, KeyError, TypeError):
         return []

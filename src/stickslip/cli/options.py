@@ -8,13 +8,15 @@ from typing import Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_scenario
+from stickslip.cli.names import complete_axis, complete_scenario
 
 AXIS = "NAME=LOW..HIGH[:POINTS][:log]; give two."
 """How the axes of a map are typed, for the help of --map."""
+SCENARIO = "A TOML file, a bundled name, or - for standard input."
+"""What a scenario is, for help."""
 
-DURATION = 'Override the duration: s, or with a unit ("480 year").'
-"""What a duration replaces and how it is typed, for help."""
+RESULTS, FIGURES, ACCURACY = "Files of results", "Figures", "Accuracy and size"
+"""Headings of groups of options in the help."""
 
 
 def argument(text: str, complete: Callable[[str], list[str]]) -> Any:
@@ -22,14 +24,14 @@ def argument(text: str, complete: Callable[[str], list[str]]) -> Any:
     return typer.Argument(help=text, autocompletion=complete, show_default=False)
 
 
-def option(text: str, *names: str, **more: Any) -> Any:
+def option(text: str, *names: str, panel: str | None = None, **more: Any) -> Any:
     """Declare an option; the help does not show that nothing is given by default."""
-    return typer.Option(*names, help=text, show_default=False, **more)
+    return typer.Option(*names, help=text, show_default=False, rich_help_panel=panel, **more)
 
 
 def picture(what: str, *names: str) -> Any:
     """Declare an option that names the file of a figure."""
-    return option(f"Save {what} (.png, .pdf or .svg).", *names)
+    return option(f"Save {what} (.png, .pdf or .svg).", *names, panel=FIGURES)
 
 
 def table_of(what: str) -> Any:
@@ -37,10 +39,23 @@ def table_of(what: str) -> Any:
     return option(f"Save the table, a row for each {what} (.csv).", "--out", "-o")
 
 
-ScenarioName = Annotated[str, typer.Argument(help="A TOML file, or a bundled name.", autocompletion=complete_scenario)]
-FigureFile = Annotated[Path | None, picture("a figure", "--figure", "-f")]
-Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.")]
+def axes_of(what: str) -> Any:
+    """Declare the option --map, which is given twice."""
+    return option(f"Axis of {what}: {AXIS}", "--map", autocompletion=complete_axis)
+
+
+ScenarioName = Annotated[str, typer.Argument(help=SCENARIO, autocompletion=complete_scenario)]
+FigureFile = Annotated[Path | None, option("Save a figure (.png, .pdf or .svg).", "--figure", "-f", panel=FIGURES)]
+Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.", panel=FIGURES)]
 SIZE_HELP = 'Size of figures: "16 x 10 cm", "3.5 x 5 in", "single column" or "double column".'
-Size = Annotated[str | None, option(SIZE_HELP, "--size", "--figure-size")]
-Until = Annotated[str | None, option(DURATION, "--until", "--duration")]
+Size = Annotated[str | None, option(SIZE_HELP, "--size", "--figure-size", panel=FIGURES)]
+Duration = Annotated[str | None, option('Override the duration: s, or with a unit ("480 years").')]
 Rtol = Annotated[float | None, option("Override the relative tolerance.")]
+
+RunFigure = Annotated[Path | None, picture("slip, slip rate and traction over time", "--figure", "-f")]
+PathFigure = Annotated[Path | None, picture("the path of the run in the set K", "--path")]
+CatalogueFigure = Annotated[Path | None, picture("the slip events", "--catalogue-figure")]
+EnergyFigure = Annotated[Path | None, picture("where the energy is", "--energy-figure")]
+FrictionFigure = Annotated[Path | None, picture("the friction coefficient against slip", "--friction-figure")]
+SpaceTime = Annotated[Path | None, picture("the inside of the slab over time", "--space-time")]
+Animation = Annotated[Path | None, option("Save the slab in motion (.gif; .mp4 and .webm need ffmpeg).", panel=FIGURES)]

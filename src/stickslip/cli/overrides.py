@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
+
+import typer
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
-from stickslip.scenarios.scenario import Scenario, load_scenario
+from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import check_events, check_rule, read_duration
+from stickslip.scenarios.text_of_files import LARGEST, text_of
 from stickslip.scenarios.values import read_typed
 
 Reader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""
 
 
+STDIN = "-"
+"""The name that stands for standard input in place of a scenario's."""
+
+
+def load(scenario: str) -> Scenario:
+    """Load a scenario from a file, by its bundled name, or from standard input. Raises InputError."""
+    if scenario != STDIN:
+        return load_scenario(scenario)
+    if sys.stdin.isatty():
+        typer.echo("the scenario is read from the terminal; its end is Ctrl-D on a line of its own", err=True)
+    return read_scenario(text_of(sys.stdin.buffer.read(LARGEST + 1), "standard input"), "standard input", "stdin", Path.cwd())
+
+
 def load_with(command: str, scenario: str, **typed: Any) -> Scenario:
-    """Load a scenario and replace what was typed, by option, such as until="480 year"; None is not typed. Raises InputError."""
-    loaded = load_scenario(scenario)
+    """Load a scenario and replace what was typed, by option, such as duration="480 years"; None is not typed. Raises InputError."""
+    loaded = load(scenario)
     readers = _readers(loaded.problem)
     changes = {}
     for option, value in typed.items():
@@ -39,7 +57,6 @@ def read(reader: Reader, value: Any, command: str, option: str, default: Any = N
 def _readers(problem: Problem) -> dict[str, tuple[str, Reader]]:
     """Return by option the field of a scenario that it replaces, and the function that reads it."""
     return {
-        "until": ("duration", read_duration),
         "duration": ("duration", read_duration),
         "events": ("max_events", check_events),
         "rtol": ("rtol", check_rtol),

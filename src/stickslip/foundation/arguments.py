@@ -9,6 +9,8 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from stickslip.foundation.errors import InputError
 
 LONGEST = 60
@@ -27,7 +29,7 @@ def as_float(value: Any) -> float:
 
 def is_number(value: Any) -> bool:
     """Return True for a real number; True and False are none."""
-    return isinstance(value, Real) and not isinstance(value, bool)
+    return isinstance(value, Real) and not isinstance(value, bool | np.timedelta64)
 
 
 def shown(value: Any) -> str:
@@ -36,6 +38,8 @@ def shown(value: Any) -> str:
         return f"the class {value.__name__}, not an instance of it: call it"
     if value is None or isinstance(value, bool):
         return str(value)
+    if isinstance(value, np.timedelta64):  # numpy's intervals of time count as whole numbers, but convert to none
+        return type(value).__name__
     if isinstance(value, Integral) and abs(int(value)) < EXACT:
         return str(int(value))
     if isinstance(value, Real):
@@ -56,7 +60,7 @@ def check_type(where: str, value: Any, kind: Any, wanted: str) -> None:
 
 def check_whole(where: str, value: Any, least: int = 1, most: int | None = None) -> int:
     """Return a whole number from `least` to `most` as an int. Raises InputError, beginning with `where`, for anything else."""
-    found = int(value) if isinstance(value, Integral) and not isinstance(value, bool) else None
+    found = int(value) if isinstance(value, Integral) and is_number(value) else None
     if found is not None and least <= found and (most is None or found <= most):
         return found
     bounds = f" from {least} to {most}" if most is not None else f" above {least - 1}" if least > 0 else ", 0 or more"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Sequence
 from decimal import Decimal
-from numbers import Real
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from stickslip.foundation.arguments import as_float, shown
+from stickslip.foundation.arguments import as_float, is_number, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.units import LONGEST, split_quantity, to_si
 
@@ -20,6 +20,10 @@ SAME = 1e-12
 """Relative difference up to which the definitions of a unit in two libraries count as the same."""
 NO_UNIT = "dimensionless"
 """Name of the unit of a pure number in pint."""
+
+
+_COMMA = re.compile(r"(?P<whole>[+-]?[\d_]+),(?P<part>\d+)(?P<rest>(?:[eE][+-]?\d+)?(?:\s*[^\d\s,][^,]*)?)")
+"""A number with a decimal comma, and what may follow it."""
 
 
 class WithUnit(Protocol):
@@ -89,7 +93,7 @@ def to_number(value: Any, unit: str, infinite: Collection[str] = ()) -> float:
             return float(without_unit(value, unit))
         except InputError as error:
             raise InputError(f"{as_text(value)}: {error}") from None
-    if isinstance(value, bool) or not isinstance(value, Real | Decimal) or (isinstance(value, Decimal) and value.is_snan()):
+    if not (is_number(value) or (isinstance(value, Decimal) and not value.is_snan())):
         raise InputError(shown(value))
     if isinstance(value, int) and abs(value) > LARGEST_INTEGER:
         raise InputError("a whole number beyond 1e300")
@@ -133,11 +137,20 @@ def _in_one_of(number: Any, unit: str, wanted: str) -> Any:
 def _hint(text: str) -> str:
     if len(text) > LONGEST:
         return f": longer than {LONGEST} characters"
+    point = decimal_point(text)
+    if point:
+        return f": write {shown(point)}, with a decimal point"
     try:
         float(text)
     except ValueError:
-        return ""
+        return ": write a decimal point" if split_quantity(text.replace(",", ".", 1)) else ""
     return ": write a number without quotes"
+
+
+def decimal_point(text: str) -> str | None:
+    """Return a text that begins with a number with a decimal comma, with a point in its place; None if it is no such text."""
+    found = _COMMA.fullmatch(text.strip())
+    return f"{found['whole']}.{found['part']}{found['rest']}" if found else None
 
 
 def without_unit(value: Any, unit: str) -> Any:

@@ -29,3 +29,10 @@ def nearest(word: str, allowed: Iterable[str]) -> str:
     allowed = list(allowed)
     close = difflib.get_close_matches(word, allowed, n=1)
     return f"did you mean '{close[0]}'?" if close else f"allowed: {', '.join(sorted(allowed))}"
+
+
+def nearest_and_all(word: str, allowed: Iterable[str]) -> str:
+    """Return a hint that names the allowed word nearest to `word`, if one is near, and all of them in the order given."""
+    allowed = list(allowed)
+    close = difflib.get_close_matches(word, allowed, n=1)
+    return f"{f'did you mean {close[0]!r}? ' if close else ''}allowed: {', '.join(allowed)}"

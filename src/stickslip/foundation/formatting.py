@@ -15,13 +15,15 @@ _SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""
 _ALTERNATIVES = {
-    "m": (("km", 1e3), ("mm", 1e-3)),
+    "m": (("km", 1e3), ("mm", 1e-3), ("um", 1e-6)),
     "s": (("years", YEAR), ("ms", 1e-3)),
-    "m/s": (("m/year", 1.0 / YEAR), ("km/s", 1e3)),
+    "m/s": (("km/s", 1e3), ("mm/s", 1e-3), ("um/s", 1e-6), ("m/year", 1.0 / YEAR)),
 }
 """Further units in which `brief` may show a quantity, with their factors to SI."""
 DIGITS = 6
 """Number of significant digits of `brief`."""
+UNHANDY = 2
+"""Number of characters by which a text may be longer if its number then lies between 0.1 and 1000."""
 
 
 def number(value: float, digits: int = 8) -> str:
@@ -45,7 +47,7 @@ def with_unit(value: float, unit: str) -> str:
 
 
 def brief(value: float, unit: str) -> str:
-    """Format a quantity with 6 digits in the unit in which it is shortest: "10 km", "0.05 m/year", "100 MPa".
+    """Format a quantity with 6 digits in the unit in which it is short: "10 km", "0.05 m/year", "100 MPa".
 
     Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
     """
@@ -55,7 +57,7 @@ def brief(value: float, unit: str) -> str:
     if unit in _SCALED:
         units = (*units, *((prefix + unit, factor) for factor, prefix in reversed(_PREFIXES)))
     sizes = ((f"{value / factor:.{DIGITS}g}", name, abs(value / factor)) for name, factor in units)
-    shown, name, _ = min(sizes, key=lambda one: (len(one[0] + one[1]), not 1.0 <= one[2] < 1000.0))
+    shown, name, _ = min(sizes, key=lambda one: len(one[0] + one[1]) + (0 if 0.1 <= one[2] < 1000.0 else UNHANDY))
     return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"
 
 

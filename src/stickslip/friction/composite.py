@@ -15,6 +15,9 @@ from stickslip.foundation.quantities import Part, declare, fields_of, quantities
 from stickslip.friction.contract import Formula
 from stickslip.friction.law import FrictionLaw
 
+MAKES_LAWS = "FromFunction makes one of a function, FromExpression of a text"
+"""End of a message about a part that is no law."""
+
 
 @dataclass(frozen=True)
 class LawOfParts(FrictionLaw):
@@ -75,7 +78,7 @@ class CompositeLaw(LawOfParts):
         name = type(self).__name__
         for place, part in self.parts.items():
             if not isinstance(part, FrictionLaw):
-                raise InputError(f"{name}: {place} must be a friction law, got {type(part).__name__}")
+                raise InputError(f"{name}: {place} must be a friction law, got {type(part).__name__}; {MAKES_LAWS}")
             if part.state is not None:
                 raise InputError(f"{name}: {place} must be a law without a state of its own, {part.kind} has one")
         for part, place, other in ((self.slip, "slip", "rate"), (self.rate, "rate", "slip")):

@@ -132,12 +132,12 @@ class FrictionLaw(LawContract):
 
     # ---- properties -----------------------------------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def depends_on_slip(self) -> bool:
         """True if mu changes with slip."""
         return self._depends_on(SLIP)
 
-    @property
+    @cached_property
     def depends_on_rate(self) -> bool:
         """True if mu changes with slip rate, or steps down from static to sliding friction."""
         return self.static_excess != 0.0 or self._depends_on(RATE)
@@ -151,7 +151,7 @@ class FrictionLaw(LawContract):
     def bends_one_way(self) -> bool:
         return not self.depends_on_rate
 
-    @property
+    @cached_property
     def variation(self) -> float:
         """The finite size by which the friction coefficient changes (no unit).
 

@@ -46,7 +46,7 @@ def catalogue(
     shortest_event: float | str | WithUnit | None = None,
     max_events: int | None = None,
     event_rate: float | str | WithUnit | None = None,
-    energies: bool = False,
+    energy: bool = False,
     progress: Progress | bool | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
@@ -69,7 +69,7 @@ def catalogue(
     event_rate : float or str, optional
         Slip rate (m/s, or a text with a unit) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a
         block sqrt(K m) replaces Z.
-    energies : bool
+    energy : bool
         Add the energies of each event (slab: J/m^2, block: J). Automatic leaps over creep are then switched off.
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
@@ -80,14 +80,14 @@ def catalogue(
     Returns
     -------
     pandas.DataFrame
-        The table of `Solution.catalogue(event_rate, energies=energies)`, with a last row for an event that the end of the run
+        The table of `Solution.catalogue(event_rate, energy=energy)`, with a last row for an event that the end of the run
         leaves open. Its `attrs` hold what ended the run, and notes.
 
     Raises
     ------
     InputError
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
-        pyarrow, another run writes to the same files, or `energies` is combined with a positive creep_rtol.
+        pyarrow, another run writes to the same files, or `energy` is combined with a positive creep_rtol.
     """
     rate = check_event_rate(event_rate, "catalogue")
     file = None if path is None else as_path("catalogue: path", path)
@@ -106,16 +106,16 @@ def catalogue(
             checkpoint_every=checkpoint_every,
             max_pieces=max_pieces,
         )
-        check_energies(options.creep_rtol, energies, "catalogue")
-        return catalogue_of(given, options, file, rate, energies=energies).read()
+        check_energy(options.creep_rtol, energy, "catalogue")
+        return catalogue_of(given, options, file, rate, energy=energy).read()
 
 
 def catalogue_of(
-    problem: Problem, options: RunOptions, path: Path | None, event_rate: float | None = None, *, energies: bool = False
+    problem: Problem, options: RunOptions, path: Path | None, event_rate: float | None = None, *, energy: bool = False
 ) -> Catalogue:
     """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first."""
-    run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energies, options.creep_rtol)))
-    stream = stream_of(run, event_rate, energies)
+    run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
+    stream = stream_of(run, event_rate, energy)
     if path is None:
         return follow(run, stream, RowsInMemory())
     rows = Rows(path)
@@ -125,14 +125,14 @@ def catalogue_of(
         return follow(run, stream, rows)
 
 
-def leaps_with(energies: bool, creep_rtol: float | None) -> float | None:
+def leaps_with(energy: bool, creep_rtol: float | None) -> float | None:
     """Return the tolerance of leaps over creep, which is 0 (no leaps) if energies are wanted and no tolerance is given."""
-    return 0.0 if energies and creep_rtol is None else creep_rtol
+    return 0.0 if energy and creep_rtol is None else creep_rtol
 
 
-def check_energies(creep_rtol: float | None, energies: bool, where: str, options: str = "energies and creep_rtol") -> None:
+def check_energy(creep_rtol: float | None, energy: bool, where: str, options: str = "energy and creep_rtol") -> None:
     """Refuse energies for a run that leaps over creep. Raises InputError."""
-    if energies and creep_rtol is not None and creep_rtol > 0.0:
+    if energy and creep_rtol is not None and creep_rtol > 0.0:
         raise InputError(f"{where}: {options} exclude each other: what leaps over creep send into the slab is not known")
 
 

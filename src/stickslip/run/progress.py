@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 Doing = Literal["stuck", "creeping", "slipping"]
 
 
+MANY = 200_000
+"""Number of pieces of history from which a run is called long: some 0.1 GB in memory, and in a file."""
+
+
 class Report(NamedTuple):
     """The progress of a run; as a text it is one line for people.
 
@@ -55,9 +59,11 @@ class Report(NamedTuple):
             f"{self.events}{wanted} slip event{'' if self.events == 1 and not wanted else 's'}",
             self.doing,
         ]
+        if self.pieces >= MANY:
+            parts.append(f"{number(self.pieces / 1e6, 3)} million pieces")
         if self.pace > 0.0:
             parts.append(f"{about_time(self.pace)} a second")
-        if math.isfinite(self.left):
+        if 1.0 <= self.left < math.inf:
             parts.append(f"{about_time(self.left)} left")
         return ", ".join(parts)
 

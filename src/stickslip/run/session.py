@@ -6,7 +6,7 @@ block.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -119,9 +119,20 @@ class Session:
         whole = code in (Stop.FINISHED, Stop.LOCKED)
         reached = options.duration if whole else float(kept.trip[-1] * row + kept.phase_to[-1])
         history = History(kept, self.problem, row, float(self.setup.params.ramp), reached, creep=self.creep)
-        found = Solution(self.problem, options.duration, options.rtol, STATUSES[code], history, self.checkpoint())
-        given = {name: getattr(options, name) for name in ("max_events", "creep_rtol", "shortest_event", "title")}
-        return replace(found, lumping_note=self.lumping_note, rounding_note=self.rounding_note, **given)
+        return Solution(
+            self.problem,
+            options.duration,
+            options.rtol,
+            STATUSES[code],
+            history,
+            self.checkpoint(),
+            max_events=options.max_events,
+            creep_rtol=options.creep_rtol,
+            shortest_event=options.shortest_event,
+            title=options.title,
+            lumping_note=self.lumping_note,
+            rounding_note=self.rounding_note,
+        )
 
     def advance(self, last: tuple[int, float], budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep. Returns the code of `loop.run_until`.

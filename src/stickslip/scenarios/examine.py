@@ -271,5 +271,5 @@ def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
     gains = [abs(body.reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
     if max(gains, default=0.0) <= 1.0:
         return []
-    growth = f"each echo multiplies a disturbance by up to {max(gains):.3g} at the rates that the rule jumps to"
+    growth = f"each echo multiplies a disturbance by up to {max(gains):.6g} at the rates that the rule jumps to"
     return [f"{growth}: long catalogues are chaotic beyond a horizon"]

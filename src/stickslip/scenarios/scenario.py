@@ -14,10 +14,9 @@ import tomli_w
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
 from stickslip.foundation.arguments import as_path
-from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import html_table
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.loading import LoadingHistory
@@ -26,14 +25,14 @@ from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, read_document, read_part, read_table, without_owner
+from stickslip.scenarios.text_of_files import about_suffix, read_text
+from stickslip.scenarios.toml_faults import why_not_toml
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
     from stickslip.run.progress import Progress
     from stickslip.solution.solution import Solution
 
-LARGEST = 1_000_000
-"""Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 UNNAMED = "scenario"
 """Name of a scenario that has none of its own."""
 DEEPEST = 20
@@ -172,7 +171,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
         return read_scenario(library.text(path_or_name), path_or_name)
     path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
     file = str(path) if str(path).isprintable() else show(str(path))
-    return read_scenario(_read_file(path, file), file, name=path.stem, folder=path.parent)
+    return read_scenario(read_text(path, file), file, name=path.stem, folder=path.parent)
 
 
 def read_scenario(text: str, file: str, name: str | None = None, folder: Path | None = None) -> Scenario:
@@ -206,7 +205,7 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
     except RecursionError:
         raise InputError(f"{file}: not a scenario: nested too deeply") from None
     except ValueError as error:  # tomllib.TOMLDecodeError, and whole numbers beyond what Python converts
-        raise InputError(f"{file}: not TOML: {' '.join(str(error).split())}") from None
+        raise InputError(f"{file}: {about_suffix(file) or why_not_toml(text, str(error))}") from None
     return replace(scenario_of(raw, Source(file, folder)), name=name or file, source=text)
 
 
@@ -235,21 +234,3 @@ def _in_tables(message: str) -> str:
     if message.startswith("needs either"):
         return f"[initial] {message.replace('initial_', '')}"
     return message.replace("initial_", "[initial] ")
-
-
-def _read_file(path: Path, file: str) -> str:
-    try:
-        return read_bounded(path, LARGEST).decode("utf-8-sig")
-    except InputError as error:
-        raise InputError(f"{file}: {error}: not a scenario") from None
-    except FileNotFoundError:
-        raise InputError(f"{file}: no such file, and no bundled scenario of that name; {_hint(path)}") from None
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: not a text file in UTF-8") from None
-
-
-def _hint(path: Path) -> str:
-    hint = nearest(path.stem, library.names())
-    return hint if hint.startswith("did") else "`stickslip new --list` lists them"

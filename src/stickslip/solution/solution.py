@@ -63,7 +63,7 @@ class Solution(Exports):
         """The slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
         return self.catalogue()
 
-    def catalogue(self, event_rate: float | str | WithUnit | None = None, *, energies: bool = False) -> pd.DataFrame:
+    def catalogue(self, event_rate: float | str | WithUnit | None = None, *, energy: bool = False) -> pd.DataFrame:
         """Return the slip events as a table, one row each.
 
         Parameters
@@ -71,16 +71,16 @@ class Solution(Exports):
         event_rate : float or str, optional
             Slip rate (m/s, or a text with a unit) that defines an event: an event is a maximal interval in which |v| is larger. The
             default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of mu) / sqrt(K m); 0 takes every slip.
-        energies : bool
+        energy : bool
             If true, add the energies of each event (J/m^2; block: J), which take longer to compute.
 
         Returns
         -------
         pandas.DataFrame
-            Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`, in
+            Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energy`, in
             `stickslip.trajectory.tables`.
         """
-        return events_table(self.history, self._rate(event_rate), energies)
+        return events_table(self.history, self._rate(event_rate), energy)
 
     def _rate(self, event_rate: float | str | WithUnit | None) -> float:
         """Return the slip rate (m/s) that defines an event: the given one, or the default of the problem."""

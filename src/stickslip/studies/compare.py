@@ -56,22 +56,22 @@ class Source(NamedTuple):
     solution: Callable[[Progress | None], Solution]
 
 
-def read_source(source: str | Path | Scenario | Solution, until: float | None = None, rtol: float | None = None) -> Source:
+def read_source(source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None) -> Source:
     """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
 
-    `until` (s) and `rtol` replace those of a scenario. Raises InputError if `source` is none of these, and if `until` or `rtol` is
-    given with a solution, which has been run already.
+    `duration` (s) and `rtol` replace those of a scenario. Raises InputError if `source` is none of these, and if `duration` or
+    `rtol` is given with a solution, which has been run already.
     """
     computed = isinstance(source, Solution)
-    if (computed or Path(str(source)).suffix == ".nc") and not (until is None and rtol is None):
-        raise InputError(f"{'a solution' if computed else source}: has been run: leave until and rtol away")
+    if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
+        raise InputError(f"{'a solution' if computed else source}: has been run: leave duration and rtol away")
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
         solution = open_solution(str(source))
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = source if isinstance(source, Scenario) else load_scenario(source)
-    changed = replace(scenario, duration=until or scenario.duration, rtol=rtol or scenario.rtol)
+    changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
     return Source(scenario.name, lambda progress: uninterrupted(changed.run(progress)))
 
 
@@ -134,7 +134,7 @@ def compare(
     *sources: str | Path | Scenario | Solution,
     names: Sequence[str] | None = None,
     event: int | None = None,
-    until: float | str | WithUnit | None = None,
+    duration: float | str | WithUnit | None = None,
     rtol: float | None = None,
     progress: TextProgress | bool | None = None,
 ) -> Comparison:
@@ -149,7 +149,7 @@ def compare(
         Names of the runs, in the same order.
     event : int, optional
         Slip event of each run to show in the figure (0 the first, -1 the last), in time since its start.
-    until : float or str, optional
+    duration : float or str, optional
         Duration of the runs (s, or a text with a unit), in place of that of the scenarios.
     rtol : float, optional
         Relative tolerance, in place of that of the scenarios.
@@ -165,8 +165,8 @@ def compare(
     Raises
     ------
     InputError
-        If there are fewer than two runs, if a source is not a scenario or solution, if the number of names is wrong, if `until` or
-        `rtol` is out of range or given with a solution, or if a run has no such event.
+        If there are fewer than two runs, if a source is not a scenario or solution, if the number of names is wrong, if
+        `duration` or `rtol` is out of range or given with a solution, or if a run has no such event.
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
@@ -174,7 +174,7 @@ def compare(
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")
     if rtol is not None:
         check_rtol(rtol, "compare", "rtol")
-    lasts = None if until is None else DURATION.check("compare", "until", until)
+    lasts = None if duration is None else DURATION.check("compare", "duration", duration)
     read = [read_source(source, lasts, rtol) for source in sources]
     called = distinct([source.name for source in read] if names is None else names)
     if len(called) != len(read):

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.arguments import check_whole
@@ -29,12 +32,17 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+SLOWEST = 100
+"""Number of members whose processor times are kept."""
+
+
 class SweepProgress(NamedTuple):
     """The progress of a sweep; as a text it is one line for people.
 
     `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
     number. `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the
-    end. Both are NaN until a chunk is finished.
+    end. Both are NaN until a chunk is finished. `seconds` is the processor time of this call (s), and `alone` that of the SLOWEST
+    members that ran by themselves, by their number in the design, longest first.
     """
 
     done: int
@@ -42,11 +50,15 @@ class SweepProgress(NamedTuple):
     members: int
     rate: float
     left: float
+    seconds: float = 0.0
+    alone: Mapping[int, float] = MappingProxyType({})
 
     def __str__(self) -> str:
         parts = [f"{self.done} of {self.members} members"]
         if self.rate > 0.0:
-            parts += [f"{number(self.rate, 3)} a second", f"{about_time(self.left)} left"]
+            parts.append(f"{number(self.rate, 3)} a second")
+        if self.left >= 1.0:
+            parts.append(f"{about_time(self.left)} left")
         return ", ".join([*parts, *([f"{self.failed} failed"] if self.failed else [])])
 
 
@@ -167,10 +179,27 @@ def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progres
     tally = Tally(store, progress)
     # Ctrl-C leaves a valid store, in which members that have not been run have the status NOT_RUN.
     with store, ctrl_c_breaks_in(), suppress(KeyboardInterrupt):
-        for chunk, result in run(plan.work, ((chunk, store.plan.values(chunk)) for chunk in store.missing())):
+        missing = ((chunk, store.plan.values(chunk)) for chunk in store.missing())
+        unfinished: dict[int, ChunkResult] = {}
+        for chunk, result in run(replace(plan.work, defers=True), missing):
             store.write(chunk, result)
-            tally.add(result)
+            tally.add(chunk, result)
+            if result.later:
+                unfinished[chunk] = result
+        _finish(store, unfinished, run, tally)
     return store.dataset()
+
+
+def _finish(store: ResultStore, unfinished: dict[int, ChunkResult], run: Runner, tally: Tally) -> None:
+    """Run the members that were left for later: each may take as long as thousands of others, which are all done by now."""
+    most = os.cpu_count() or 1
+    parts = [(chunk, one.later[i : i + most]) for chunk, one in unfinished.items() for i in range(0, len(one.later), most)]
+    values = ({name: column[some] for name, column in store.plan.values(chunk).items()} for chunk, some in parts)
+    for part, found in run(store.plan.work, enumerate(values)):
+        chunk, some = parts[part]
+        unfinished[chunk].fill(some, found)
+        store.write(chunk, unfinished[chunk])
+        tally.add(chunk, found, some)
 
 
 @contextmanager
@@ -207,6 +236,11 @@ def check_out(path: Path, what: str = "sweep: out") -> Path:
         raise InputError(f"{what} {path}: the name must end in .zarr")
     if not path.parent.is_dir():
         raise InputError(f"{what} {path}: there is no folder {path.parent}")
+    if os.path.lexists(path) and not path.is_dir():
+        raise InputError(f"{what} {path}: is a file, where a sweep needs a folder: choose another name")
+    folder = path if path.is_dir() else path.parent
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError(f"{what} {path}: the folder {folder} is not writable")
     return path
 
 
@@ -215,17 +249,22 @@ class Tally:
 
     def __init__(self, store: ResultStore, tell: ProgressCallback | None) -> None:
         before = Counter(store.status.ravel().tolist())
-        self.members = store.plan.design.size
+        self.plan, self.members = store.plan, store.plan.design.size
+        self.seconds, self.alone = 0.0, dict[int, float]()
         self.done = self.members - before[NOT_RUN]
         self.failed = sum(count for code, count in before.items() if code >= FIRST_FAILURE)
         self.tell, self.started, self.before = tell, time.monotonic(), self.done
         if self.done:
             self.report()
 
-    def add(self, result: ChunkResult) -> None:
-        """Count the members of a chunk that is done, and report."""
-        self.done += len(result.status)
+    def add(self, chunk: int, result: ChunkResult, some: list[int] | None = None) -> None:
+        """Count the members of a chunk, or some of them, that are done, and report."""
+        members = self.plan.members(chunk)[slice(None) if some is None else some]
+        self.done += int((result.status != NOT_RUN).sum())
         self.failed += int((result.status >= FIRST_FAILURE).sum())
+        self.seconds += result.seconds
+        slow = self.alone | {int(members[i]): took for i, took in result.alone.items()}
+        self.alone = dict(sorted(slow.items(), key=lambda one: -one[1])[:SLOWEST])
         self.report()
 
     def report(self) -> None:
@@ -235,4 +274,5 @@ class Tally:
         took = time.monotonic() - self.started
         new = self.done - self.before
         rate = new / took if new else float("nan")
-        self.tell(SweepProgress(self.done, self.failed, self.members, rate, (self.members - self.done) / rate))
+        left = (self.members - self.done) / rate
+        self.tell(SweepProgress(self.done, self.failed, self.members, rate, left, self.seconds, self.alone))

@@ -226,7 +226,7 @@ def fold_recurrence(history: HistoryPiece, round_trip_time: float, points: Point
 
 @kernel
 def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
-    """Write the numbers that describe the first event into `out`, as in `tables.event_rows`, except its static drop.
+    """Write the numbers that describe the first event into `out`, as in `tables.event_columns`, except its static drop.
 
     excess is the initial load minus the static strength (Pa or N).
     """

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import AXIS, Dpi, Size, option, picture, table_of
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.options import SCENARIO, Dpi, FigureFile, Size, axes_of, option, table_of
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,13 +23,11 @@ AXES = ["wavelength=0.9..60:13:log", "alpha=0.00392..3.92:9:log"]
 
 
 def analogy(
-    scenario: Annotated[
-        str, typer.Argument(help="A slab: a TOML file, or a bundled name.", autocompletion=complete_scenario)
-    ] = BUNDLED,
+    scenario: Annotated[str, typer.Argument(help=f"A slab. {SCENARIO}", autocompletion=complete_scenario)] = BUNDLED,
     *,
-    map_axes: Annotated[list[str] | None, option(f"Axis of the map: {AXIS}", "--map")] = None,
+    map_axes: Annotated[list[str] | None, axes_of("the map")] = None,
     out: Annotated[Path | None, table_of("point")] = None,
-    figure: Annotated[Path | None, picture("the map", "--figure", "-f")] = None,
+    figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
     within: Annotated[float, typer.Option(help="Largest relative difference of the answers.")] = 0.1,
@@ -53,9 +51,8 @@ def analogy(
     from stickslip.cli.output.studies import show_analogy
     from stickslip.cli.overrides import load_with
 
-    check_target(out, "--out", (".csv",))
     look = Look(dpi, size)
-    check_target(figure, "--figure")
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     typed = AXES if map_axes is None and scenario == BUNDLED else map_axes or []
     if len(typed) != 2:

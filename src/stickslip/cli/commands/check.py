@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from stickslip.cli.options import AXIS, Dpi, ScenarioName, Size, option
+from stickslip.cli.options import Dpi, ScenarioName, Size, axes_of, option
 from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError, InputWarning
 
@@ -24,7 +24,7 @@ def check(
     ] = None,
     dpi: Dpi = None,
     size: Size = None,
-    map_axes: Annotated[list[str] | None, option(f"Axis of a regime map: {AXIS}", "--map")] = None,
+    map_axes: Annotated[list[str] | None, axes_of("a regime map")] = None,
 ) -> None:
     r"""Check a scenario without running it.
 
@@ -44,14 +44,14 @@ def check(
         --map "normal_stress=10 MPa..500 MPa" --figure map.png
     """
     from stickslip.cli.output.examination import show_examination
+    from stickslip.cli.overrides import load
     from stickslip.scenarios.examine import examine
-    from stickslip.scenarios.scenario import load_scenario
 
     look = Look(dpi, size)
     check_target(figure, "--figure")
     look.check(figure)
     with warnings.catch_warnings(action="ignore", category=InputWarning):  # the examination has these
-        loaded = load_scenario(scenario)
+        loaded = load(scenario)
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")

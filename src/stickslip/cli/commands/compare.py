@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_source
-from stickslip.cli.options import Dpi, FigureFile, Rtol, Size, option, table_of
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, Size, option, table_of
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.studies.compare import Comparison
 
-RUNS = "Two or more: TOML files, bundled names, files of `run --out` (.nc)."
-UNTIL = 'Override the duration of all runs: s, or with a unit ("480 year").'
+RUNS = "Two or more: TOML files, bundled names, files of `run --out` (.nc), - for standard input."
 
 
 def compare(
@@ -27,7 +26,7 @@ def compare(
     dpi: Dpi = None,
     size: Size = None,
     event: Annotated[int | None, option("Draw this slip event of each, in local time: 0 the first, -1 the last.")] = None,
-    until: Annotated[str | None, option(UNTIL, "--until", "--duration")] = None,
+    duration: Duration = None,
     rtol: Rtol = None,
 ) -> None:
     r"""Compare runs: one table, and one figure of slip, slip rate and traction against time.
@@ -48,30 +47,29 @@ def compare(
     """
     from stickslip.cli.output.studies import show_comparison
 
-    check_target(out, "--out", (".csv",))
     look = Look(dpi, size)
-    check_target(figure, "--figure")
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
-    found = _compared(runs, until, rtol, event)
+    found = _compared(runs, duration, rtol, event)
     show_comparison(found)
     announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
     if not all(solution.status.ok for solution in found.runs.values()):
         raise typer.Exit(1)
 
 
-def _compared(names: list[str], until: str | None, rtol: float | None, event: int | None) -> Comparison:
+def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None) -> Comparison:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.long_run import progress
-    from stickslip.cli.overrides import read
+    from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.run_quantities import check_rtol
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 
     if len(names) < 2:
         raise InputError(f"compare: needs two runs or more, got {len(names)}; `stickslip new --list` lists the bundled ones")
-    duration = read(read_duration, until, "compare", "until")
+    length = read(read_duration, duration, "compare", "duration")
     tolerance = read(check_rtol, rtol, "compare", "rtol")
-    sources = [read_source(name, duration, tolerance) for name in names]
+    sources = [read_source(load(name) if name == STDIN else name, length, tolerance) for name in names]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress(name) as report:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import DURATION, SIZE_HELP, Dpi, FigureFile, Rtol, ScenarioName, option
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.options import SIZE_HELP, Dpi, Duration, FigureFile, Rtol, ScenarioName, option
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -23,7 +23,7 @@ def ensemble(
     *,
     members: Annotated[int, typer.Option("--members", "-m", help="How many disturbed runs.")] = 8,
     size: Annotated[float, typer.Option(help=SIZE)] = 1e-12,
-    until: Annotated[str | None, option(DURATION)] = None,
+    duration: Duration = None,
     events: Annotated[int | None, option("Stop each run after this number of slip events.")] = None,
     seed: Annotated[int, typer.Option(help=SEED)] = 0,
     rtol: Rtol = None,
@@ -42,7 +42,7 @@ def ensemble(
     members are apart.
 
     \b
-      stickslip ensemble fig6-slab --until "30000 years" --events 65 --figure a.png
+      stickslip ensemble fig6-slab --duration "30000 years" --events 65 -f a.png
       stickslip ensemble cycles-block --size 1e-6 --out events.csv
       stickslip ensemble mine.toml --members 20 --size 1e-6 --seed 1
 
@@ -53,11 +53,10 @@ def ensemble(
     from stickslip.cli.output.studies import show_ensemble
     from stickslip.cli.overrides import load_with
 
-    check_target(out, "--out", (".csv", ".nc"))
     look = Look(dpi, figure_size)
-    check_target(figure, "--figure")
+    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
-    chosen = load_with("ensemble", scenario, until=until, events=events, rtol=rtol)
+    chosen = load_with("ensemble", scenario, duration=duration, events=events, rtol=rtol)
     study = _study(chosen, members, size, seed)
     show_ensemble(chosen, study)
     save = study.to_netcdf if out is not None and out.suffix.lower() == ".nc" else study.to_csv

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.names import complete_source
-from stickslip.cli.options import Until, option
+from stickslip.cli.options import Duration, option
 from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
@@ -19,7 +19,7 @@ TEXT = (".txt", ".dat")
 """File suffixes of text in the SCEC layout."""
 SEISMOGRAMS = (".mseed", ".sac")
 """File suffixes of seismograms."""
-RUN = "A TOML file, a bundled name, or a file of `run --out` (.nc)."
+RUN = "A TOML file, a bundled name, a file of `run --out` (.nc), or - for a scenario from standard input."
 PLACE = 'Seismograms: distance from the contact, m or with a unit ("5 km"); default the contact.'
 COMPONENTS = "SCEC: all eight columns of the three-dimensional benchmarks."
 
@@ -33,7 +33,7 @@ def export(
     x: Annotated[str | None, option(PLACE, "--x")] = None,
     antialias: Annotated[bool, typer.Option("--antialias", help="Low-pass to half the sampling rate first.")] = False,
     components: Annotated[bool, typer.Option("--components", help=COMPONENTS)] = False,
-    until: Until = None,
+    duration: Duration = None,
 ) -> None:
     r"""Export slip, slip rate and stress of the contact at evenly spaced times, for tools of seismologists and rupture modellers.
 
@@ -61,7 +61,7 @@ def export(
         import_obspy()
         if components:
             raise InputError("export: --components is for .txt and .dat")
-    place, source = _place(x), _source(run, until)
+    place, source = _place(x), _source(run, duration)
     with progress(source.name) as report:
         solution = source.solution(report)
     readings = solution if event is None else solution.window(event)
@@ -73,12 +73,13 @@ def export(
         raise typer.Exit(1)
 
 
-def _source(run: str, until: str | None) -> Source:
-    from stickslip.cli.overrides import read
+def _source(run: str, duration: str | None) -> Source:
+    from stickslip.cli.overrides import STDIN, load, read
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import read_source
 
-    return read_source(run, read(read_duration, until, "export", "until"))
+    length = read(read_duration, duration, "export", "duration")
+    return read_source(load(run) if run == STDIN else run, length)
 
 
 def _place(text: str | None) -> Any:

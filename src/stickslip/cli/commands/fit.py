@@ -109,14 +109,17 @@ def _check_options(
             raise InputError(f"fit: {name} belongs to --law")
 
 
-def _values(given: Sequence[str] | None, name: str) -> dict[str, str]:
-    """Return typed values of parameters by name. Raises InputError for one without "="."""
-    found = {}
+def _values(given: Sequence[str] | None, name: str) -> dict[str, float | str]:
+    """Return typed values of parameters, numbers or texts with a unit, by name. Raises InputError for one without "="."""
+    found: dict[str, float | str] = {}
     for text in given or ():
         key, mark, value = text.partition("=")
         if not (mark and key.strip() and value.strip()):
             raise InputError(f"fit: {name} must be NAME=VALUE, as static=0.6, got {ascii(text)[:60]}")
-        found[key.strip()] = value.strip()
+        try:
+            found[key.strip()] = float(value)
+        except ValueError:
+            found[key.strip()] = value.strip()
     return found
 
 

@@ -43,20 +43,18 @@ def new(
 
 
 def _print_list() -> None:
-    from stickslip.cli.output.show import console, table
+    from stickslip.cli.output.show import console
+    from stickslip.cli.output.tables import print_words
     from stickslip.friction import LAWS
     from stickslip.loading import HISTORIES
     from stickslip.scenarios import library
 
-    listing = table("name", "what it shows")
-    listing.add_row("slab", "starter: an elastic slab, every key explained")
-    listing.add_row("block", "starter: a block on a spring, every key explained")
-    for name, entry in library.entries().items():
-        listing.add_row(name, f"{entry.title}. {entry.description}")
-    console().print(listing)
+    screen, rows = console(), [("slab", "starter: an elastic slab, every key explained")]
+    rows.append(("block", "starter: a block on a spring, every key explained"))
+    rows += [(name, f"{entry.title}. {entry.description}") for name, entry in library.entries().items()]
+    print_words(screen, ("name", "what it shows"), rows)
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))
     for option_name, what, kinds in registered:
-        listing = table(option_name, what)
-        for kind, one in kinds.items():
-            listing.add_row(kind, (one.__doc__ or "").strip().splitlines()[0])
-        console().print(listing)
+        screen.print()
+        rows = [(kind, (one.__doc__ or "").strip().splitlines()[0]) for kind, one in kinds.items()]
+        print_words(screen, (option_name, what), rows)

@@ -8,21 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_regularisation
-from stickslip.cli.options import DURATION, Dpi, FigureFile, Rtol, ScenarioName, Size, option, table_of
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option, table_of
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
     from stickslip.studies.regularise import Regularisation
 
-KINDS = "Kind of regularisation: contact-mass, lag or direct-effect."
-
 
 def regularise(
     scenario: ScenarioName,
     *,
-    by: Annotated[str, typer.Option(help=KINDS, autocompletion=complete_regularisation)] = "contact-mass",
+    by: Annotated[str, typer.Option(help="Kind of regularisation.", autocompletion=complete_regularisation)] = "contact-mass",
     largest: Annotated[str | None, option("Largest size: s, or with a unit; default R/30.")] = None,
     smallest: Annotated[str | None, option("Smallest size; default R/491520.")] = None,
     count: Annotated[int, typer.Option(help="How many sizes, evenly spaced in their logarithm.")] = 8,
@@ -30,7 +28,7 @@ def regularise(
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
-    duration: Annotated[str | None, option(DURATION)] = None,
+    duration: Duration = None,
     rtol: Rtol = None,
 ) -> None:
     r"""Find which selection rule physics chooses: compare runs with ever less inertia or lag at the contact with every rule.
@@ -52,9 +50,8 @@ def regularise(
     from stickslip.cli.output.studies import show_regularisation
     from stickslip.cli.overrides import load_with
 
-    check_target(out, "--out", (".csv",))
     look = Look(dpi, size)
-    check_target(figure, "--figure")
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("regularise", scenario, duration=duration, rtol=rtol)
     study = _study(chosen, by, _sizes(chosen, largest, smallest, count))

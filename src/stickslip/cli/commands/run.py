@@ -8,7 +8,23 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from stickslip.cli.names import complete_rule, complete_scenario
-from stickslip.cli.options import Dpi, FigureFile, Rtol, Size, Until, argument, option, picture
+from stickslip.cli.options import (
+    ACCURACY,
+    RESULTS,
+    SCENARIO,
+    Animation,
+    CatalogueFigure,
+    Dpi,
+    Duration,
+    EnergyFigure,
+    FrictionFigure,
+    PathFigure,
+    RunFigure,
+    Size,
+    SpaceTime,
+    argument,
+    option,
+)
 from stickslip.cli.output.files import Look, announce
 
 if TYPE_CHECKING:
@@ -26,34 +42,36 @@ MAX_PIECES = (
     "Largest number of pieces of history (0.44 kB each); the history is written whatever ended the run. Not given: a million, and "
     "a run that needs more is not written."
 )
-RULES = "Override the selection rule: perfect-delay, maxwell, minimal, maximal."
+OUT = "Save the whole solution (netCDF, .nc), with a checkpoint every 30 s."
+CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
+RESUME = "Resume the run in a file of --out, or a checkpoint of --catalogue."
+ENERGY = "Add the energy of each event to --catalogue (slow)."
+RULE = "Override the selection rule."
 
 
 def run(
-    scenario: Annotated[str | None, argument("A TOML file, or a bundled name.", complete_scenario)] = None,
+    scenario: Annotated[str | None, argument(SCENARIO, complete_scenario)] = None,
     *,
-    out: Annotated[
-        Path | None, option("Save the whole solution (netCDF, .nc), with a checkpoint every 30 s.", "--out", "-o")
-    ] = None,
-    figure: FigureFile = None,
-    path: Annotated[Path | None, picture("a figure of the run's path in the set K")] = None,
-    catalog_figure: Annotated[Path | None, picture("a figure of the slip events")] = None,
-    energy: Annotated[Path | None, picture("a figure of where the energy is")] = None,
-    friction: Annotated[Path | None, picture("a figure of the friction coefficient against slip")] = None,
-    space_time: Annotated[Path | None, picture("a figure of the slab's inside over time")] = None,
-    animation: Annotated[Path | None, option("Save the slab in motion (.gif; .mp4 and .webm need ffmpeg).")] = None,
+    duration: Duration = None,
+    events: Annotated[int | None, option("Stop after this number of slip events.")] = None,
+    selection: Annotated[str | None, option(RULE, autocompletion=complete_rule)] = None,
+    resume: Annotated[Path | None, option(RESUME)] = None,
+    out: Annotated[Path | None, option(OUT, "--out", "-o", panel=RESULTS)] = None,
+    catalogue: Annotated[Path | None, option(CATALOGUE, panel=RESULTS)] = None,
+    energy: Annotated[bool, typer.Option("--energy", help=ENERGY, rich_help_panel=RESULTS)] = False,
+    figure: RunFigure = None,
+    path: PathFigure = None,
+    catalogue_figure: CatalogueFigure = None,
+    energy_figure: EnergyFigure = None,
+    friction_figure: FrictionFigure = None,
+    space_time: SpaceTime = None,
+    animation: Animation = None,
     dpi: Dpi = None,
     size: Size = None,
-    catalog: Annotated[Path | None, option("Keep slip events only, in bounded memory (.csv, .parquet or .nc).")] = None,
-    energies: Annotated[bool, typer.Option("--energies", help="Add the energies of each event to --catalog (slow).")] = False,
-    until: Until = None,
-    events: Annotated[int | None, option("Stop after this number of slip events.")] = None,
-    resume: Annotated[Path | None, option("Resume the run in a file of --out, or a checkpoint of --catalog.")] = None,
-    rtol: Rtol = None,
-    creep_rtol: Annotated[float | None, option(CREEP_RTOL)] = None,
-    shortest_event: Annotated[str | None, option(SHORTEST_EVENT)] = None,
-    max_pieces: Annotated[int | None, option(MAX_PIECES, min=1)] = None,
-    selection: Annotated[str | None, option(RULES, autocompletion=complete_rule)] = None,
+    rtol: Annotated[float | None, option("Override the relative tolerance.", panel=ACCURACY)] = None,
+    creep_rtol: Annotated[float | None, option(CREEP_RTOL, panel=ACCURACY)] = None,
+    shortest_event: Annotated[str | None, option(SHORTEST_EVENT, panel=ACCURACY)] = None,
+    max_pieces: Annotated[int | None, option(MAX_PIECES, min=1, metavar="<int>", panel=ACCURACY)] = None,
 ) -> None:
     r"""Simulate a scenario, or resume a run, and report what happened: slip events, shocks, and what ended the run.
 
@@ -63,11 +81,11 @@ def run(
     \b
       stickslip run fig6-slab
       stickslip run mine.toml --out mine.nc --figure mine.png
-      stickslip run fig6-slab --until "480 years" --selection maxwell
+      stickslip run fig6-slab --duration "480 years" --selection maxwell
       stickslip run fig6-slab --space-time waves.png --animation slab.gif
-      stickslip run fig5-slab-printed --until "3 days"
-      stickslip run cycles-block --until "10000 years" --catalog events.csv
-      stickslip run --resume mine.nc --until "1000 years"
+      stickslip run fig5-slab-printed --duration "3 days"
+      stickslip run cycles-block --duration "10000 years" --catalogue events.csv
+      stickslip run --resume mine.nc --duration "1000 years"
 
     Ctrl-C ends a run with a valid file, from which --resume continues. It also
     continues from the last checkpoint of a run that was killed. The result is
@@ -79,8 +97,8 @@ def run(
     from stickslip.cli.output.pictures import Pictures
     from stickslip.cli.output.summary import show_catalogue, show_solution
 
-    drawn = Pictures(figure, path, catalog_figure, energy, friction, space_time, animation, Look(dpi, size))
-    replaced = {"until": until, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
+    drawn = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, Look(dpi, size))
+    replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
     request = Request(
         scenario=scenario,
@@ -88,8 +106,8 @@ def run(
         overrides=replaced,
         max_pieces=max_pieces,
         out=out,
-        catalog=catalog,
-        energies=energies,
+        catalogue=catalogue,
+        energy=energy,
         pictures=drawn,
     )
     request.check()

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_design, complete_quantity, complete_vary
+from stickslip.cli.names import complete_design, complete_quantity, complete_series, complete_vary
 from stickslip.cli.options import Dpi, ScenarioName, Size, option
-from stickslip.cli.output.files import Look, drawing
+from stickslip.cli.output.files import Look, announce, drawing
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,13 +28,14 @@ Vary = Annotated[list[str] | None, option(VARY_HELP, "--vary", "-v", autocomplet
 TABLE_HELP = "Members from a table instead (.csv): one column per key, one row per member."
 Table = Annotated[Path | None, option(TABLE_HELP, "--list")]
 DesignKind = Annotated[
-    str, typer.Option(help="grid, or samples between LOW and HIGH: random, lhs.", autocompletion=complete_design)
+    str, typer.Option(help="A grid, or samples between LOW and HIGH: random, or a Latin hypercube.", autocompletion=complete_design)
 ]
 Members = Annotated[int | None, option("How many samples.", "--members", "-m")]
 Seed = Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")]
 QUANTITY_HELP = "Quantity to keep of each run; may be repeated."
 Quantities = Annotated[list[str] | None, option(QUANTITY_HELP, "--quantity", "-q", autocompletion=complete_quantity)]
-Series = Annotated[str, option("Curves over time to be kept too: slip,slip_rate,traction,load.")]
+SERIES_HELP = "Curves over time to be kept too, with commas between them; also state, under a law that has one."
+Series = Annotated[str, option(SERIES_HELP, autocompletion=complete_series)]
 Samples = Annotated[int, typer.Option(help="Times of such a curve.")]
 Out = Annotated[Path | None, option("Save the results as they come (a folder, .zarr).", "--out", "-o")]
 Threads = Annotated[int | None, option("Threads (default: all cores).")]
@@ -96,9 +97,10 @@ def sweep(
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.sweep_summary import show_sweep
-    from stickslip.scenarios.scenario import load_scenario
+    from stickslip.cli.output.sweep_summary import show_slowest, show_sweep
+    from stickslip.cli.overrides import load
     from stickslip.sweeps.design.axis_text import typed_axes
+    from stickslip.sweeps.execution.outcome import NOT_RUN
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)
@@ -106,7 +108,7 @@ def sweep(
     look.check(figure)
     if refine is not None and (table or design != "grid" or series or dry_run):
         raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
-    chosen = load_scenario(scenario)
+    chosen = load(scenario)
     axes = typed_axes(chosen, vary or (), "--vary")
     plan = make_plan(
         chosen,
@@ -120,6 +122,9 @@ def sweep(
         chunk=chunk,
         where="--list" if table else "--vary",
     )
+    if figure is not None:
+        _check_can_be_drawn(plan)
+    spent: SweepProgress | None = None
     resources: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
     with _losses():
         if refine is not None:
@@ -129,10 +134,16 @@ def sweep(
             _show_estimate(plan, resources)
             return
         else:
-            found = _found(plan, out, resources)
+            found, spent = _found(plan, out, resources)
     if figure is not None:
         _draw(found, refine or plan.work.names[0], figure, look)
-    raise typer.Exit(show_sweep(plan, found, out, figure))
+    code = show_sweep(chosen.title or chosen.name, found)
+    if spent is not None:
+        show_slowest(plan, spent)
+    announce(out, figure)
+    if (found.status == NOT_RUN).any():
+        raise KeyboardInterrupt
+    raise typer.Exit(code)
 
 
 def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, figure: Path | None) -> None:
@@ -145,6 +156,14 @@ def _check_files(vary: list[str] | None, table: Path | None, out: Path | None, f
     if out is not None:
         check_out(out, "--out")
     check_target(figure, "--figure")
+
+
+def _check_can_be_drawn(plan: Plan) -> None:
+    """Refuse, before any member is run, a figure of a grid with too many keys or none. Raises InputError."""
+    varied = sum(count > 1 for count in plan.design.shape)
+    if not varied or varied > 3:
+        number = f"{varied} keys vary" if varied else "no key varies"
+        raise InputError(f"sweep: --figure draws one to three keys, but here {number}: leave --figure away, or vary fewer keys")
 
 
 def _kept(wanted: list[str] | None, refined: str | None) -> list[str]:
@@ -188,11 +207,19 @@ def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
         yield tell
 
 
-def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> xr.Dataset:
+def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
+    """Return the results of a sweep and its last progress."""
     from stickslip.sweeps.sweep import carry_out, runner_of
 
+    last: list[SweepProgress] = []
     with runner_of(**resources) as (run, _), _progress_of(plan) as tell:
-        return carry_out(plan, out, run, tell)
+
+        def note(progress: SweepProgress) -> None:
+            last[:] = [progress]
+            tell(progress)
+
+        found = carry_out(plan, out, run, note)
+    return found, last[0] if last else None
 
 
 def _refined(plan: Plan, axes: list[Axis], options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rich.table import Table
-
-from stickslip.cli.output.show import table, titled
+from stickslip.cli.output.show import say, titled
+from stickslip.cli.output.tables import print_words
 from stickslip.foundation.formatting import clean, with_unit
 
 if TYPE_CHECKING:
@@ -24,20 +23,17 @@ def show_examination(scenario: Scenario, found: Examination) -> None:
     """Print what was found about a scenario on standard output."""
     screen = titled(scenario)
     if scenario.description:
-        screen.print(clean(scenario.description))
-    shown = table("", "value", "meaning")
+        say(screen, clean(scenario.description))
+    rows: list[tuple[str, ...]] = []
     for heading, facts in [*((f"[{name}]", facts) for name, facts in found.given.items()), ("what follows", found.derived)]:
-        shown.add_row(heading, style="bold")
-        for fact in facts:
-            shown.add_row(fact.name, fact.value if isinstance(fact.value, str) else with_unit(fact.value, fact.unit), fact.meaning)
-        shown.add_section()
-    screen.print(shown)
-    findings = Table.grid(padding=(0, 2))
-    for name, text in _findings(found):
-        findings.add_row(name, text)
-    for warning in found.warnings:
-        findings.add_row("warning", warning, style="yellow")
-    screen.print(findings)
+        rows.append((heading,))
+        rows += [
+            (one.name, one.value if isinstance(one.value, str) else with_unit(one.value, one.unit), one.meaning) for one in facts
+        ]
+    print_words(screen, ("", "value", "meaning"), rows)
+    screen.print()
+    findings = [*_findings(found), *(("warning", warning) for warning in found.warnings)]
+    print_words(screen, ("", ""), findings, {"warning": "yellow"})
 
 
 def _findings(found: Examination) -> Iterator[tuple[str, str]]:

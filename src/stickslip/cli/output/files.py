@@ -6,13 +6,18 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryFile
+from typing import Any, NamedTuple
 
 import typer
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
+CATALOGUES = (".csv", ".parquet", ".nc")
+"""File suffixes of catalogues, those of `io.catalogue_rows`, which takes long to import."""
+LARGE = 10_000_000
+"""Size (bytes) from which a file is large enough for its size to be told."""
 DPI = 200.0
 """Dots per inch of figures if the user does not say."""
 PICTURES = (".png", ".pdf", ".svg")
@@ -52,17 +57,52 @@ class Look:
         check_dpi(self.dots, max(sides), "--dpi")
 
 
+class Target(NamedTuple):
+    """A file that a command will write: the option that names it, its path (None: not wanted), and the suffixes it may have."""
+
+    option: str
+    path: Path | None
+    suffixes: tuple[str, ...] = PICTURES
+
+
+def check_targets(*targets: Target) -> None:
+    """Refuse files that could not be written later, and a file that is named twice. Raises InputError."""
+    named: dict[Path, str] = {}
+    for option, path, suffixes in targets:
+        if path is None:
+            continue
+        check_target(path, option, suffixes)
+        place = path.absolute()
+        if place in named:
+            raise InputError(f"{option} {path}: is the file of {named[place]} already: choose another name")
+        named[place] = option
+
+
 def check_target(path: Path | None, option: str, suffixes: tuple[str, ...] = PICTURES) -> None:
     """Refuse a file that could not be written later; None is no file. Raises InputError."""
     if path is None:
         return
+    shown = path if str(path).isprintable() else ascii(str(path))
     if path.suffix.lower() not in suffixes:
-        raise InputError(f"{option} {path}: the name must end in {' or '.join(suffixes)}")
+        raise InputError(f"{option} {shown}: the name must end in {' or '.join(suffixes)}")
+    try:
+        _check_place(path, f"{option} {shown}")
+    except InputError:
+        raise
+    except (OSError, ValueError) as error:  # a name that is too long, or that holds a null character
+        raise InputError(f"{option} {str(shown)[:60]}: cannot be a file: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _check_place(path: Path, where: str) -> None:
     if path.is_dir():
-        raise InputError(f"{option} {path}: is a folder")
+        raise InputError(f"{where}: is a folder")
     if not path.parent.is_dir():
-        raise InputError(f"{option} {path}: there is no folder {path.parent}")
-    _check_writable(path, path.parent, option)
+        raise InputError(f"{where}: there is no folder {path.parent}")
+    if os.path.lexists(path) and not path.is_file():
+        raise InputError(f"{where}: exists and is not an ordinary file: choose another name")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{where}: exists and is write-protected: choose another name")
+    _check_writable(path.parent, where)
 
 
 def check_folder(path: Path, option: str) -> None:
@@ -70,12 +110,17 @@ def check_folder(path: Path, option: str) -> None:
     existing = next(folder for folder in (path, *path.absolute().parents) if folder.exists())
     if not existing.is_dir():
         raise InputError(f"{option} {path}: {existing} is not a folder")
-    _check_writable(path, existing, option)
+    _check_writable(existing, f"{option} {path}")
 
 
-def _check_writable(path: Path, folder: Path, option: str) -> None:
+def _check_writable(folder: Path, where: str) -> None:
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise InputError(f"{option} {path}: the folder {folder} is not writable")
+        raise InputError(f"{where}: the folder {folder} is not writable")
+    try:
+        with TemporaryFile(dir=folder):  # some file systems refuse only now
+            pass
+    except OSError as error:
+        raise InputError(f"{where}: nothing can be written in the folder {folder}: {error.strerror}") from None
 
 
 def write_files(*targets: tuple[Path | None, Callable[[Path], object]]) -> list[Path]:
@@ -100,8 +145,15 @@ def drawing(draw: Callable[..., object], look: Look) -> Callable[[Path], Path]:
     return write
 
 
+def file_size(count: float) -> str:
+    """Format a number of bytes briefly, such as 1.67 GB."""
+    factor, unit = next(((f, u) for f, u in ((1e9, "GB"), (1e6, "MB"), (1e3, "kB")) if count >= f), (1.0, "bytes"))
+    return f"{count / factor:.3g} {unit}"
+
+
 def announce(*paths: Path | None) -> None:
-    """Say which files were written; None is no file."""
+    """Say which files were written, and how large they are if they are large; None is no file."""
     for path in paths:
         if path is not None:
-            typer.echo(f"written: {path}")
+            size = path.stat().st_size if path.is_file() else 0
+            typer.echo(f"written: {path}" + (f" ({file_size(size)})" if size >= LARGE else ""))

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.show import console, print_sentences, table
+from stickslip.cli.output.show import console, print_sentences, say
+from stickslip.cli.output.tables import print_words
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
 
@@ -21,24 +22,21 @@ MOST_JOINED = 2000
 def show_result(result: Fit | Smooth) -> None:
     """Print the numbers of a fit or of a smooth curve, and what was noticed."""
     screen = console()
-    screen.print(clean(f"{result.points.name}: {result.title}"), style="bold")
-    shown = table("", "value", "unit")
-    for row in result.rows:
-        shown.add_row(*row)
-    screen.print(shown)
+    say(screen, clean(f"{result.points.name}: {result.title}"), style="bold")
+    print_words(screen, ("", "value", "unit"), list(result.rows))
     print_sentences(screen, *result.notes)
 
 
 def show_comparison(points: Points, fits: Sequence[Fit]) -> None:
     """Print the fits of several laws to the same points, best first."""
     screen = console()
-    screen.print(clean(f"{points.name}: {len(points)} points along {' and '.join(points.has)}"), style="bold")
-    shown = table("law", "parameters", "residual", "BIC above best", "noticed")
+    say(screen, clean(f"{points.name}: {len(points)} points along {' and '.join(points.has)}"), style="bold")
+    rows = []
     for one in fits:
         known = f"{len(one.uncertainty)}"
         noticed = "; ".join(one.notes[:1]) + (f" (and {len(one.notes) - 1} more)" if len(one.notes) > 1 else "")
-        shown.add_row(one.law.kind, known, f"{one.residual:.3g}", f"{one.bic - fits[0].bic:.1f}", noticed)
-    screen.print(shown)
+        rows.append((one.law.kind, known, f"{one.residual:.3g}", f"{one.bic - fits[0].bic:.1f}", noticed))
+    print_words(screen, ("law", "parameters", "residual", "BIC above best", "noticed"), rows)
     print_sentences(
         screen,
         "a difference of BIC above 10 is decisive. The best of several wrong laws is wrong too: see what was noticed, and a figure",

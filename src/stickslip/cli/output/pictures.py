@@ -6,12 +6,15 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stickslip.cli.output.files import Look, check_target, drawing, write_files
+from stickslip.cli.output.files import PICTURES, Look, Target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
     from stickslip.solution.solution import Solution
+
+FILMS = (".gif", ".mp4", ".webm")
+"""File suffixes of animations, those of `figures.runs.animation`, which takes long to import."""
 
 
 @dataclass(frozen=True)
@@ -20,9 +23,9 @@ class Pictures:
 
     figure: Path | None
     path: Path | None
-    catalog_figure: Path | None
-    energy: Path | None
-    friction: Path | None
+    catalogue_figure: Path | None
+    energy_figure: Path | None
+    friction_figure: Path | None
     space_time: Path | None
     animation: Path | None
     look: Look
@@ -33,38 +36,38 @@ class Pictures:
         named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self) if field.name != "look"}
         return {option: target for option, target in named.items() if target is not None}
 
-    def check(self) -> None:
-        """Refuse files that could not be written, and a look that figures cannot have. Raises InputError."""
-        self.look.check(*(target for option, target in self.wanted.items() if option != "--animation"))
-        for option, target in self.wanted.items():
-            if option != "--animation":
-                check_target(target, option)
-        if self.animation is not None:
-            from stickslip.figures.runs.animation import SUFFIXES, check_animation
+    def targets(self) -> list[Target]:
+        """Return the files that are wanted, with the suffixes that they may have."""
+        return [Target(name, path, FILMS if name == "--animation" else PICTURES) for name, path in self.wanted.items()]
 
-            check_target(self.animation, "--animation", SUFFIXES)
+    def check(self) -> None:
+        """Refuse an animation that could not be written, and a look that figures cannot have. Raises InputError."""
+        self.look.check(*(target for option, target in self.wanted.items() if option != "--animation"))
+        if self.animation is not None:
+            from stickslip.figures.runs.animation import check_animation
+
             check_animation(self.animation, "--animation")
 
-    def check_problem(self, problem: Problem) -> None:
+    def check_problem(self, problem: Problem, command: str = "run") -> None:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
         if inside and not problem.body.has_waves:
-            raise InputError(f"run: {inside[0]} needs a slab: a block is rigid and has no interior field")
+            raise InputError(f"{command}: {inside[0]} needs a slab: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact.uniqueness import uniqueness_of
 
             if uniqueness_of(problem).resistance is None:
                 what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
-                raise InputError(f"run: --path needs {what}")
+                raise InputError(f"{command}: --path needs {what}")
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""
         return write_files(
             (self.figure, drawing(solution.plot, self.look)),
             (self.path, drawing(solution.plot.path, self.look)),
-            (self.catalog_figure, drawing(solution.plot.catalogue, self.look)),
-            (self.energy, drawing(solution.plot.energy, self.look)),
-            (self.friction, drawing(solution.plot.friction, self.look)),
+            (self.catalogue_figure, drawing(solution.plot.catalogue, self.look)),
+            (self.energy_figure, drawing(solution.plot.energy, self.look)),
+            (self.friction_figure, drawing(solution.plot.friction, self.look)),
             (self.space_time, drawing(solution.plot.field, self.look)),
             (self.animation, lambda target: _animate(solution, target)),
         )

@@ -1,43 +1,47 @@
-"""Show results on the terminal: one console, plain tables, numbers with units."""
+"""Show results on the terminal: one console, sentences that fit it, numbers with units."""
 
 from __future__ import annotations
 
+import os
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 
 from stickslip.foundation.formatting import clean
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
+WIDE = 132
+"""Width (columns) of tables that go to a file, so that their rows keep their lines."""
+
 
 def console(*, errors: bool = False) -> Console:
-    """Return the console for results; without a terminal it is 132 columns wide, so that a table in a file keeps its lines."""
+    """Return the console for results, as wide as the terminal or as COLUMNS says; else, as in a file, `WIDE` columns."""
     stream = sys.stderr if errors else sys.stdout
-    width = None if stream.isatty() else 132
+    width = None if fits_lines(stream) else WIDE
     return Console(file=stream, width=width, highlight=False, markup=False, emoji=False)
 
 
-def table(*headings: str, numbers: bool = False) -> Table:
-    """Return a table without a frame; columns of numbers are aligned to the right."""
-    made = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for heading in headings:
-        made.add_column(heading, justify="right" if numbers else "left", overflow="fold")
-    return made
+def fits_lines(stream: Any) -> bool:
+    """Return True if lines must fit a width: on a terminal, or if COLUMNS is set. In a file a sentence keeps its line."""
+    return stream.isatty() or bool(os.environ.get("COLUMNS"))
+
+
+def say(screen: Console, *texts: str, style: str | None = None) -> None:
+    """Print texts, each from the start of a line; lines that must fit a width are broken between words."""
+    for text in texts:
+        screen.print(text, style=style, soft_wrap=not fits_lines(screen.file))
 
 
 def titled(scenario: Scenario) -> Console:
     """Print the title of a scenario, or its name, on the console for results, and return the console."""
     screen = console()
-    screen.print(clean(scenario.title or scenario.name), style="bold")
+    say(screen, clean(scenario.title or scenario.name), style="bold")
     return screen
 
 
 def print_sentences(screen: Console, *texts: str) -> None:
     """Print texts as sentences, each on a line of its own; empty ones are left out."""
-    for text in filter(None, texts):
-        screen.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
+    say(screen, *(f"{text[0].upper()}{text[1:]}." for text in texts if text))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Hashable, Mapping
+from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.show import console, print_sentences, table, titled
+from stickslip.cli.output.show import console, print_sentences, say, titled
+from stickslip.cli.output.tables import print_numbers
 from stickslip.foundation.formatting import clean, number, with_unit
 from stickslip.studies.regularisations import kind_of
 
@@ -25,20 +27,18 @@ FIRST = 12
 def show_comparison(found: Comparison) -> None:
     """Print the settings and the results of each run on standard output."""
     screen, rows = console(), found.table.to_dict("records")
-    about = table("", "body", "friction", "rule", "regime", "status")
-    for row in rows:
-        about.add_row(clean(row["name"]), *(str(row[name]) for name in ("body", "friction", "rule", "regime", "status")))
-    screen.print(about)
+    words = ("body", "friction", "rule", "regime", "status")
+    print_numbers(screen, ("", *words), [[clean(row["name"]), *(str(row[name]) for name in words)] for row in rows], text=6)
     screen.print()
     headings = ("events", "largest\nslip\nm", "its\npulses", "peak\nrate\nm/s", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
-    came = table("", *headings, "shocks", "slip\nrate", numbers=True)
-    came.columns[0].justify = "left"
-    for row in rows:
-        drops = (_drop(row[name], row["load_unit"]) for name in ("static_drop", "dynamic_drop"))
-        pulses, rate = f"{row['pulses']:g}", number(row["peak_rate"], 6)
-        sizes = (number(row["slip"], 6), pulses, rate, *drops, number(row["duration"], 6))
-        came.add_row(clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"]), row["slip_rate"])
-    screen.print(came)
+    print_numbers(screen, ("", *headings, "shocks", "slip\nrate"), [_sizes(row) for row in rows], text=1)
+
+
+def _sizes(row: Mapping[Hashable, Any]) -> list[str]:
+    """Return the results of one run of a comparison as texts, its name first."""
+    drops = (_drop(row[name], row["load_unit"]) for name in ("static_drop", "dynamic_drop"))
+    sizes = number(row["slip"], 6), f"{row['pulses']:g}", number(row["peak_rate"], 6), *drops, number(row["duration"], 6)
+    return [clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"]), row["slip_rate"]]
 
 
 def _drop(value: float, unit: str) -> str:
@@ -49,12 +49,10 @@ def _drop(value: float, unit: str) -> str:
 def show_analogy(scenario: Scenario, found: Analogy) -> None:
     """Print the map of slips, slab over block, on standard output."""
     screen = titled(scenario)
-    screen.print(f"slab over block: slip of the first event, over {found.x.parameter} (across) and {found.y.parameter} (down)\n")
+    say(screen, f"slab over block: slip of the first event, over {found.x.parameter} (across) and {found.y.parameter} (down)\n")
     ratios, columns = found.ratio("slip"), _spread(found.x.points)
-    shown = table("", *(number(found.x.values[j], 3) for j in columns), numbers=True)
-    for i in _spread(found.y.points):
-        shown.add_row(number(found.y.values[i], 3), *(number(ratios[i, j], 3) for j in columns))
-    screen.print(shown)
+    rows = [[number(found.y.values[i], 3), *(number(ratios[i, j], 3) for j in columns)] for i in _spread(found.y.points)]
+    print_numbers(screen, ["", *(number(found.x.values[j], 3) for j in columns)], rows)
     screen.print()
     print_sentences(screen, found.text)
 
@@ -70,7 +68,7 @@ def show_ensemble(scenario: Scenario, study: Ensemble) -> None:
     screen = titled(scenario)
     largest = with_unit(float(abs(study.pushes).max()), study.problem.load_unit)
     about = f"initial load disturbed by up to {number(study.size)} of the strength ({largest})"
-    screen.print(f"{len(study.runs)} members, {about}\n", soft_wrap=True)
+    say(screen, f"{len(study.runs)} members, {about}\n")
     if len(study.table):
         _show_events(screen, study)
         _show_statistics(screen, study)
@@ -81,41 +79,42 @@ def _show_events(screen: Console, study: Ensemble) -> None:
     lost = study.first_lost or 0
     first = max(0, min(lost - FIRST // 2, len(study.table) - FIRST))
     headings = ("\nevent", "start\ns", "\nmembers", "spread of\nstart s", "spread of\nslip m", "\namplification")
-    shown = table(*headings, numbers=True)
+    rows = []
     for i, row in enumerate(study.table.iloc[first : first + FIRST].to_dict("records"), first + 1):
         numbers = (number(float(row[name]), 3) for name in ("start_spread", "slip_spread", "amplification"))
-        shown.add_row(str(i), number(float(row["start"]), 10), f"{row['members']} of {len(study.runs)}", *numbers)
-    screen.print(f"{len(study.table)} slip events" + (f", of them {first + 1} to {first + len(shown.rows)}" if first else ""))
-    screen.print(shown)
+        rows.append([str(i), number(float(row["start"]), 10), f"{row['members']} of {len(study.runs)}", *numbers])
+    say(screen, f"{len(study.table)} slip events" + (f", of them {first + 1} to {first + len(rows)}" if first else ""))
+    print_numbers(screen, headings, rows)
 
 
 def _show_statistics(screen: Console, study: Ensemble) -> None:
     units = {"recurrence": "s", "slip": "m", "peak_rate": "m/s"}
-    headings = ("mean,\nundisturbed", "mean over\nmembers", "their\ndeviation", "by\nchance")
-    shown = table("\nstatistics", *headings, "variation,\nundisturbed", "over\nmembers", "their\ndeviation", numbers=True)
+    headings: tuple[str, ...] = ("mean,\nundisturbed", "mean over\nmembers", "their\ndeviation", "by\nchance")
+    headings = ("\nstatistics", *headings, "variation,\nundisturbed", "over\nmembers", "their\ndeviation")
     columns = ("mean", "mean_members", "mean_deviation", "chance", "variation", "variation_members", "variation_deviation")
+    rows = []
     for name, row in study.statistics.iterrows():
         values = (number(float(row[column]), 4) for column in columns)
-        shown.add_row(f"{name} ({units[str(name)]})".replace("_", " "), *values)
-    screen.print(shown)
+        rows.append([f"{name} ({units[str(name)]})".replace("_", " "), *values])
+    print_numbers(screen, headings, rows, text=1)
     screen.print()
 
 
 def show_regularisation(scenario: Scenario, study: Regularisation) -> None:
     """Print on standard output how far the regularised runs are from the answer of each rule, and to which rule they tend."""
     screen, kind = titled(scenario), kind_of(study.by)
-    screen.print(f"{kind.title}, {len(study.sizes)} sizes; mean |slip difference| from the exact answer of each rule")
-    screen.print(f"(change: difference from the previous size; order: of the difference from {study.target})\n")
+    say(screen, f"{kind.title}, {len(study.sizes)} sizes; mean |slip difference| from the exact answer of each rule")
+    say(screen, f"(change: difference from the previous size; order: of the difference from {study.target})\n")
     rules = ["\n".join(group) + "\nm" for group in study.groups]
     ends = ("change\nm", "\norder", "\npieces", "computed\nms")
-    shown = table("size\ns", f"{kind.parameter}\n{kind.unit}", *rules, *ends, numbers=True)
+    headings, rows = ("size\ns", f"{kind.parameter}\n{kind.unit}", *rules, *ends), []
     order = study.local_orders(study.target)
     for i, size in enumerate(study.sizes.tolist()):
         errors = [number(float(study.errors(group[0])[i]), 4) for group in study.groups]
         run = (number(float(study.changes[i]), 3), _order(float(order[i])), str(len(study.runs[i].history)))
         own = number(kind.value(study.problem, size), 4)
-        shown.add_row(number(size, 4), own, *errors, *run, f"{1e3 * study.seconds[i]:.2f}")
-    screen.print(shown)
+        rows.append([number(size, 4), own, *errors, *run, f"{1e3 * study.seconds[i]:.2f}"])
+    print_numbers(screen, headings, rows)
     if not study.jumps.empty:
         _show_jumps(screen, study)
     for line in filter(None, (study.stopped, study.verdict.text)):
@@ -124,15 +123,16 @@ def show_regularisation(scenario: Scenario, study: Regularisation) -> None:
 
 
 def _show_jumps(screen: Console, study: Regularisation) -> None:
-    screen.print(f"\njumps under {study.target}, and how much later they come")
+    say(screen, f"\njumps under {study.target}, and how much later they come")
     ends, delays = (0, -1), study.delays
     headings = [f"delay at\n{number(float(study.sizes[i]), 3)} s" for i in ends]
-    shown = table("time\ns", "\ncause", "rate before\nm/s", "rate after\nm/s", *headings, "\norder", "\nexpected", numbers=True)
+    headings = ["time\ns", "\ncause", "rate before\nm/s", "rate after\nm/s", *headings, "\norder", "\nexpected"]
+    rows = []
     for j, jump in enumerate(study.jumps.to_dict("records")):
         late = [number(float(delays[i, j]), 4) for i in ends]
         rates = (number(jump["rate_before"], 6), number(jump["rate_after"], 6))
-        shown.add_row(number(jump["time"], 8), jump["cause"], *rates, *late, _order(float(jump["order"])), str(jump["expected"]))
-    screen.print(shown)
+        rows.append([number(jump["time"], 8), jump["cause"], *rates, *late, _order(float(jump["order"])), str(jump["expected"])])
+    print_numbers(screen, headings, rows)
 
 
 def _order(value: float) -> str:

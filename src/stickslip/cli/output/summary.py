@@ -8,9 +8,11 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import table, titled
+from stickslip.cli.output.show import console, say, titled
+from stickslip.cli.output.tables import fits, print_numbers
 from stickslip.engine_input.creep_limits import creep_tolerance
-from stickslip.foundation.formatting import number, with_unit
+from stickslip.foundation.formatting import clean, number, with_unit
+from stickslip.scenarios.scenario import read_scenario
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 FIRST = 12
 """Number of table rows that are shown."""
+DIGITS = 8, 5
+"""Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
@@ -31,61 +35,73 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     from stickslip.trajectory.slip_events import SlipEvents
     from stickslip.trajectory.tables import default_event_rate, event_columns, shock_columns
 
-    screen, force, history = titled(scenario), scenario.problem.load_unit, solution.history
+    screen, load, history = titled(scenario), scenario.problem.load_unit, solution.history
     _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
-    screen.print(f"selection rule {solution.selection_note}\n", soft_wrap=True)
-    units = ("s", "s", "s", "m", "m/s", force, force, "")
-    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
-    events = event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem)))
-    _print(screen, "slip event", {name: events[name] for name in shown}, units)
-    _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", force, force))
+    say(screen, f"selection rule {solution.selection_note}\n")
+    _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), load)
+    _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", load, load))
     notes = (solution.trapped_note, solution.horizon_note, solution.rounding_note)
     for what, note in zip(("trapped energy", "predictability", "rounding"), notes, strict=True):
         if note:
-            screen.print(f"{what}: {note}\n", soft_wrap=True)
+            say(screen, f"{what}: {note}\n")
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     """Print on standard output the summary of a run of which only slip events were kept."""
     screen = titled(scenario)
     _say_how(screen, scenario, found.status, found.notes.get("creep", ""), found.notes.get("lumping", ""))
-    screen.print(f"{found.events} slip event{'' if found.events == 1 else 's'}")
+    say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
     for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
         if name in found.notes:
-            screen.print(f"{what}: {found.notes[name]}", soft_wrap=True)
+            say(screen, f"{what}: {found.notes[name]}")
     announce(*found.files)
+
+
+def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any]) -> None:
+    """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
+    screen = console()
+    say(screen, clean(name), style="bold")
+    if "status" in about:
+        say(screen, clean(f"{about['status']}: {about['status_message']}"))
+        say(screen, clean(f"duration {with_unit(float(about['duration']), 's')}, rtol {about['rtol']:g}"))
+        say(screen, clean(f"selection rule {about['selection_rule']}"))
+        say(screen, *(clean(str(about[note])) for note in ("lumping", "rounding") if about.get(note)))
+    screen.print()
+    known = "scenario" in about
+    _print_events(screen, table, read_scenario(str(about["scenario"]), name).problem.load_unit if known else "Pa or N")
+
+
+def _print_events(screen: Console, events: Mapping[Any, Any], load: str) -> None:
+    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
+    _print(screen, "slip event", {name: events[name] for name in shown}, ("s", "s", "s", "m", "m/s", load, load, ""))
 
 
 def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lumping: str) -> None:
     """Print what ended a run, its duration and tolerances, and requested or automatic leaps over creep and lumping of events."""
-    screen.print(f"{status.name}: {status.message}", soft_wrap=True)
-    screen.print(f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    say(screen, f"{status.name}: {status.message}", f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
     if scenario.shortest_event:
-        screen.print(f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
+        say(screen, f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
     if lumping:
-        screen.print(f"shortest_event automatic: {lumping}", soft_wrap=True)
+        say(screen, f"shortest_event automatic: {lumping}")
     if scenario.creep_rtol:
-        screen.print(f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}", soft_wrap=True)
+        say(screen, f"creep_rtol {scenario.creep_rtol:g}: {creep or 'no leaps over creep'}")
     elif creep:
         tolerance = creep_tolerance(scenario.problem, None, scenario.rtol)
-        screen.print(f"creep_rtol {tolerance:g} (automatic; 0 runs every round trip): {creep}", soft_wrap=True)
+        say(screen, f"creep_rtol {tolerance:g} (automatic; 0 runs every round trip): {creep}")
 
 
 def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], units: Sequence[str]) -> None:
-    rows = len(next(iter(columns.values())))
-    if not rows:
-        screen.print(f"no {what}\n")
+    count = len(next(iter(columns.values())))
+    if not count:
+        say(screen, f"no {what}\n")
         return
     headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(columns, units, strict=True)]
-    for digits in (8, 5):  # use fewer digits if the terminal is too narrow
-        shown = table(*headings, numbers=True)
-        for row in islice(zip(*columns.values(), strict=True), FIRST):
-            shown.add_row(*(_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)))
-        if screen.measure(shown).maximum < screen.width:
-            break
-    more = f", the first {FIRST} of them" if rows > FIRST else ""
-    screen.print(f"{rows} {what}{'s' if rows > 1 else ''}{more}")
-    screen.print(shown)
+    first = list(islice(zip(*columns.values(), strict=True), FIRST))
+    forms = [[[_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)] for row in first] for digits in DIGITS]
+    shown = next((form for form in forms if fits(screen, headings, form)), forms[0])
+    more = f", the first {FIRST} of them" if count > FIRST else ""
+    say(screen, f"{count} {what}{'s' if count > 1 else ''}{more}")
+    print_numbers(screen, headings, shown)
     screen.print()
 
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import console, table, titled
+from stickslip.cli.output.files import file_size
+from stickslip.cli.output.show import console, say, titled
+from stickslip.cli.output.tables import print_numbers
 from stickslip.foundation.formatting import about_time, clean, number, with_unit
 
 if TYPE_CHECKING:
@@ -19,41 +20,47 @@ if TYPE_CHECKING:
     from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.execution.plan import Plan
     from stickslip.sweeps.results.changes import Change
+    from stickslip.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
-"""Number of reasons for failures that are shown."""
+"""Number of reasons for failures, and of slow members, that are shown."""
+SLOW, NOTICED = 20.0, 0.5
+"""A member is slow if it takes more than this multiple of the mean processor time of a member, and more than this time (s)."""
 
 
 def show_estimate(plan: Plan, found: Estimate) -> None:
     """Print the estimated time and disk space of a sweep."""
-    screen = console()
-    _say_what(plan)
-    screen.print(f"time: about {about_time(found.seconds)} ({number(found.members / found.seconds, 3)} members a second)")
-    screen.print(f"disk: at most {_size(found.bytes)} in {found.chunks} chunk{'' if found.chunks == 1 else 's'}")
+    screen = titled(plan.scenario)
+    say(screen, f"{plan.design} over {', '.join(plan.design.names)}")
+    say(screen, f"time: about {about_time(found.seconds)} ({number(found.members / found.seconds, 3)} members a second)")
+    say(screen, f"disk: at most {file_size(found.bytes)} in {found.chunks} chunk{'' if found.chunks == 1 else 's'}")
     failed = f", {found.failed} failed" if found.failed else ""
-    screen.print(f"from a sample of {found.sampled}, which took {about_time(found.took)}{failed}")
+    say(screen, f"from a sample of {found.sampled}, which took {about_time(found.took)}{failed}")
 
 
-def show_sweep(plan: Plan, dataset: xr.Dataset, *written: Path | None) -> int:
-    """Print the summary on standard output. Returns the exit code, and raises KeyboardInterrupt if some members were not run."""
-    from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+def show_sweep(title: str, dataset: xr.Dataset) -> int:
+    """Print the summary of a sweep on standard output. Returns the exit code of the sweep: 1 if every member failed."""
+    from stickslip.sweeps.design.design import GRID, in_words
+    from stickslip.sweeps.execution.outcome import FIRST_FAILURE
 
-    dataset = dataset.load()
+    dataset, screen = dataset.load(), console()
+    design = json.loads(dataset.attrs["design"])
+    say(screen, clean(title), style="bold")
+    say(screen, f"{in_words(design['design'], dataset.status.shape)} over {', '.join(design['keys'])}")
     status = dataset.status.to_numpy().ravel()
-    _say_what(plan)
     _show_ends(status, dataset.reason.to_numpy().ravel())
-    _show_quantities(plan, dataset)
-    _show_changes(plan, dataset)
-    announce(*written)
-    if (status == NOT_RUN).any():
-        raise KeyboardInterrupt
+    _show_quantities(dataset)
+    _show_changes(dataset, is_grid=design["design"] == GRID)
     return int((status >= FIRST_FAILURE).all())
 
 
-def _say_what(plan: Plan) -> None:
-    screen = titled(plan.scenario)
-    screen.print(f"{plan.design} over {', '.join(plan.design.names)}", soft_wrap=True)
+def quantities_of(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the quantities in the results of a sweep."""
+    from stickslip.sweeps.design.series import PREFIX
+    from stickslip.sweeps.results.layout import REASON, STATUS
+
+    return [str(name) for name in dataset.data_vars if name not in (STATUS, REASON) and not str(name).startswith(PREFIX)]
 
 
 def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.ndarray[tuple[int], np.dtype[np.object_]]) -> None:
@@ -61,10 +68,33 @@ def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.nd
 
     screen = console()
     for code, count in sorted(Counter(status.tolist()).items()):
-        screen.print(f"{count} {MEANINGS[code].replace('_', ' ')}")
+        say(screen, f"{count} {MEANINGS[code].replace('_', ' ')}")
         if code >= FIRST_FAILURE:
             _show_reasons(reasons[status == code].tolist())
     screen.print()
+
+
+def show_slowest(plan: Plan, spent: SweepProgress) -> None:
+    """Print which members took most of the time, if a few did."""
+    usual = spent.seconds / max(spent.members, 1)
+    slow = {member: took for member, took in spent.alone.items() if took > max(SLOW * usual, NOTICED)}
+    if not slow:
+        return
+    count, share = len(slow), sum(slow.values()) / spent.seconds
+    named = []
+    for member, took in list(slow.items())[:FIRST]:
+        values = plan.design.values(np.array([member]))
+        units = {parameter.name: parameter.unit for parameter in plan.design.parameters}
+        at = ", ".join(f"{name} = {_valued(column[0], units[name])}" for name, column in values.items())
+        named.append(f"{about_time(took)} at {at}")
+    more = f"; and {count - FIRST} others" if count > FIRST else ""
+    members = "1 member" if count == 1 else f"{count} members"
+    total = f"{100.0 * share:.0f} % of the processor time ({about_time(spent.seconds)})"
+    say(console(), f"{members} took {total}: {'; '.join(named)}{more}")
+
+
+def _valued(value: Any, unit: str) -> str:
+    return clean(value) if isinstance(value, str) else with_unit(float(value), unit)
 
 
 def _show_reasons(reasons: list[str]) -> None:
@@ -75,43 +105,39 @@ def _show_reasons(reasons: list[str]) -> None:
     told = sorted(alike.values(), key=len, reverse=True)
     screen = console()
     for group in told[:FIRST]:
-        screen.print(f"  {len(group)}: {clean(group[0])}" + (" (and the like)" if len(set(group)) > 1 else ""), soft_wrap=True)
+        say(screen, f"  {len(group)}: {clean(group[0])}" + (" (and the like)" if len(set(group)) > 1 else ""))
     if len(told) > FIRST:
-        screen.print(f"  and {len(told) - FIRST} other reasons")
+        say(screen, f"  and {len(told) - FIRST} other reasons")
 
 
-def _show_quantities(plan: Plan, dataset: xr.Dataset) -> None:
-    shown = table("quantity", "unit", "members", "smallest", "median", "largest", numbers=True)
-    for one in plan.work.quantities:
-        values = dataset[one.name].to_numpy()
+def _show_quantities(dataset: xr.Dataset) -> None:
+    rows = []
+    for name in quantities_of(dataset):
+        values = dataset[name].to_numpy()
         values = values[np.isfinite(values)]
         numbers = (values.min(), np.median(values), values.max()) if values.size else (np.nan,) * 3
-        unit = str(dataset[one.name].attrs["units"])
-        shown.add_row(one.name, "" if unit == "1" else unit, str(values.size), *(number(float(x), 6) for x in numbers))
-    console().print(shown)
-    console().print()
+        unit = str(dataset[name].attrs["units"])
+        rows.append((name, "" if unit == "1" else unit, str(values.size), *(number(float(x), 6) for x in numbers)))
+    screen = console()
+    print_numbers(screen, ("quantity", "unit", "members", "smallest", "median", "largest"), rows, text=2)
+    screen.print()
 
 
-def _show_changes(plan: Plan, dataset: xr.Dataset) -> None:
+def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
     from stickslip.sweeps.results.changes import cases, changes
 
     screen = console()
-    for one in plan.work.quantities:
-        found = cases(dataset, one.name)
+    for name in quantities_of(dataset):
+        found = cases(dataset, name)
         if len(found) < 2:
             continue
-        names = {0.0: "no", 1.0: "yes"} if one.is_flag else {}
+        names = {0.0: "no", 1.0: "yes"} if "flag_values" in dataset[name].attrs else {}
         counts = ", ".join(f"{names.get(value, f'{value:g}')} {times} times" for value, times in found.items())
-        along = "; ".join(_told(change, dataset) for change in changes(dataset, one.name)) if plan.design.is_grid else ""
-        screen.print(f"{one.name}: {counts}" + (f"; changes {along}" if along else ""), soft_wrap=True)
+        along = "; ".join(_told(change, dataset) for change in changes(dataset, name)) if is_grid else ""
+        say(screen, f"{name}: {counts}" + (f"; changes {along}" if along else ""))
 
 
 def _told(change: Change, dataset: xr.Dataset) -> str:
     unit = str(dataset[change.key].attrs.get("units", ""))
     ends = (end if isinstance(end, str) else with_unit(end, unit) for end in (change.low, change.high))
     return f"along {change.key} between {' and '.join(ends)}"
-
-
-def _size(count: int) -> str:
-    factor, unit = next(((f, u) for f, u in ((1e9, "GB"), (1e6, "MB"), (1e3, "kB")) if count >= f), (1.0, "bytes"))
-    return f"{number(count / factor, 3)} {unit}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.compiler import inlined, kernel
 from stickslip.engine.series.polynomial import degree, fill
 from stickslip.engine.state.workspace import Run
 
@@ -38,7 +38,7 @@ def note_degree(run: Run) -> None:
     fill(run.load_along_slip, 0.0)
 
 
-@kernel
+@inlined
 def record(run: Run, xi_to: float) -> None:
     """Append the step from the present place to xi_to, and move xi there.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.compiler import inlined, kernel
 from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import friction_at
 from stickslip.engine.contact_step.step_events import growth
@@ -21,7 +21,7 @@ def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
     move(run, length, growth(run, rate, length, 1.0), total(rate), to)
 
 
-@kernel
+@inlined
 def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> None:
     """Record the step and move the state to its end, at xi = to.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.compiler import inlined, kernel
 from stickslip.engine.contact.contact_equation import TIE
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
 from stickslip.engine.contact_step.stick import come_to_rest
@@ -22,14 +22,14 @@ class Cut(NamedTuple):
     end: float  # share of the step up to the event, 1 without one
 
 
-@kernel
+@inlined
 def stretch(run: Run, length: float, rate: Floats) -> None:
     """Write the slip rate's magnitude over a step of the given length (in guesses) into `rate`, as a polynomial on [0, 1]."""
     powers_of(length, run.powers)
     multiply(run.jet, run.powers, rate)
 
 
-@kernel
+@inlined
 def growth(run: Run, rate: Floats, length: float, end: float) -> float:
     """Return the slip (m, unsigned) in a step of the given length (in guesses) up to the place `end` on [0, 1].
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.engine.codegen.records import Record, floats_at, floats_inside, inside, record_at, records_at
-from stickslip.engine.codegen.uncompiled import lend_memory
+from stickslip.engine.codegen.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.state.layout import (
     TERMS,
     Branch,
@@ -139,7 +139,8 @@ def lend(memory: Integers, setup: Setup, store: Store, echoes: Integers) -> None
     The caller keeps the tables alive, and lends them again if the history has grown or moved.
     """
     tables = (*setup[1:], *store, echoes)
-    lend_memory(*tables)
+    if UNCOMPILED:
+        lend_memory(*tables)
     assert memory.shape == (PLACES,)
     assert all(table.flags.c_contiguous for table in (memory, *tables))
     memory[:ADDRESSES] = [table.ctypes.data for table in tables]

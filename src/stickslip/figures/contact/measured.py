@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -56,7 +57,8 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpa
     figure = draw(data(result), **place)
     if path is None:
         return known_to_pyplot(figure, place)
-    write_atomically(Path(path), figure.savefig)
+    save = partial(styled(figure.savefig), **({"dpi": place["dpi"]} if "dpi" in place else {}))
+    write_atomically(Path(path), save)
     return figure
 
 

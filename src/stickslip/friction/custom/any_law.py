@@ -42,7 +42,7 @@ def _from_text(text: str) -> FrictionLaw:
     if word.replace("-", "_").isidentifier():
         fault = f"{ascii(word)[:60]} is not a formula; the laws of the package are classes, such as ss.friction.Coulomb(...)"
     elif word.lower().endswith((".csv", ".txt", ".dat")):
-        fault = f"{ascii(word)[:60]} is not a formula; measured points make a law with ss.friction.FromTable"
+        fault = f"{ascii(word)[:60]} is not a formula; measured points make a law with ss.friction.FromTable(file)"
     elif UNDECLARED in fault:
         fault += "; parameters get values in ss.friction.FromExpression(text, {name: value})"
     raise InputError(fault)

@@ -21,8 +21,8 @@ from stickslip.friction.law import FrictionLaw
 
 Floats = NDArray[np.float64]
 
-EXACT = 1e-13
-"""Residual, as a share of the largest friction coefficient, below which points lie on a law but for rounding."""
+EXACT = 1e-9
+"""Residual (no unit) below which points lie on a law but for the errors of calculation."""
 AT_LIMIT = 1e-9
 """Distance from its limit, relative to the change of a parameter that the points would notice, at which it is at the limit."""
 
@@ -221,10 +221,9 @@ def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: f
     notes = [f"{name} is at its limit, {values[name]:g}: no other value that is allowed fits better" for name in limits]
     notes += spread.notes(values)
     order = np.lexsort(variables)
-    smallest = EXACT * float(points.friction.max())
-    if math.sqrt(total / n) > smallest and misses_trend((made.coefficient(*variables) - points.friction)[order]):
+    if math.sqrt(total / n) > EXACT and misses_trend((made.coefficient(*variables) - points.friction)[order]):
         notes.append("the law misses a trend of the points: the uncertainties are too small, see a figure of the fit")
-    bic = n * math.log(max(total / n, smallest**2, 1e-300)) + (len(inner) + len(whole) + 1) * math.log(n)
+    bic = n * math.log(max(total / n, EXACT**2)) + (len(inner) + len(whole) + 1) * math.log(n)
     how = {name: "fixed" for name in values if name not in free} | dict.fromkeys(whole, f"tried {WHOLE[0]:g} to {WHOLE[-1]:g}")
     how |= dict.fromkeys(limits, "at its limit") | {name: "not determined" for part in spread.unseen for name in part}
     return Fit(made, points, math.sqrt(variance), values, bic, notes, spread, how)

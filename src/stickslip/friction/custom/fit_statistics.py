@@ -70,7 +70,7 @@ class Spread:
             if len(part) == 1:
                 yield f"the points do not determine {part[0]}: any value fits alike; choose it and fix it"
             else:
-                yield f"the points do not determine {' and '.join(part)} separately: fix one of them"
+                yield f"the points do not determine {', '.join(part[:-1])} and {part[-1]} separately: fix one of them"
         for name, size in self.uncertainty.items():
             if np.isfinite(size) and size > abs(values[name]) > 0.0:
                 yield f"the points do not determine {name}: its uncertainty exceeds its value"

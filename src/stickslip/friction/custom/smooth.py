@@ -15,7 +15,7 @@ from stickslip.friction.custom.fit_text import html_of, text_of
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.custom.penalised_spline import Basis
 from stickslip.friction.custom.table import FromTable
-from stickslip.friction.noise import reversals
+from stickslip.friction.noise import SMALLEST, reversals
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,11 @@ SCALES = ("auto", "linear", "log")
 """Scales of slip or slip rate in which points can be smoothed."""
 LARGEST = 1e6
 """Largest strength: it makes a straight line of any points."""
-FINEST = 257
+CLOSE = 0.3
+"""Degrees of freedom, as a share of the number of points, above which a curve follows almost every point."""
+DIGITS = 12
+"""Number of decimals of the law, so that rounding makes no reversals."""
+FINEST = 1025
 """Largest number of points by which the law follows the smooth curve."""
 FOLLOWS = 0.01
 """Largest distance between the law and the smooth curve, as a share of the residual."""
@@ -104,7 +108,7 @@ class Smooth:
     def notes(self) -> list[str]:
         """Sentences on what the result does not say."""
         found = ["a reversal that survives depends on the strength: try a stronger and a weaker one"] if self.reversals[1] else []
-        if self.freedom > 0.5 * self._basis.design.shape[1]:
+        if self.freedom > CLOSE * len(self.points) and self.residual > SMALLEST:
             found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
         return found
 
@@ -241,15 +245,17 @@ class _Curve:
 
     def at(self, x: Floats) -> Floats:
         """Return the friction coefficients at ascending places x in [0, 1]."""
-        values = np.maximum(self.basis.values_at(x, self.coefficients), 0.0)
-        return values if self.rises == 0 else self.rises * np.maximum.accumulate(self.rises * values)
+        values: Floats = np.maximum(self.basis.values_at(x, self.coefficients), 0.0).round(DIGITS)
+        if self.rises:
+            values = self.rises * np.maximum.accumulate(self.rises * values)
+        return values
 
 
 def _law(points: Points, axis: _Axis, curve: _Curve, residual: float) -> FromTable:
     """Return the law through the fewest points, evenly spaced on the axis, that follows the curve closely enough."""
     fine = np.linspace(0.0, 1.0, 4 * FINEST)
     places, wanted, near = axis.back(fine), curve.at(fine), max(FOLLOWS * residual, 1e-9)
-    for count in (2**k + 1 for k in range(3, 9)):
+    for count in (2**k + 1 for k in range(3, 11)):
         x = np.linspace(0.0, 1.0, count)
         law = _table(points, axis.back(x), curve.at(x))
         found = law.coefficient(places) if law.slip is not None else law.coefficient(0.0, places)

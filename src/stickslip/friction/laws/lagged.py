@@ -11,7 +11,7 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Part, declare, quantity
-from stickslip.friction.composite import LawOfParts, PartNumbers
+from stickslip.friction.composite import MAKES_LAWS, LawOfParts, PartNumbers
 from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh
 from stickslip.friction.law import FrictionLaw
@@ -44,7 +44,7 @@ class LaggedFriction(LawOfParts):
     @override
     def check(self) -> None:
         if not isinstance(self.rate, FrictionLaw):
-            raise InputError(f"LaggedFriction: rate must be a friction law, got {type(self.rate).__name__}")
+            raise InputError(f"LaggedFriction: rate must be a friction law, got {type(self.rate).__name__}; {MAKES_LAWS}")
         if self.rate.depends_on_slip or not self.rate.depends_on_rate or self.rate.state is not None:
             raise InputError(f"LaggedFriction: rate must be a law of slip rate only, {self.rate.kind} is not")
         if self.rate.knots or self.rate.static_excess:

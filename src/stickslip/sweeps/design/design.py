@@ -88,9 +88,14 @@ class Design:
         return {name: column[place] for name, column, place in zip(self.names, self.columns, places, strict=True)}
 
     def __str__(self) -> str:
-        if self.is_grid:
-            return f"{' x '.join(str(one) for one in self.shape)} = {self.size} members"
-        return f"{self.size} members {IN_WORDS[self.kind]}"
+        return in_words(self.kind, self.shape)
+
+
+def in_words(kind: str, shape: tuple[int, ...]) -> str:
+    """Return how many members a design has, and where they come from."""
+    if kind == GRID:
+        return f"{' x '.join(str(one) for one in shape)} = {math.prod(shape)} members"
+    return f"{math.prod(shape)} members {IN_WORDS[kind]}"
 
 
 def read_design(

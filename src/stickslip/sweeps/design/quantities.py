@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest_and_all
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def _one(item: Wanted) -> Summary:
         return item
     if isinstance(item, str):
         if item not in QUANTITIES:
-            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest(item, QUANTITIES)}")
+            raise InputError(f"sweep: quantity {ascii(item)[:60]} is unknown; {nearest_and_all(item, QUANTITIES)}")
         return QUANTITIES[item]
     if len(item) != 3 or not isinstance(item[0], str) or not isinstance(item[1], str) or not callable(item[2]):
         raise InputError("sweep: a quantity must be a name, or (name, unit, function of a solution)")

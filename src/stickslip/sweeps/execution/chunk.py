@@ -6,8 +6,9 @@ import copy
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from time import thread_time
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.parameter_paths import ParameterPath
 from stickslip.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.sweeps.design.series import Series
-from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE
+from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE, NOT_RUN
 from stickslip.trajectory.status import STATUSES, Status
 
 Floats = NDArray[np.float64]
@@ -40,12 +41,14 @@ class Work:
     """The work that is done for every member.
 
     `text` is the scenario (TOML, in SI), `parameters` are those that vary, and `quantities` and `series` are the results kept.
+    With `defers`, members that the compiled batch must run by themselves are left for later: see `ChunkResult.later`.
     """
 
     text: str
     parameters: tuple[ParameterPath, ...]
     quantities: tuple[Summary, ...]
     series: Series | None = None
+    defers: bool = False
 
     @cached_property
     def _document(self) -> dict[str, Any]:
@@ -97,6 +100,12 @@ class ChunkResult:
     results: dict[str, Floats]
     status: NDArray[np.int8]
     reasons: dict[int, str] = field(default_factory=dict)
+    seconds: float = 0.0
+    """Processor time of all members, s."""
+    alone: dict[int, float] = field(default_factory=dict)
+    """Processor time (s) of each member that ran by itself."""
+    later: list[int] = field(default_factory=list)
+    """Members that were left for later, with the status NOT_RUN."""
 
     @classmethod
     def empty(cls, work: Work, count: int) -> ChunkResult:
@@ -105,6 +114,13 @@ class ChunkResult:
         if work.series:
             results |= {name: np.full((count, len(work.series.times)), np.nan) for name in work.series.names}
         return cls(results, np.zeros(count, np.int8))
+
+    def fill(self, places: list[int], found: ChunkResult) -> None:
+        """Enter the results of members that were left for later, at their places in this chunk."""
+        for name, values in found.results.items():
+            self.results[name][places] = values
+        self.status[places] = found.status
+        self.reasons.update({places[i]: reason for i, reason in found.reasons.items()})
 
     def fail(self, i: int, code: int, reason: str) -> None:
         """Record that a member failed."""
@@ -123,10 +139,11 @@ def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = No
 def compiled_batch(work: Work, values: Mapping[str, Values], threads: int) -> ChunkResult:
     """Run all members in the compiled batch (`stickslip.batch`)."""
     names = [one.name for one in work.quantities]
-    found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads)
-    status = np.array([CODES[code] for code in found.status.tolist()], np.int8)
+    found = run_members(work.scenario, values, list(dict.fromkeys([*names, END])), threads, defer=work.defers)
+    status = np.array([CODES.get(code, NOT_RUN) for code in found.status.tolist()], np.int8)
     failed = status >= FIRST_FAILURE
-    result = ChunkResult({name: np.where(failed, np.nan, found.results[name]) for name in names}, status)
+    kept = {name: np.where(failed, np.nan, found.results[name]) for name in names}
+    result = ChunkResult(kept, status, seconds=found.seconds, alone=found.alone, later=found.later)
     for i in np.flatnonzero(failed).tolist():
         if i in found.reason:
             result.reasons[i] = _refusal(work, _of_member(values, i)) or found.reason[i]
@@ -153,11 +170,13 @@ def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
     count = len(next(iter(values.values())))
     result = ChunkResult.empty(work, count)
     for i in range(count):
+        start = thread_time()
         try:
             _run_one(work, _of_member(values, i), result, i)
         except Exception as error:  # no error, not even one in a user's function, may stop the other members
             result.fail(i, ERROR, f"{type(error).__name__}: {error}")
-    return result
+        result.alone[i] = thread_time() - start
+    return replace(result, seconds=sum(result.alone.values()))
 
 
 def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:

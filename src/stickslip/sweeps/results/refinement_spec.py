@@ -43,7 +43,7 @@ class RefinementSpec:
     def __post_init__(self) -> None:
         if self.factor is not None and not self.factor > 1.0:
             raise InputError(f"refine: factor must be above 1, got {self.factor!r}")
-        check_whole("refine: depth", self.depth)
+        check_whole("refine: depth", self.depth, 0)
         check_whole("refine: most", self.most)
         _ = self.lattice
 

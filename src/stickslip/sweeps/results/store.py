@@ -27,7 +27,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import ChunkResult
 from stickslip.sweeps.execution.outcome import NOT_RUN
 from stickslip.sweeps.execution.plan import Plan
-from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout
+from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout, withdraw
 from stickslip.sweeps.results.layout import REASON, STATUS, array_of, lay_out
 from stickslip.sweeps.results.store_compatibility import as_begun
 
@@ -84,9 +84,9 @@ class ResultStore:
         return [chunk for chunk in found if (self.place / self.files_of(chunk)[0]).exists()]
 
     def missing(self) -> list[int]:
-        """Return the numbers of the chunks that are not done, judged by the status of the first member of each."""
-        firsts = self.status[tuple(slice(None, None, part) for part in self.plan.tile)]
-        return [int(chunk) for chunk in np.flatnonzero(firsts.ravel() == NOT_RUN)]
+        """Return the numbers of the chunks of which some member is not done."""
+        left = self.status == NOT_RUN
+        return [chunk for chunk in range(self.plan.chunks) if left[self.plan.region(chunk)].any()]
 
     @property
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
@@ -94,13 +94,15 @@ class ResultStore:
         return np.asarray(array_of(self.group, STATUS)[...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
-        """Store the results of a chunk. Raises InputError if they cannot be written."""
+        """Store the results of a chunk, in place of earlier ones if there are any. Raises InputError if they cannot be written."""
         region = self.plan.region(chunk)
         shape = tuple(one.stop - one.start for one in region)
         reasons = np.full(len(result.status), "", dtype=np.dtypes.StringDType())
         for place, reason in result.reasons.items():
             reasons[place] = reason
         with writing(self.place):
+            if isinstance(self.place, Path):
+                withdraw(self.place, str(chunk))
             for name, values in result.results.items():
                 array_of(self.group, name)[region] = values.reshape(shape + values.shape[1:])
             array_of(self.group, REASON)[region] = reasons.reshape(shape)

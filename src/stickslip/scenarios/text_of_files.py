@@ -1,0 +1,94 @@
+"""The text of a scenario file; for a file that holds none, what it is instead and what to do with it."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.netcdf_file import MAGIC
+from stickslip.scenarios import library
+
+LARGEST = 1_000_000
+"""Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
+_SHOW = "a file of results, not a scenario: `stickslip show` summarises it, and `stickslip run --resume` continues a run"
+_TABLE = "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it"
+_PICTURE = "a picture, not a scenario"
+_STARTS = (
+    (MAGIC, _SHOW),
+    (b"CDF", _SHOW),
+    (b"PAR1", _SHOW),
+    (b"\x89PNG", _PICTURE),
+    (b"%PDF", _PICTURE),
+    (b"GIF8", _PICTURE),
+)
+"""The first bytes of files of other kinds, each with what the file is."""
+_WIDE = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+"""First bytes of text in UTF-16, which some shells write."""
+_START = "`stickslip new slab > mine.toml` writes a scenario to start from"
+
+
+def read_text(path: Path, file: str) -> str:
+    """Return the text of a scenario file, called `file` in messages. Raises InputError if it is none."""
+    try:
+        if path.is_dir():
+            raise InputError(f"{file}: {_about_folder(path, file)}")
+        return text_of(read_bounded(path, LARGEST), file)
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file, and no bundled scenario of that name; {_hint(path)}") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    except InputError as error:
+        if str(error).startswith(f"{file}: "):
+            raise
+        raise InputError(f"{file}: {_about_first_bytes(path) or f'{error}: not a scenario'}") from None
+
+
+def text_of(content: bytes, file: str) -> str:
+    """Return the text in the content of a scenario file, called `file` in messages. Raises InputError if it is no text."""
+    if len(content) > LARGEST:
+        raise InputError(f"{file}: larger than {LARGEST} bytes: not a scenario")
+    other = next((what for start, what in _STARTS if content.startswith(start)), None)
+    if other:
+        raise InputError(f"{file}: {other}")
+    try:
+        text = content.decode("utf-16" if content.startswith(_WIDE) else "utf-8-sig")
+    except UnicodeDecodeError as error:
+        if b"\0" in content:
+            raise InputError(f"{file}: not a text file, so not a scenario; {_START}") from None
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{file}: not a text file in UTF-8: line {line} has other letters; save it as UTF-8") from None
+    if "\0" in text:
+        raise InputError(f"{file}: not a text file, so not a scenario; {_START}")
+    if not text.strip():
+        raise InputError(f"{file}: is empty; {_START}")
+    return text
+
+
+def _about_folder(path: Path, file: str) -> str:
+    """Return what a folder is, and what to do with it."""
+    if path.suffix == ".zarr" or (path / "zarr.json").exists():
+        return f"the results of a sweep, not a scenario: `stickslip show {file}` summarises them"
+    inside = sorted(one.name for one in path.glob("*.toml"))
+    found = f"its scenarios: {', '.join(inside[:5])}{' ...' if len(inside) > 5 else ''}" if inside else "it holds no TOML file"
+    return f"is a folder, not a scenario; {found if all(map(str.isprintable, inside)) else 'name a file in it'}"
+
+
+def _about_first_bytes(path: Path) -> str | None:
+    """Return what a file is that is too large for a scenario, if its first bytes tell."""
+    if not path.is_file():
+        return "not an ordinary file: not a scenario; the name - stands for standard input"
+    with path.open("rb") as stream:
+        start = stream.read(16)
+    return next((what for begin, what in _STARTS if start.startswith(begin)), None)
+
+
+def _hint(path: Path) -> str:
+    hint = nearest(path.stem, library.names())
+    return hint if hint.startswith("did") else "`stickslip new --list` lists them"
+
+
+def about_suffix(file: str) -> str | None:
+    """Return what a file of this name usually is, if it is a table and not TOML."""
+    return _TABLE if Path(file).suffix.lower() in (".csv", ".tsv") else None

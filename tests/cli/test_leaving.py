@@ -1,0 +1,83 @@
+"""Ctrl-C while modules are imported, and readers that stop reading, end a command quietly."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+INTERRUPT_AT = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+class Interrupting:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupting())
+from stickslip.cli.main import main
+main({arguments!r})
+"""
+
+
+@pytest.mark.parametrize(
+    ("module", "arguments"),
+    [
+        ("typer", ["--help"]),
+        ("rich", ["run", "fig6-slab"]),
+        ("stickslip.cli.commands.sweep", ["run", "fig6-slab"]),
+        ("numpy", ["run", "fig6-slab"]),
+        ("stickslip.scenarios.examine", ["check", "fig6-slab"]),
+        ("numba", ["run", "fig6-slab"]),
+        ("stickslip.run.simulate", ["run", "fig6-slab"]),
+        ("xarray", ["run", "fig6-slab", "--out", "a.nc"]),
+        ("matplotlib", ["check", "fig6-slab", "--figure", "k.png"]),
+    ],
+)
+def test_ctrl_c_during_imports_is_quiet(tmp_path: Path, module: str, arguments: list[str]):
+    code = INTERRUPT_AT.format(module=module, arguments=arguments)
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 130
+    assert done.stderr in ("", "stickslip: interrupted\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+UNHEARD = """
+import os, sys
+from stickslip.cli.main import main
+main(sys.argv[1:])
+"""
+
+
+def run_unheard(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command whose standard output nobody reads: the reading end of its pipe is closed from the start."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        return subprocess.run(
+            [sys.executable, "-c", UNHEARD, *arguments], cwd=folder, stdout=writing, stderr=subprocess.PIPE, text=True, check=False
+        )
+    finally:
+        os.close(writing)
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["run", "--help"], ["--version"], ["new", "--list"], ["new", "slab"], ["check", "fig6-slab"]]
+)
+def test_output_that_nobody_reads_is_dropped_quietly(tmp_path: Path, arguments: list[str]):
+    done = run_unheard(arguments, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_files_are_written_though_nobody_reads_the_summary(tmp_path: Path):
+    done = run_unheard(["run", "fig6-slab", "--out", "a.nc", "--figure", "a.svg"], tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.svg"]
+
+
+def test_a_mistake_has_its_exit_code_though_nobody_reads(tmp_path: Path):
+    done = run_unheard(["run", "fig6-slap"], tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("stickslip: fig6-slap: no such file")

@@ -1,0 +1,82 @@
+"""What commands print on narrow terminals: no line is too long, and no number is broken."""
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+from stickslip.cli.output.studies import show_regularisation
+from stickslip.scenarios.scenario import load_scenario
+from stickslip.studies.regularise import regularise
+from tests.cli.conftest import Outcome
+
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
+COMMANDS = [
+    ["run", "fig6-slab"],
+    ["run", "cycles-block"],
+    ["run", "fig5-slab-printed", "--duration", "2 hours"],
+    ["check", "fig6-slab"],
+    ["check", "fig6-block-printed"],
+    ["sweep", "fig6-slab", "-v", "alpha=0.1..1:4", "-v", "thickness=5km,10km"],
+    ["compare", "fig6-block-reconstructed", "fig6-slab"],
+    ["analogy", "block-or-slab", "--map", "wavelength=5..41.6:7:log", "--map", "alpha=0.00392..1:2:log"],
+    ["ensemble", "cycles-block", "--members", "2"],
+]
+
+
+def check_fits(narrow: str, wide: str, width: int) -> None:
+    """Fail if a line of `narrow` is wider than `width`, or a number in it is not one of `wide`, nor one with fewer digits."""
+    whole = {number for word in wide.split() for number in NUMBER.findall(word)}
+    shorter = {f"{float(number):.5g}" for number in whole} | {f"{float(number):.3f}" for number in whole}
+    for line in narrow.splitlines():
+        assert len(line.rstrip()) <= width, line
+        for number in NUMBER.findall(line):
+            assert number in whole | shorter, (number, line)
+
+
+@pytest.mark.parametrize("width", [60, 40])
+@pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: " ".join(arguments[:2]))
+def test_numbers_do_not_break_and_lines_fit(
+    command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch, arguments: list[str], width: int
+):
+    wide = command(*arguments)
+    monkeypatch.setenv("COLUMNS", str(width))
+    narrow = command(*arguments)
+    assert narrow.code == wide.code == 0
+    check_fits(narrow.out, wide.out, width)
+
+
+@pytest.mark.parametrize("width", [60, 40])
+def test_the_table_of_regularised_runs_fits(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int):
+    scenario = load_scenario("fig4-loop")
+    study = regularise(scenario.problem, scenario.duration, "lag", (0.1, 0.03, 0.01))
+    show_regularisation(scenario, study)
+    wide = capsys.readouterr().out
+    monkeypatch.setenv("COLUMNS", str(width))
+    show_regularisation(scenario, study)
+    check_fits(capsys.readouterr().out, wide, width)
+
+
+def test_every_column_of_a_divided_table_is_shown_once_beside_the_first(
+    command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("COLUMNS", "40")
+    out = command("run", "fig6-slab").out
+    events = out.partition("1 slip event\n")[2].partition("2 shocks")[0]
+    rows = [line.split() for line in events.splitlines() if NUMBER.fullmatch(line.split()[0] if line.split() else "")]
+    assert [row[0] for row in rows] == ["0"] * len(rows)
+    assert [value for row in rows for value in row[1:]] == [
+        *("5.7142857", "5.7142857", "23.440233", "4.1020408"),
+        *("80400000", "80400000", "1"),
+    ]
+
+
+def test_sentences_break_between_words_on_a_terminal_and_not_in_a_file(
+    command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch
+):
+    sentence = "selection rule perfect-delay: the contact equation has several solutions, this run depends on the rule"
+    assert sentence in command("run", "fig6-slab").out
+    monkeypatch.setenv("COLUMNS", "60")
+    narrow = command("run", "fig6-slab").out
+    assert sentence not in narrow
+    assert sentence in " ".join(narrow.split())

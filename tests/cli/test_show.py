@@ -1,0 +1,146 @@
+"""`stickslip show` tells what is in a file of results, as the run that made it did."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip import __version__
+from stickslip.cli.names import complete_result
+from stickslip.scenarios.scenario import load_scenario
+from tests.cli.conftest import Outcome
+
+Command = Callable[..., Outcome]
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a run, a catalogue, a sweep, and two files that hold no results."""
+    folder, problem = tmp_path_factory.mktemp("results"), load_scenario("cycles-block").problem
+    ss.simulate(problem, 20 * ss.YEAR, checkpoint=folder / "run.nc")
+    ss.catalogue(problem, 20 * ss.YEAR, folder / "events.csv")
+    ss.sweep("fig6-slab", {"friction.alpha": np.array([0.5, 1.0])}, out=folder / "map.zarr")
+    (folder / "bad.nc").write_text("no")
+    (folder / "bad.csv").write_text("a,b\n1,2\n")
+    return folder
+
+
+def after_title(text: str) -> str:
+    """Return a summary without its first line."""
+    return text.partition("\n")[2]
+
+
+def test_show_repeats_the_summary_of_the_run_and_says_what_made_it(command: Command):
+    ran = after_title(command("run", "fig5-slab-printed", "--duration", "2 hours", "--out", "run.nc").out)
+    shown = command("show", "run.nc")
+    assert (shown.code, shown.err) == (0, "")
+    summary, _, made = after_title(shown.out).partition("made by ")
+    assert summary == ran.partition("written: ")[0]
+    assert made == f"stickslip {__version__}; `stickslip show run.nc --scenario` prints its scenario\n"
+
+
+def test_show_repeats_what_ended_a_run_that_was_stopped(command: Command):
+    assert command("run", "cycles-block", "--duration", "10000 years", "--events", "3", "--out", "run.nc").code == 0
+    shown = command("show", "run.nc").out
+    assert "enough events: the run reached the requested number of slip events" in shown
+    assert "3 slip events" in shown
+
+
+def test_the_scenario_of_a_run_can_be_run_again(command: Command, tmp_path: Path):
+    command("run", "fig6-slab", "--duration", "3 s", "--rtol", "1e-8", "--out", "run.nc")
+    (tmp_path / "again.toml").write_text(command("show", "run.nc", "--scenario").out)
+    again = load_scenario(tmp_path / "again.toml")
+    assert (again.problem, again.duration, again.rtol) == (load_scenario("fig6-slab").problem, 3.0, 1e-8)
+
+
+def test_figures_are_drawn_from_the_file(command: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    command("run", "fig6-slab", "--out", "run.nc")
+    monkeypatch.setattr("stickslip.scenarios.scenario.Scenario.run", lambda *_, **__: pytest.fail("ran"))
+    shown = command(
+        "show", "run.nc", "--figure", "a.svg", "--path", "b.svg", "--space-time", "c.svg", "--catalogue-figure", "d.svg"
+    )
+    assert shown.code == 0
+    assert shown.out.endswith("written: a.svg\nwritten: b.svg\nwritten: d.svg\nwritten: c.svg\n")
+    assert {path.name for path in tmp_path.iterdir()} == {"run.nc", "a.svg", "b.svg", "c.svg", "d.svg"}
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".nc", ".parquet"])
+def test_show_lists_the_events_of_a_catalogue(command: Command, suffix: str):
+    if suffix == ".parquet":
+        pytest.importorskip("pyarrow")
+    assert command("run", "cycles-block", "--duration", "50 years", "--catalogue", f"events{suffix}").code == 0
+    for name in (f"events{suffix}", "events.checkpoint.nc"):
+        shown = command("show", name)
+        assert (shown.code, shown.err) == (0, "")
+        assert "finished: the run reached its duration" in shown.out
+        assert "11 slip events" in shown.out
+        assert f"made by stickslip {__version__}" in shown.out
+    whole = command("run", "cycles-block", "--duration", "50 years").out
+    rows = [line for line in whole.partition("11 slip events")[2].partition("no shock")[0].splitlines() if "e" not in line[:1]]
+    assert rows[5] in command("show", "events.checkpoint.nc").out
+
+
+def test_a_table_without_its_checkpoint_is_shown_without_its_origin(command: Command, tmp_path: Path):
+    command("run", "cycles-block", "--duration", "50 years", "--catalogue", "events.csv")
+    (tmp_path / "events.checkpoint.nc").unlink()
+    shown = command("show", "events.csv").out
+    assert "11 slip events" in shown
+    assert "made by" not in shown
+    refused = command("show", "events.csv", "--scenario")
+    assert refused.code == 2
+    assert refused.err.startswith("stickslip: events.csv: does not hold its scenario")
+
+
+def test_show_repeats_the_summary_of_a_sweep(command: Command):
+    asked = ["sweep", "fig6-slab", "-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:4"]
+    ran = command(*asked, "--out", "map.zarr", "-q", "events", "-q", "slip").out
+    shown = command("show", "map.zarr", "--figure", "map.svg")
+    assert (shown.code, shown.err) == (0, "")
+    summary, _, made = after_title(shown.out).partition("made by ")
+    assert summary == after_title(ran).removesuffix("written: map.zarr\n")
+    assert made.endswith("written: map.svg\n")
+    assert "[run]\n" in command("show", "map.zarr", "--scenario").out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["no.nc"], "no.nc: no such file"),
+        (
+            ["fig6-slab"],
+            "fig6-slab: not a file of results, whose names end in .nc, .csv, .parquet or .zarr; `stickslip run fig6-slab`",
+        ),
+        (["bad.nc"], "bad.nc: not a netCDF file that can be read"),
+        (["bad.csv"], "bad.csv: not a catalogue of slip events: there is no column start"),
+        (["."], ".: exists and is not the store of a sweep"),
+        (["run.nc", "--figure", "a.txt"], "--figure a.txt: the name must end in .png or .pdf or .svg"),
+        (["run.nc", "--space-time", "a.png"], "show: --space-time needs a slab: a block is rigid"),
+        (["run.nc", "--path", "a.png"], "show: --path needs a slab without contact mass"),
+        (["run.nc", "--figure", "a.png", "--energy-figure", "./a.png"], "--energy-figure a.png: is the file of --figure already"),
+        (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave --figure away"),
+        (["map.zarr", "--energy-figure", "a.png"], "map.zarr: the results of a sweep have no --energy-figure: --figure draws"),
+    ],
+)
+def test_what_cannot_be_shown_is_told_in_one_line(
+    command: Command, tmp_path: Path, results: Path, arguments: list[str], message: str
+):
+    shutil.copytree(results, tmp_path, dirs_exist_ok=True)
+    before = sorted(tmp_path.iterdir())
+    shown = command("show", *arguments)
+    assert (shown.code, shown.out) == (2, "")
+    assert shown.err.startswith(f"stickslip: {message}")
+    assert shown.err.count("\n") == 1
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_results_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    for name in ("a.nc", "a.csv", "a.toml"):
+        (tmp_path / name).touch()
+    (tmp_path / "a.zarr").mkdir()
+    (tmp_path / "deeper").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert complete_result("a") == ["a.csv", "a.nc", "a.zarr"]
+    assert complete_result("") == ["a.csv", "a.nc", "a.zarr", "deeper/"]
