@@ -81,6 +81,11 @@ def test_friction_is_traction_over_normal_load_at_its_slip(name: str) -> None:
     assert time[first - 1] <= (0.0 if body.has_waves else body.round_trip_time)
 
 
+def test_traction_alone_leaves_out_the_start_from_rest_too() -> None:
+    axes = run("velocity-steps-block").plot.traction().axes[0]
+    assert axes.get_ylim()[0] > 25.0  # kN; friction is 0 at rest at t = 0
+
+
 def test_a_figure_of_the_start_alone_shows_it() -> None:
     """Within one period the block of the velocity steps still accelerates from 0: nothing is left out but 0 itself."""
     solution = run("velocity-steps-block")
