@@ -117,6 +117,7 @@ def test_a_size_is_read_as_it_is_written(text: Any, inches: tuple[float, float])
 @pytest.mark.parametrize(
     ("place", "message"),
     [
+        ({"figsize": (4, 3)}, "plot: there is no figsize=; did you mean 'size'"),
         ({"size": "16 x 10"}, "size: must be two lengths in inches, a text such as"),
         ({"size": "16 cm"}, "size: must be two lengths"),
         ({"size": "1.2.3 x 4 cm"}, "size: must be two lengths"),
@@ -137,6 +138,14 @@ def test_a_place_that_cannot_be_is_refused_in_one_line(place: dict[str, Any], me
         plot("slip", **place)
     assert "\n" not in str(raised.value)
     assert pyplot.get_fignums() == []
+
+
+def test_keywords_that_are_none_are_as_if_not_given() -> None:
+    figure = plot("slip", ax=None, figure=None, size=None, dpi=None)
+    assert figure.get_size_inches().tolist() == [6.4, 3.0]
+    assert plot("slip", figure=None, size=figure.get_size_inches()).get_size_inches().tolist() == [6.4, 3.0]
+    axes = pyplot.subplots()[1]
+    assert plot("slip", ax=axes, size=None) is axes
 
 
 def test_axes_bring_their_own_size() -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from numbers import Real
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack, cast
 
@@ -17,13 +18,15 @@ from matplotlib.backends.registry import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 T = TypeVar("T")
+KEYWORDS = ("ax", "figure", "size", "dpi")
+"""The keywords of `Place`."""
 INCHES = {"mm": 1.0 / 25.4, "cm": 1.0 / 2.54, "in": 1.0, "inch": 1.0, "inches": 1.0}
 """Units in which a size can be written, and their length in inches."""
 COLUMNS = {"single column": 3.5, "double column": 7.2}
@@ -81,7 +84,7 @@ def _has_windows() -> bool:
 
 def known_to_pyplot(drawn: T, place: Place) -> T:
     """Return what was drawn; if it is a figure of its own, pyplot knows and shows it from now on."""
-    if isinstance(drawn, StickslipFigure) and "figure" not in place:
+    if isinstance(drawn, StickslipFigure) and place.get("figure") is None:
         from matplotlib import pyplot
 
         # Only a finished figure is handed over: one that fails leaves nothing behind. This must not happen inside `styled`,
@@ -92,11 +95,13 @@ def known_to_pyplot(drawn: T, place: Place) -> T:
 
 def check_place(**place: Unpack[Place]) -> None:
     """Raise InputError if a figure cannot be drawn there, or not in this size."""
+    for unknown in (name for name in place if name not in KEYWORDS):
+        raise InputError(f"plot: there is no {unknown}=; {nearest(unknown, KEYWORDS)}")
     for name, kinds in (("ax", "axes"), ("figure", "figure")):
         given: Any = place.get(name)
         if given is not None and not hasattr(given, "plot" if name == "ax" else "subplots"):
             raise InputError(f"plot: {name} must be a matplotlib {kinds}, got {shown(given)}")
-    if "ax" in place and len(place) > 1:
+    if place.get("ax") is not None and any(place.get(name) is not None for name in KEYWORDS[1:]):
         raise InputError("plot: axes have their figure, its size and its dpi: leave figure, size and dpi away, or leave ax away")
     size, dpi = (place.get("size"), place.get("dpi"))
     width, height = (1.0, 1.0) if size is None else read_size(size, (1.0, 1.0))
@@ -125,7 +130,7 @@ def read_size(size: tuple[float, float] | str, usual: tuple[float, float], where
             return COLUMNS[text], usual[1]
         sides = _sides_in(text)
     else:
-        sides = tuple(size) if isinstance(size, tuple | list) else ()
+        sides = tuple(size) if isinstance(size, Iterable) else ()
     if len(sides) != 2 or not all(isinstance(side, Real) and math.isfinite(side) for side in sides):
         raise InputError(f"{where}: must be {HOW_TO_SIZE}, got {shown(size)}")
     width, height = (float(side) for side in sides)
@@ -154,7 +159,7 @@ def sheet(usual: tuple[float, float], **place: Unpack[Place]) -> Figure:
     Raises InputError if axes are given: several panels do not fit into them.
     """
     check_place(**place)
-    if "ax" in place:
+    if place.get("ax") is not None:
         raise InputError("plot: this figure has several panels: give an empty figure (figure=...) instead of axes (ax=...)")
     figure = place.get("figure")
     size, dpi = place.get("size"), place.get("dpi")
@@ -172,7 +177,7 @@ def sheet(usual: tuple[float, float], **place: Unpack[Place]) -> Figure:
 
 def one_panel(usual: tuple[float, float], **place: Unpack[Place]) -> Axes:
     """Return the axes to draw one panel in: the user's own, or those of a new figure of the `usual` size (inches)."""
-    if "ax" in place:
+    if place.get("ax") is not None:
         check_place(**place)
         return place["ax"]
     axes: Axes = sheet(usual, **place).subplots()
@@ -181,4 +186,4 @@ def one_panel(usual: tuple[float, float], **place: Unpack[Place]) -> Axes:
 
 def result(axes: Axes, **place: Unpack[Place]) -> Figure | Axes:
     """Return what a figure of one panel gives back: the axes if they were the user's, else the figure."""
-    return axes if "ax" in place else cast("Figure", axes.figure)
+    return axes if place.get("ax") is not None else cast("Figure", axes.figure)

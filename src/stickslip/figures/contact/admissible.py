@@ -181,7 +181,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     )
     _draw_path(axes, dataset, scales)
     axes.legend(loc="best")
-    if "ax" not in place:
+    if place.get("ax") is None:
         set_title(axes, dataset.attrs["title"])
     return result(axes, **place)
 

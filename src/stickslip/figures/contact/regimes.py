@@ -54,7 +54,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     marks.append(Patch(color=IRREGULAR, label="irregular: several at some loads"))
     marks += [curve] if len(dataset["boundary"]) else []
     marks += [Patch(color=PALE, label="problem not valid")] if np.isnan(margin).any() else []
-    add_legend(axes, [*marks, *star], own="ax" in place)
-    if "ax" not in place:
+    add_legend(axes, [*marks, *star], own=place.get("ax") is not None)
+    if place.get("ax") is None:
         set_title(axes, dataset.attrs["title"])
     return result(axes, **place)

@@ -62,6 +62,8 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
     if log:
         # A contact that never sticks slips at widely different rates.
         values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
+    elif name == "traction":
+        values = np.where(settled, values, np.nan)
     state = readings.problem.friction.state
     if name == "state" and state is not None:
         size, text = 1.0, axis_text("state", "", state.unit)

@@ -101,7 +101,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     axes.plot(time, dataset.total.values / size, label=dataset.total.attrs["long_name"], **dashed)
     axes.set(xlabel=f"{dataset.attrs['clock']} ({time_name})", ylabel=f"energy ({unit})", xlim=time[[0, -1]], ylim=(0.0, None))
     # Reversed, the legend has the order of the stack.
-    add_legend(axes, axes.get_legend_handles_labels()[0][::-1], own="ax" in place)
-    if "ax" not in place:
+    add_legend(axes, axes.get_legend_handles_labels()[0][::-1], own=place.get("ax") is not None)
+    if place.get("ax") is None:
         set_title(axes, dataset.attrs["title"])
     return result(axes, **place)

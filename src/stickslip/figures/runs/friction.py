@@ -21,6 +21,6 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     """Draw the friction coefficient against slip from `start` to `end` (s), as papers on laboratory friction do."""
     axes = one_panel((6.4, 3.2), **place)
     draw_friction(axes, readings, interval(readings, start, end), against_slip=True)
-    if "ax" not in place:
+    if place.get("ax") is None:
         set_title(axes, title_of(readings))
     return result(axes, **place)

@@ -25,6 +25,6 @@ def draw(
     axes = one_panel((6.4, 3.0), **place)
     draw_curve(axes, readings, name, (start, end))
     set_time(axes, readings, (start, end))
-    if "ax" not in place:
+    if place.get("ax") is None:
         set_title(axes, title_of(readings))
     return result(axes, **place)

@@ -63,8 +63,8 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
         marks.append(Line2D([], [], linestyle="none", marker="o", markersize=3.5, color=BLUE, label=text))
     marks += missing_marks(axes)
     heading = "" if names is None else names.full + (ENDS if broken else "")
-    add_legend(axes, marks, heading, own="ax" in place)
-    if "ax" not in place:
+    add_legend(axes, marks, heading, own=place.get("ax") is not None)
+    if place.get("ax") is None:
         set_title(axes, str(dataset.attrs.get("title", "")))
     return result(axes, **place)
 

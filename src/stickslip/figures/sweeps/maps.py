@@ -86,8 +86,8 @@ def _draw_all(
         return grid[0].figure
     axes = one_panel((5.4, 4.4), **place)
     draw_one(axes, 0)
-    explain([axes], colours, quantity, *marks, own="ax" in place)
-    if "ax" not in place:
+    explain([axes], colours, quantity, *marks, own=place.get("ax") is not None)
+    if place.get("ax") is None:
         set_title(axes, title)
     return result(axes, **place)
 

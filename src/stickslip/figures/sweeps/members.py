@@ -30,8 +30,8 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     title = str(dataset.attrs.get("title", ""))
     if len(places) == 2:
         axes = one_panel((5.4, 4.4), **place)
-        _draw_points(axes, quantity, places[0], places[1], own="ax" in place)
-        if "ax" not in place:
+        _draw_points(axes, quantity, places[0], places[1], own=place.get("ax") is not None)
+        if place.get("ax") is None:
             set_title(axes, title)
         return result(axes, **place)
     columns = min(len(places), 3)

@@ -58,7 +58,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
     drawing = draw(data(dataset, quantity), **place)
     if path is None:
         return known_to_pyplot(drawing, place)
-    save = partial(styled(drawing.get_figure(root=True).savefig), **({"dpi": place["dpi"]} if "dpi" in place else {}))
+    save = partial(styled(drawing.get_figure(root=True).savefig), **({"dpi": place["dpi"]} if place.get("dpi") is not None else {}))
     write_atomically(Path(path), save)
     return drawing
 
