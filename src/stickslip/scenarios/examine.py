@@ -26,6 +26,8 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
+BARELY_ABOVE = 1.01
+"""Factor (1) up to which the growth of a disturbance is shown as its excess over 1."""
 LARGE_STRAIN = 0.01
 """Shear strain (no unit) beyond which linear elasticity is doubtful, and a warning is due."""
 
@@ -269,7 +271,9 @@ def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
         return []
     rates = [jump.rate_after for jump in contact.jumps if jump.rate_after > 0]
     gains = [abs(body.reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
-    if max(gains, default=0.0) <= 1.0:
+    gain = max(gains, default=0.0)
+    if gain <= 1.0:
         return []
-    growth = f"each echo multiplies a disturbance by up to {max(gains):.6g} at the rates that the rule jumps to"
+    size = f"{gain:.3g}" if gain > BARELY_ABOVE else f"1 + {gain - 1.0:.2g}"
+    growth = f"each echo multiplies a disturbance by up to {size} at the rates that the rule jumps to"
     return [f"{growth}: long catalogues are chaotic beyond a horizon"]
