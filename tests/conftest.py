@@ -1,7 +1,8 @@
-"""Readable names for the cases of parametrised tests, and no deadline for drawn ones."""
+"""Readable names for the cases of parametrised tests, no deadline for drawn ones, and no terminal's width for printed tables."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 
 import numpy as np
@@ -12,6 +13,7 @@ import stickslip as ss
 LONGEST = 60
 """Characters of a name."""
 
+os.environ.pop("COLUMNS", None)  # test runners set it, and tables are as wide as it says
 settings.register_profile("stickslip", deadline=None)  # a slow machine is no failure
 settings.load_profile("stickslip")
 

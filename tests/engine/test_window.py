@@ -204,10 +204,18 @@ def test_events_that_do_not_exist_are_refused(event: int) -> None:
         run.window(event)
 
 
-@pytest.mark.parametrize(("before", "after"), [(-1.0, None), (None, 0.0), (None, np.nan), (np.inf, None)])
-def test_bad_spans_are_refused(before: float | None, after: float | None) -> None:
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        (-1.0, None, "before must be at least 0 s, got -1"),
+        (None, 0.0, "after must be greater than 0 s, got 0"),
+        (None, np.nan, "after must be finite, got nan"),
+        (np.inf, None, "before must be finite, got inf"),
+    ],
+)
+def test_bad_spans_are_refused(before: float | None, after: float | None, message: str) -> None:
     run = ss.simulate(rate_law_slab(), 12.0)
-    with pytest.raises(ss.InputError, match="window: before and after"):
+    with pytest.raises(ss.InputError, match=f"window: {message}"):
         run.window(0, before, after)
 
 

@@ -262,7 +262,8 @@ def test_what_is_no_sweep_is_left_alone(tmp_path: Path, kind: str) -> None:
     else:
         xr.Dataset({"mine": 1}).to_zarr(path, consolidated=False)
     before = files(tmp_path)
-    with pytest.raises(ss.InputError, match="exists and is not the store of a sweep: choose another name"):
+    said = "is a file, where a sweep needs a folder" if kind == "file" else "exists and is not the store of a sweep"
+    with pytest.raises(ss.InputError, match=f"{said}: choose another name"):
         sweep(path)
     assert files(tmp_path) == before
     assert list(tmp_path.iterdir()) == [path]

@@ -69,11 +69,23 @@ PARTS = {
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 
 
+_at_hand: dict[Part, int] = {}
+"""Addresses of the parts that this process has compiled or loaded so far."""
+
+
 def lend_part(memory: Integers, part: Part | None = None) -> None:
     """Write the address of a part into a run's memory, by default of the part for which the engine has asked."""
     run = Run(memory)
     part = Part(run.missing) if part is None else part
-    setattr(run, part.name.lower(), part_at(PARTS[part]))
+    _at_hand[part] = part_at(PARTS[part])
+    setattr(run, part.name.lower(), _at_hand[part])
+
+
+def lend_parts_at_hand(memory: Integers) -> None:
+    """Write the addresses of all parts that are there already into a run's memory, so that it need not return to ask for them."""
+    run = Run(memory)
+    for part, address in _at_hand.items():
+        setattr(run, part.name.lower(), address)
 
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:

@@ -12,7 +12,7 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine.on_demand import lend_part
+from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
@@ -86,6 +86,7 @@ class Session:
 
     def _lend(self) -> None:
         lend(self.memory, self.setup, self.store, self.echoes)
+        lend_parts_at_hand(self.memory)
 
     @property
     def length(self) -> int:

@@ -143,7 +143,7 @@ def lend(memory: Integers, setup: Setup, store: Store, echoes: Integers) -> None
         lend_memory(*tables)
     assert memory.shape == (PLACES,)
     assert all(table.flags.c_contiguous for table in (memory, *tables))
-    memory[:ADDRESSES] = [table.ctypes.data for table in tables]
+    memory[:ADDRESSES] = [table.__array_interface__["data"][0] for table in tables]
     run = Run(memory)
     run.pieces, run.size = setup.constants.shape
     run.branches, run.loads, run.segments = len(setup.branches), len(setup.first_load), len(setup.loading)
