@@ -135,16 +135,11 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 
 # ---- lists that may only become shorter ------------------------------------------------------------------------------------
 
-UPWARD_IN_FUNCTIONS: dict[str, set[str]] = {
-    "scenarios/scenario.py": {"run"},
-    "trajectory/tables.py": {"observables"},
-}
-"""Files that still import from above inside functions, and from where."""
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "creep/stepper.py": {"run"},
     "problem/selection_rule.py": {"contact"},
-    "scenarios/scenario.py": {"run", "solution"},
+    "scenarios/scenario.py": {"solution"},
     "sweeps/execution/cluster.py": {"sweeps.sweep"},
 }
 """Files that name something from above in an annotation only."""
@@ -162,13 +157,13 @@ def test_imports_point_down(path: Path) -> None:
     assert found["eager"] == set()
     name = str(path.relative_to(PACKAGE))
     if name not in LAZY_DOORS:
-        assert found["later"] == UPWARD_IN_FUNCTIONS.get(name, set())
+        assert found["later"] == set()
     assert found["types"] == UPWARD_FOR_TYPES.get(name, set())
 
 
 def test_lists_of_upward_imports_name_files_that_exist() -> None:
     names = {str(path.relative_to(PACKAGE)) for path in FILES}
-    assert set(UPWARD_IN_FUNCTIONS) | set(UPWARD_FOR_TYPES) <= names
+    assert set(UPWARD_FOR_TYPES) <= names
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))

@@ -118,7 +118,7 @@ def test_texts_cannot_move_the_cursor(notebook: Notebook) -> None:
 
 
 def test_a_run_can_be_resumed_with_progress(notebook: Notebook, tmp_path: Any) -> None:
-    CYCLES.run(progress=True, checkpoint=tmp_path / "run.nc")
+    ss.simulate(CYCLES, progress=True, checkpoint=tmp_path / "run.nc")
     ss.resume(tmp_path / "run.nc", "40 years", progress=True)
     assert [texts[-2].split(",")[0] for texts in notebook.shown] == ["simulate: 30 of 30 years", "resume: 40 of 40 years"]
 
@@ -150,7 +150,7 @@ def test_ctrl_c_ends_a_run_that_shows_its_progress(notebook: Notebook, monkeypat
         return handle
 
     sys.modules["IPython.display"].display = display
-    run = CYCLES.run(progress=True)
+    run = ss.simulate(CYCLES, progress=True)
     assert run.status.name == "interrupted"
     assert 3 <= len(run.events) < 7
     assert notebook.shown[0][-1] == ""

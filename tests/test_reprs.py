@@ -208,7 +208,7 @@ def test_notebooks_show_tables(name: str) -> None:
 
 
 def test_results_are_tables_in_notebooks() -> None:
-    run = SOURCES["cycles-block"].run()
+    run = ss.simulate(SOURCES["cycles-block"])
     page = Tables(run._repr_html_())
     assert "events" in page.cells
     assert any(cell.startswith("7, largest slip 0.164279 m, ") for cell in page.cells)

@@ -12,6 +12,7 @@ from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
+from stickslip.run.simulate import simulate
 from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED, STATUSES
 
 from .cases import CASES, SLAB, Case, by_solution, one
@@ -29,7 +30,7 @@ def test_members_equal_the_runs_of_simulate(name: str) -> None:
     members = run_members(case.scenario, values, QUANTITIES)
     assert members.reason == {}
     for n in range(len(members.status)):
-        solution = one(case, values, n).run()
+        solution = simulate(one(case, values, n))
         assert STATUSES[members.status[n]] == solution.status
         expected = by_solution(solution)
         found = {name: column[n] for name, column in members.results.items()}
@@ -135,7 +136,7 @@ def test_one_batch_mixes_drivers_and_contacts_of_every_kind() -> None:
     }
     members = run_members(case.scenario, values, ("slip", "events"))
     for n in range(5):
-        expected = by_solution(one(case, values, n).run())
+        expected = by_solution(simulate(one(case, values, n)))
         assert members.results["events"][n] == expected["events"]
         assert members.results["slip"][n] == pytest.approx(expected["slip"], **ROUNDING)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.scenarios.scenario import Scenario
+import stickslip as ss
 from stickslip.scenarios.templates import template
 from stickslip.trajectory.status import STATUSES
 
@@ -177,7 +177,7 @@ def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, ar
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda *_: False)
-    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
     shown = command("run", "fig6-slab", "--out", "a.nc")
     assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: the folder . is not writable\n")
 
@@ -185,7 +185,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_
 def test_a_write_protected_file_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     (tmp_path / "a.nc").touch()
     monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda path, mode: Path(path).is_dir() or mode != os.W_OK)
-    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
     shown = command("run", "fig6-slab", "--out", "a.nc")
     assert (shown.code, shown.err) == (2, "stickslip: --out a.nc: exists and is write-protected: choose another name\n")
 
@@ -195,7 +195,7 @@ def test_a_folder_that_refuses_files_is_found_before_the_run(command, monkeypatc
         raise OSError(30, "Read-only file system")
 
     monkeypatch.setattr("stickslip.cli.output.files.TemporaryFile", refuses)
-    monkeypatch.setattr(Scenario, "run", lambda *_: pytest.fail("ran"))
+    monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
     shown = command("run", "fig6-slab", "--figure", "a.png")
     assert (shown.code, shown.out) == (2, "")
     assert shown.err == "stickslip: --figure a.png: nothing can be written in the folder .: Read-only file system\n"
@@ -205,7 +205,7 @@ def test_ctrl_c_gives_one_line(command, monkeypatch: pytest.MonkeyPatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Scenario, "run", interrupted)
+    monkeypatch.setattr("stickslip.run.simulate.simulate", interrupted)
     shown = command("run", "fig6-slab")
     assert (shown.code, shown.out, shown.err) == (130, "", "stickslip: interrupted\n")
 
@@ -225,14 +225,14 @@ def test_a_full_disk_gives_one_line_and_leaves_no_half_file(command, tmp_path: P
 
 @pytest.mark.parametrize("status", [status for status in STATUSES.values() if not status.ok], ids=lambda status: status.name)
 def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: pytest.MonkeyPatch, status):
-    original = Scenario.run
+    original = ss.simulate
 
-    def failing(self, progress=None, **keep):
-        solution = original(self, progress, **keep)
+    def failing(scenario, **keep):
+        solution = original(scenario, **keep)
         object.__setattr__(solution, "status", status)
         return solution
 
-    monkeypatch.setattr(Scenario, "run", failing)
+    monkeypatch.setattr("stickslip.run.simulate.simulate", failing)
     shown = command("run", "fig6-slab")
     assert shown.code == (130 if status.name == "interrupted" else 1)
     assert status.message in shown.out

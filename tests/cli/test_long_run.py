@@ -139,7 +139,7 @@ def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.Monkey
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "interrupted: stopped by the user" in shown.out
     scenario = ss.load_scenario("rate-and-state-block")
-    whole = scenario.run()
+    whole = ss.simulate(scenario)
     if option[0] == "--out":
         assert 2 <= len(ss.open_solution("run.nc").events) < len(whole.events)
         assert command("run", "--resume", "run.nc").code == 0

@@ -74,7 +74,7 @@ def test_a_unique_rate_has_no_loop():
 
 
 def test_a_run_encloses_the_area_of_the_loop():
-    solution = ss.load_scenario("fig4-loop").run()
+    solution = ss.simulate("fig4-loop")
     (time, rate), (_, load) = solution.curve("slip_rate", points=20_001), solution.curve("load", points=20_001)
     area = float(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(rate)))
     assert time[-1] > 5.3

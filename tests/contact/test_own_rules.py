@@ -61,7 +61,7 @@ def test_a_registered_rule_is_named_in_scenarios(tmp_path: Path):
     with pytest.raises(ss.InputError, match=r"mine\.toml: \[run\] selection 'half-way' is unknown; .* or a registered one"):
         ss.load_scenario(tmp_path / "mine.toml")
     ss.selection.register("half-way", halfway)
-    solution = ss.load_scenario(tmp_path / "mine.toml").run()
+    solution = ss.simulate(tmp_path / "mine.toml")
     assert solution.problem.rule == "half-way"
     assert replace(solution.problem, selection=halfway) == solution.problem  # a registered function is kept by its name
 

@@ -115,7 +115,7 @@ def test_slip_in_an_event_keeps_its_digits_after_much_slip() -> None:
 
 
 def test_cycles_of_a_healing_block_are_all_alike() -> None:
-    run = ss.load_scenario("cycles-block").run()
+    run = ss.simulate("cycles-block")
     events = run.events
     assert len(events) > 5
     assert np.ptp(events.slip[1:]) <= 1e-12 * events.slip[1]

@@ -8,7 +8,7 @@ import pytest
 import stickslip as ss
 from stickslip.io.sampling import sample
 
-RUN = ss.load_scenario("fig6-slab").run()
+RUN = ss.simulate("fig6-slab")
 HEIGHT = 1e4
 
 

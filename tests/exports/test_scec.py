@@ -54,14 +54,14 @@ def test_all_components_of_the_benchmarks_can_be_written(tmp_path: Path) -> None
 
 
 def test_slip_counts_from_the_start(tmp_path: Path) -> None:
-    run = ss.load_scenario("fig5-slab-reconstructed").run()
+    run = ss.simulate("fig5-slab-reconstructed")
     _, _, numbers = read(run.to_scec(tmp_path / "a.txt", 10.0))
     assert numbers[0, 1] == 0.0
     assert numbers[-1, 1] == pytest.approx(0.376105283, rel=2e-9, abs=0.0)
 
 
 def test_a_window_is_written_in_local_time(tmp_path: Path) -> None:
-    late = ss.load_scenario("second-event-maxwell").run()
+    late = ss.simulate("second-event-maxwell")
     header, _, numbers = read(late.window(1).to_scec(tmp_path / "late.txt", 100.0, start=0.0, end=3.0))
     assert "round trips" in header["origin"]
     assert (numbers[0, 0], numbers[0, 1], len(numbers)) == (0.0, 0.0, 301)
@@ -78,12 +78,12 @@ def test_the_file_has_the_times_that_were_asked_for() -> None:
 def test_the_filter_keeps_what_is_slow_and_the_slip_of_what_is_fast() -> None:
     """Pulses some hundredths of a second long, sampled 5 times a second: samples miss them, the filtered ones hold their slip."""
     pytest.importorskip("scipy")
-    run = ss.load_scenario("fig5-slab-reconstructed").run()
+    run = ss.simulate("fig5-slab-reconstructed")
     raw, filtered = (sample(run, 5.0, start=1.0, end=8.0, antialias=wanted) for wanted in (False, True))
     slip = float(run.slip(8.0) - run.slip(1.0))
     assert filtered.slip_rate.sum() / 5.0 == pytest.approx(slip, rel=0.01, abs=0.0)
     assert raw.slip_rate.sum() / 5.0 != pytest.approx(slip, rel=0.2, abs=0.0)
-    slow = ss.load_scenario("block-or-slab").run()
+    slow = ss.simulate("block-or-slab")
     raw, filtered = (sample(slow, 20.0, end=23.0, antialias=wanted) for wanted in (False, True))
     np.testing.assert_allclose(filtered.slip[20:-20], raw.slip[20:-20], rtol=0.0, atol=1e-3 * float(raw.slip.max()))
 

@@ -11,7 +11,7 @@ import pytest
 import stickslip as ss
 from stickslip.io.seismogram import band
 
-RUN = ss.load_scenario("fig6-slab").run()
+RUN = ss.simulate("fig6-slab")
 TIME = np.arange(601) / 50.0
 
 needs_obspy = pytest.mark.filterwarnings("default::DeprecationWarning", "default::UserWarning")

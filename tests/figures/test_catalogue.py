@@ -22,7 +22,7 @@ UNIT = re.compile(r"\((year|day|s|ms|µs|m|mm|µm|nm)\)$")
 
 @pytest.fixture(scope="module")
 def cycles() -> ss.Solution:
-    return ss.load_scenario("cycles-block").run()
+    return ss.simulate("cycles-block")
 
 
 def panel(figure: Figure, name: str) -> mpl.axes.Axes:

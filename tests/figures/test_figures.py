@@ -102,7 +102,7 @@ def test_a_run_is_drawn_over_its_set() -> None:
 
 def test_under_a_slip_law_the_run_is_drawn_over_the_set_of_each_slip() -> None:
     """Each set and each point in slip satisfy load = Z v + S (mu0 + a sin(omega u)) at their own slip: relative 1e-9."""
-    run = ss.load_scenario("fig5-slab-reconstructed").run()
+    run = ss.simulate("fig5-slab-reconstructed")
     data = admissible.data(run.problem, run)
 
     def load(slip: np.ndarray, rate: np.ndarray) -> np.ndarray:

@@ -62,7 +62,7 @@ def test_images_are_means_over_their_cells(run: ss.Solution) -> None:
 
 def test_no_pulse_falls_between_the_columns() -> None:
     """Pulses of 20 ms in columns of 13 ms: each column of the image has the slip of its time; samples do not (1e-2)."""
-    run = PULSES.run()
+    run = ss.simulate(PULSES)
     dataset = space_time.data(run)
     step, x = float(dataset.time[1] - dataset.time[0]), float(dataset.x[0])
     passed = np.diff(run.field(x, dataset.time.values[:-1] + 0.5 * step).displacement)
@@ -114,7 +114,7 @@ def test_a_long_run_is_shown_around_an_event() -> None:
 
 @pytest.mark.parametrize("name", ["rate law", "pulses", "laboratory"])
 def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -> None:
-    shown = {"rate law": run, "pulses": PULSES.run(), "laboratory": LABORATORY.run()}[name]
+    shown = {"rate law": run, "pulses": ss.simulate(PULSES), "laboratory": ss.simulate(LABORATORY)}[name]
     figure = shown.plot.field()
     assert len(figure.axes) == 6  # with two colour bars
     assert without_unit(figure) == []

@@ -46,7 +46,7 @@ def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float
 
 def test_a_far_stress_is_drawn_in_its_unit() -> None:
     scenario = ss.load_scenario("stress-pulse-slab")
-    figure = draw(scenario.run())
+    figure = draw(ss.simulate(scenario))
     time, stress = figure.axes[3].lines[0].get_xydata().T
     assert figure.axes[3].get_ylabel() == "far stress\n(MPa)"
     assert dict(zip(time, stress, strict=True))[2.0] == pytest.approx(6.06, rel=1e-12)

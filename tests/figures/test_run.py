@@ -21,7 +21,7 @@ NEVER_STICK = ["velocity-steps-block", "slide-hold-slide-block", "rate-and-state
 
 @cache
 def run(name: str) -> ss.Solution:
-    return ss.load_scenario(name).run()
+    return ss.simulate(name)
 
 
 def panel(figure: Figure, text: str, across: str = "time") -> Axes:

@@ -83,17 +83,17 @@ def test_titles_of_users_are_never_read_as_formulas(title: str) -> None:
 
 def test_the_title_is_that_of_the_scenario_and_survives_a_file(tmp_path: Path) -> None:
     scenario = ss.load_scenario("fig6-slab")
-    run = scenario.run()
+    run = ss.simulate(scenario)
     assert run.plot().get_suptitle() == run.window(0).plot().get_suptitle() == scenario.title != ""
     again = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
     assert again.plot.slip().axes[0].get_title(loc="left") == scenario.title
     untitled = replace(scenario, title="")
-    assert untitled.run().title == "fig6-slab"
+    assert ss.simulate(untitled).title == "fig6-slab"
     assert ss.simulate(SLAB_PROBLEM, 1.0, title="mine").plot().get_suptitle() == "mine"
 
 
 def test_a_resumed_run_keeps_its_title(tmp_path: Path) -> None:
-    replace(ss.load_scenario("fig6-slab"), duration=3.0).run(checkpoint=tmp_path / "run.nc")
+    ss.simulate("fig6-slab", 3.0, checkpoint=tmp_path / "run.nc")
     assert ss.resume(tmp_path / "run.nc", 4.0).title == ss.load_scenario("fig6-slab").title  # type: ignore[union-attr]
 
 

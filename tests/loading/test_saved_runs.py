@@ -59,15 +59,15 @@ def test_a_saved_run_gives_the_same_values(problem: ss.Problem, tmp_path: Path) 
 
 
 def test_a_run_says_how_it_is_loaded() -> None:
-    said = repr(ss.load_scenario("stress-pulse-slab").run())
+    said = repr(ss.simulate("stress-pulse-slab"))
     assert "loading   pull rate 0 m/s, far stress piecewise-linear, 5.9 MPa at first, initial load 5.9 MPa" in said
-    said = repr(ss.load_scenario("tides-block").run())
+    said = repr(ss.simulate("tides-block"))
     assert "loading   pull rate sinusoidal, 0.035 m/year at first, initial load 59 TN" in said
-    assert "loading   pull rate 0.05 m/year, initial load 80 MPa" in repr(ss.load_scenario("fig6-slab").run())
+    assert "loading   pull rate 0.05 m/year, initial load 80 MPa" in repr(ss.simulate("fig6-slab"))
 
 
 def test_an_export_says_how_it_is_loaded(tmp_path: Path) -> None:
-    run = ss.load_scenario("stress-pulse-slab").run()
+    run = ss.simulate("stress-pulse-slab")
     head = run.to_scec(tmp_path / "wave.txt", 10.0).read_text(encoding="utf-8").splitlines()
     assert "# pull_rate=0 m/s" in head
     assert "# far_stress=piecewise-linear, 5.9 MPa at first" in head

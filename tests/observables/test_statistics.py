@@ -32,7 +32,7 @@ def test_statistics_agree_with_those_worked_out_by_hand() -> None:
 
 
 def test_equal_values_follow_each_other_without_correlation() -> None:
-    found = ss.studies.catalogue_statistics(ss.load_scenario("cycles-block").run().events)
+    found = ss.studies.catalogue_statistics(ss.simulate("cycles-block").events)
     assert found.variation["recurrence"] < 1e-9
     assert found.variation["slip"] < 1e-9
     assert np.isnan(found.next["recurrence"])
@@ -51,6 +51,6 @@ def test_too_few_events_give_missing_values() -> None:
 
 
 def test_energies_are_described_where_the_table_has_them() -> None:
-    run = ss.load_scenario("cycles-block").run()
+    run = ss.simulate("cycles-block")
     found = ss.studies.catalogue_statistics(run.catalogue(energy=True))
     assert found.loc["released", "variation"] < 1e-9

@@ -16,7 +16,7 @@ YEAR = 31_557_600.0
 
 
 def first_event(name: str) -> pd.Series:
-    solution = load_scenario(name).run()
+    solution = ss.simulate(name)
     assert solution.status.ok
     return solution.catalogue(event_rate=0.0).iloc[0]
 
@@ -51,11 +51,11 @@ def test_the_printed_slab_under_constant_load_peaks_at_the_closed_form() -> None
     scenario = load_scenario("fig5-slab-u0-1e-2")
     still = replace(scenario, problem=replace(scenario.problem, pull_rate=0.0))
     expected = 9.8e6 / (2.5e8 * math.tan(0.025))
-    assert still.run().events.peak_time[0] == pytest.approx(expected, rel=1e-9, abs=0)
+    assert ss.simulate(still).events.peak_time[0] == pytest.approx(expected, rel=1e-9, abs=0)
 
 
 def test_the_shocks_of_figure_6_have_their_closed_form() -> None:
-    start, end = load_scenario("fig6-slab").run().shocks.itertuples()
+    start, end = ss.simulate("fig6-slab").shocks.itertuples()
     assert start.rate_after == pytest.approx(0.402 / 0.098, rel=1e-9, abs=0)  # (alpha / alpha_c - 1) / alpha, pulled a little
     assert start.traction_after == pytest.approx(39_800_000, rel=1e-9, abs=0)
     assert end.time == pytest.approx(R, rel=1e-15, abs=0)
@@ -64,7 +64,7 @@ def test_the_shocks_of_figure_6_have_their_closed_form() -> None:
 
 def test_the_cycles_of_the_block_are_all_alike() -> None:
     scenario = load_scenario("cycles-block")
-    run = scenario.run()
+    run = ss.simulate(scenario)
     events = run.events
     assert len(events) == 7
     assert events.slip.max() == pytest.approx(0.164279, rel=0, abs=5e-7)
@@ -79,7 +79,7 @@ def test_the_cycles_of_the_block_are_all_alike() -> None:
 def test_the_cycles_of_the_slab_do_not_depend_on_the_tolerance() -> None:
     """Small slips lead in each main one; main slips do not depend on the tolerance, so they are not chaos of rounding."""
     scenario = load_scenario("cycles-slab")
-    runs = [replace(scenario, rtol=rtol).run() for rtol in (1e-10, 1e-13)]
+    runs = [ss.simulate(replace(scenario, rtol=rtol)) for rtol in (1e-10, 1e-13)]
     main = [(events := run.catalogue(event_rate=0.0))[events.slip > 1e-5] for run in runs]
     assert len(main[0]) == 7
     assert main[0].slip.between(2.0e-5, 2.5e-5).all()
@@ -101,7 +101,7 @@ def peaks(solution: ss.Solution, low: float, high: float) -> float:
 
 def test_velocity_steps_end_in_steady_sliding() -> None:
     """Friction before each step is that of steady sliding, (a - b) ln 10 less a decade; the peaks are those of the description."""
-    run = load_scenario("velocity-steps-block").run()
+    run = ss.simulate("velocity-steps-block")
     law, pull = run.problem.friction, run.problem.pull_rate
     for time, rate in zip((*pull.times[1:], run.duration), pull.values, strict=True):
         coefficient = float(run.traction(time, side="left")) / run.problem.normal
@@ -117,7 +117,7 @@ def test_holds_heal_friction() -> None:
     sliding = 0.6 - 0.003 * math.log(10.0)
     slip_law = replace(scenario.problem, friction=replace(scenario.problem.friction, evolution="slip"))
     grown = {}
-    for name, run in (("ageing", scenario.run()), ("slip", replace(scenario, problem=slip_law).run())):
+    for name, run in (("ageing", ss.simulate(scenario)), ("slip", ss.simulate(replace(scenario, problem=slip_law)))):
         begins = [one.start for one in run.problem.pull_rate.segments][2::2]
         grown[name] = [peaks(run, begin, begin + 30.0) - sliding for begin in begins]
     assert grown["ageing"] == pytest.approx([0.024, 0.052, 0.082], rel=0, abs=5e-4)
@@ -127,7 +127,7 @@ def test_holds_heal_friction() -> None:
 
 def test_tides_choose_the_hour() -> None:
     """The strength is reached when the spring's own load, in closed form, gets there first: a root finder says when."""
-    run = load_scenario("tides-block").run()
+    run = ss.simulate("tides-block")
     problem, events = run.problem, run.catalogue(event_rate=0.0)
     pull, stiffness = problem.pull_rate, problem.body.stiffness
     assert len(events) == 7
@@ -146,12 +146,12 @@ def test_tides_choose_the_hour() -> None:
 
 def test_each_crest_of_a_passing_wave_triggers_slip() -> None:
     scenario = load_scenario("stress-pulse-slab")
-    run = scenario.run()
+    run = ss.simulate(scenario)
     assert run.events.start.tolist() == pytest.approx([2.375, 6.499], rel=0, abs=5e-4)
     assert run.events.start[0] == pytest.approx(2.375, rel=1e-13, abs=0)  # 0.7143 * 0.16 MPa/s from 1.5 s on
     assert run.events.duration.tolist() == pytest.approx([1.0, 1.0], rel=1e-9, abs=0)  # until its echo is back
     assert run.events.slip.tolist() == pytest.approx([0.075, 0.0705], rel=0, abs=5e-4)
-    alone = replace(scenario, problem=replace(scenario.problem, far_stress=None)).run()
+    alone = ss.simulate(replace(scenario, problem=replace(scenario.problem, far_stress=None)))
     assert alone.catalogue(event_rate=0.0).empty
 
 
@@ -163,13 +163,13 @@ def _last_place(value: float) -> int:
 
 @pytest.mark.parametrize("name", ["fig5-block-printed", "fig6-block-printed", "fig7-block-critical"])
 def test_printed_and_critical_blocks_have_no_macroscopic_event(name: str) -> None:
-    solution = load_scenario(name).run()
+    solution = ss.simulate(name)
     assert solution.status.ok
     assert solution.catalogue(event_rate=0.0).slip.max() < 8e-3
 
 
 def test_the_loop_of_figure_4_jumps_at_its_folds() -> None:
-    solution = load_scenario("fig4-loop").run()
+    solution = ss.simulate("fig4-loop")
     assert solution.shocks.cause.tolist() == ["fold", "fold"]
     assert solution.load(R / 2) == pytest.approx(85.48e6, rel=1e-12, abs=0)
     up, down = solution.shocks.itertuples()
@@ -183,7 +183,7 @@ def test_the_loop_of_figure_4_jumps_at_its_folds() -> None:
     ("rule", "years"), [("perfect-delay", 468.80466), ("minimal", 468.80466), ("maxwell", 394.26), ("maximal", 378.26)]
 )
 def test_the_second_event_tells_the_rules_apart(rule: str, years: float) -> None:
-    events = load_scenario(f"second-event-{rule}").run().events
+    events = ss.simulate(f"second-event-{rule}").events
     place = 5e-6 if years == 468.80466 else 5e-3
     assert (events.start[1] - events.end[0]) / YEAR == pytest.approx(years, rel=0, abs=1.1 * place)
     assert math.isclose(events.slip[0], 23.4402332474, rel_tol=1e-11)

@@ -106,7 +106,7 @@ def test_a_whole_number_beyond_all_floats_is_refused() -> None:
 
 
 def test_a_dataset_larger_than_memory_is_refused() -> None:
-    solution = load_scenario("fig6-slab").run()
+    solution = ss.simulate("fig6-slab")
     with pytest.raises(ss.InputError, match=r"dataset: 2e\+08 values are too many"):
         solution.to_dataset(np.broadcast_to(1.0, 200_000_000))
     with pytest.raises(ss.InputError, match="times must be finite numbers"):
@@ -116,7 +116,7 @@ def test_a_dataset_larger_than_memory_is_refused() -> None:
 def test_a_run_of_too_many_round_trips_is_refused() -> None:
     scenario = read_scenario(SLAB.replace('"10 km"', "4e-24"), "my.toml")
     with pytest.raises(ss.InputError, match=r"duration must be at most 2.06e-11 s, 2\^53 round trips of 2.29e-27 s, got 12 s"):
-        scenario.run()
+        ss.simulate(scenario)
     with pytest.raises(ss.InputError, match=r"duration must be at most 5.15e\+16 s"):
         ss.simulate(read_scenario(SLAB, "my.toml").problem, 1e30)
 

@@ -110,7 +110,7 @@ def test_a_folder_tells_its_scenarios(tmp_path: Path):
 
 def test_results_are_told_from_scenarios(tmp_path: Path):
     run, sweep, table = tmp_path / "run.nc", tmp_path / "map.zarr", tmp_path / "points.csv"
-    load_scenario("fig6-slab").run().to_netcdf(run)
+    ss.simulate("fig6-slab").to_netcdf(run)
     assert refusal(run).startswith("a file of results, not a scenario: `stickslip show` summarises it, and")
     renamed = run.rename(tmp_path / "run.toml")
     assert refusal(renamed).startswith("a file of results, not a scenario")

@@ -80,7 +80,7 @@ def test_the_file_says_where_it_comes_from(fig6: Comparison, tmp_path: Path) -> 
 
 def test_compare_accepts_files_scenarios_and_solutions(tmp_path: Path) -> None:
     scenario = ss.load_scenario("fig6-slab")
-    saved = scenario.run().to_netcdf(tmp_path / "saved.nc")
+    saved = ss.simulate(scenario).to_netcdf(tmp_path / "saved.nc")
     found = compare(saved, "fig6-slab", scenario, ss.open_solution(saved))
     assert list(found.runs) == ["saved", "fig6-slab", "fig6-slab (2)", "run"]
     assert found.table.slip.nunique() == 1
@@ -125,7 +125,7 @@ def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
 
 
 def test_runs_of_very_different_lengths_share_no_seconds() -> None:
-    runs = {"short": ss.load_scenario("fig6-slab").run(), "long": ss.load_scenario("second-event-maxwell").run()}
+    runs = {"short": ss.simulate("fig6-slab"), "long": ss.simulate("second-event-maxwell")}
     dataset = data(Comparison(runs))
     assert dataset.attrs["shares"] == 1
     assert float(dataset.run1_slip_time.max()) == 1.0
@@ -135,7 +135,7 @@ def test_runs_of_very_different_lengths_share_no_seconds() -> None:
 
 def test_runs_of_different_size_share_an_axis_in_one_unit() -> None:
     """In units of their own, 0.27 m/s of the block would look larger than 4.1 m/s of the slab."""
-    runs = {name: ss.load_scenario(name).run() for name in ("cycles-block", "fig6-slab")}
+    runs = {name: ss.simulate(name) for name in ("cycles-block", "fig6-slab")}
     slip_rate = Comparison(runs).plot().axes[1]
     assert slip_rate.get_ylabel() == "slip rate $v$ (m/s)"
     tops = [float(np.max(line.get_ydata())) for line in slip_rate.get_lines()[:2]]
@@ -153,7 +153,7 @@ def test_very_different_sizes_are_seen_on_a_logarithmic_axis() -> None:
 
 
 def test_runs_without_later_events_end_together() -> None:
-    early, late = (ss.load_scenario("fig6-slab").run() for _ in range(2))
+    early, late = (ss.simulate("fig6-slab") for _ in range(2))
     short = ss.simulate(early.problem, 6.5)
     dataset = data(Comparison({"short": short, "long": late}))
     assert float(dataset.run0_slip_time.max()) == float(dataset.run1_slip_time.max()) == 6.5
@@ -163,7 +163,7 @@ def test_runs_without_later_events_end_together() -> None:
 
 
 def test_one_event_of_each_run_is_shown_in_local_time() -> None:
-    runs = {rule: ss.load_scenario(f"second-event-{rule}").run() for rule in ("maxwell", "maximal")}
+    runs = {rule: ss.simulate(f"second-event-{rule}") for rule in ("maxwell", "maximal")}
     dataset = data(Comparison(runs, 1))
     assert (dataset.attrs["shares"], dataset.attrs["local"]) == (0, 1)
     longest = max(run.events.duration.iloc[1] for run in runs.values())

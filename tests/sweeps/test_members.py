@@ -93,7 +93,7 @@ def test_a_parameter_of_an_expression_keeps_its_unit() -> None:
 @pytest.mark.parametrize("name", ["cycles-block", "cycles-slab"])
 def test_quantities_are_those_of_the_solution(name: str) -> None:
     scenario = load_scenario(name)
-    solution = scenario.run()
+    solution = ss.simulate(scenario)
     events, between = solution.events, np.diff(solution.events.start)
     parts = energy(solution.history, scenario.duration)
     of_run = {
@@ -142,7 +142,7 @@ def pieces(solution: ss.Solution) -> int:
 def test_users_may_define_a_quantity() -> None:
     dataset = ss.sweep(PULSES, {"thickness": ["5 km", "10 km"]}, quantities=["slip", ("pieces", "1", pieces)])
     assert dataset.pieces.values.tolist() == [
-        pieces(make_plan(PULSES, {"thickness": [1]}).work.member({"body.thickness": h}).run()) for h in (5e3, 10e3)
+        pieces(ss.simulate(make_plan(PULSES, {"thickness": [1]}).work.member({"body.thickness": h}))) for h in (5e3, 10e3)
     ]
     assert dataset.pieces.attrs["units"] == "1"
 
@@ -151,7 +151,7 @@ def test_series_are_curves_at_the_same_times() -> None:
     dataset = ss.sweep(
         PULSES, {"run.duration": [2.0, 6.0]}, quantities="slip", series=["slip", "slip_rate", "traction"], samples=13
     )
-    solution = PULSES.run()
+    solution = ss.simulate(PULSES)
     time = dataset.time.values
     assert time.tolist() == np.linspace(0.0, 6.0, 13).tolist()
     assert dataset.series_slip.dims == ("run.duration", "time")

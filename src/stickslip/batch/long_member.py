@@ -13,11 +13,11 @@ import numpy as np
 
 from stickslip.batch.kernels.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.observables.event_stream import EventStream
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.event_stream import EventStream
 from stickslip.trajectory.status import INTERRUPTED
 from stickslip.trajectory.tables import default_event_rate
 

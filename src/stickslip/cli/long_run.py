@@ -99,7 +99,9 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         chosen = request.load()
         request.pictures.check_problem(chosen.problem)
         with _watched(request, chosen.problem, chosen.name) as report:
-            return chosen, chosen.run(report, **keep)
+            from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
+
+            return chosen, simulate(chosen, progress=report, **keep)
     from stickslip.io.netcdf import open_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run

@@ -15,6 +15,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
+from stickslip.observables.event_stream import EventStream, Look
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
@@ -23,7 +24,6 @@ from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_opti
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
 from stickslip.run.session import Session
-from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note
 

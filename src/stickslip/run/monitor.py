@@ -10,12 +10,12 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol, Self, TypeVar
 
 from stickslip.foundation.errors import InputError
+from stickslip.observables.event_stream import EventStream, Look
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Reporter
 from stickslip.run.run_loop import NowAndThen, repeat, run_loop
 from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
-from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import ENOUGH_EVENTS, INTERRUPTED, STATUSES
 from stickslip.trajectory.tables import default_event_rate
 

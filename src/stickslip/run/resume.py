@@ -13,6 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
+from stickslip.observables.event_stream import Place
 from stickslip.run.catalogue import Catalogue, alone_with, follow
 from stickslip.run.monitor import run_to_end, stream_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
@@ -22,7 +23,6 @@ from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import engine
-from stickslip.trajectory.event_stream import Place
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.conversion import WithUnit
+from stickslip.observables.event_stream import EventStream, Look
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
@@ -14,7 +15,6 @@ from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.event_stream import EventStream, Look
 from stickslip.trajectory.status import UNDER_WAY
 
 if TYPE_CHECKING:

@@ -30,7 +30,6 @@ from stickslip.scenarios.toml_faults import why_not_toml
 from stickslip.scenarios.values import show
 
 if TYPE_CHECKING:
-    from stickslip.run.progress import Progress
     from stickslip.solution.solution import Solution
 
 UNNAMED = "scenario"
@@ -108,25 +107,6 @@ class Scenario:
             title=solution.title,
             name=name,
         )
-
-    def run(self, progress: Progress | bool | None = None, **keep: Any) -> Solution:
-        """Simulate the scenario.
-
-        Parameters
-        ----------
-        progress : bool or callable, optional
-            True shows the progress in one line; a function is called with it (see `stickslip.simulate`).
-        **keep
-            Further arguments of `stickslip.simulate`, such as `checkpoint`.
-
-        Returns
-        -------
-        Solution
-            The run.
-        """
-        from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
-
-        return simulate(self, progress=progress, **keep)
 
     def to_toml(self) -> str:
         """Return the scenario as TOML text, with every value in SI and to the last digit."""

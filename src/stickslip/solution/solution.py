@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
+from stickslip.observables.event_table import events_table
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
@@ -20,7 +21,7 @@ from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
 from stickslip.trajectory.status import Status
-from stickslip.trajectory.tables import creep_note, creep_table, default_event_rate, events_table
+from stickslip.trajectory.tables import creep_note, creep_table, default_event_rate
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -18,6 +18,7 @@ from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
+from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
@@ -72,7 +73,7 @@ def read_source(source: str | Path | Scenario | Solution, duration: float | None
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = source if isinstance(source, Scenario) else load_scenario(source)
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
-    return Source(scenario.name, lambda progress: uninterrupted(changed.run(progress)))
+    return Source(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,7 +10,10 @@ from pathlib import Path
 from stickslip.engine.codegen.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers
 
-DECIDE = ("batch", "bodies", "contact", "creep", "engine", "engine_input", "friction", "loading", "run", "solution", "trajectory")
+DECIDE = (
+    *("batch", "bodies", "contact", "creep", "engine", "engine_input"),
+    *("friction", "loading", "observables", "run", "solution", "trajectory"),
+)
 """Folders of the package whose code decides the result of a run."""
 
 

@@ -59,24 +59,6 @@ def default_event_rate(problem: Problem) -> float:
     return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
 
 
-def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
-    """Return a table with one row per maximal interval in which |slip rate| exceeds the threshold (m/s).
-
-    The columns are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`.
-    """
-    return with_energies(history, SlipEvents.of(history, threshold), energies)
-
-
-def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.DataFrame:
-    """Return a table with one row per event, including the energies if they are wanted."""
-    import pandas as pd
-
-    from stickslip.observables.energy.balance import event_energies
-
-    table = pd.DataFrame(event_columns(history, events))
-    return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
-
-
 def event_columns(history: History, events: SlipEvents) -> Columns:
     """Return the columns of EVENT_COLUMNS, with one row per event."""
     begin, peak, end = events.begin, events.peak, events.end

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.batch import run_members, why_not
 from stickslip.foundation.errors import InputError
+from stickslip.run.simulate import simulate
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.sweeps.design.axis import Values
@@ -182,7 +183,7 @@ def one_by_one(work: Work, values: Mapping[str, Values]) -> ChunkResult:
 def _run_one(work: Work, values: dict[str, float | str], result: ChunkResult, i: int) -> None:
     """Run one member and enter its results. Raises KeyboardInterrupt on Ctrl-C, and whatever a quantity raises."""
     try:
-        solution = work.member(values).run(max_pieces=MAX_PIECES)
+        solution = simulate(work.member(values), max_pieces=MAX_PIECES)
     except InputError as error:
         result.fail(i, BAD_PARAMETERS, str(error))
         return

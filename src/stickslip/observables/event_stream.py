@@ -13,10 +13,10 @@ import numpy as np
 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Integers, Store
+from stickslip.observables.event_table import with_energies
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
-from stickslip.trajectory.tables import with_energies
 
 if TYPE_CHECKING:
     import pandas as pd
