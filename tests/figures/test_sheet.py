@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import struct
 import sys
 from functools import cache
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -74,10 +76,13 @@ def test_a_figure_of_the_user_is_drawn_in_and_keeps_its_size(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ONE_PANEL + PANELS)
-def test_size_and_dpi_are_those_asked_for(name: str) -> None:
+def test_size_and_dpi_are_those_asked_for(name: str, tmp_path: Path) -> None:
     figure = plot(name, size=(4.0, 5.0), dpi=150)
     assert figure.get_size_inches().tolist() == [4.0, 5.0]
     assert figure.dpi == 150
+    figure.savefig(tmp_path / "figure.png")
+    width, height = struct.unpack(">2I", (tmp_path / "figure.png").read_bytes()[16:24])  # of the image header, in dots
+    assert (width, height) == (600, 750)
     assert plot(name, figure=Figure(), size="10 x 12.7 cm").get_size_inches() == pytest.approx([10 / 2.54, 5.0], rel=1e-15)
 
 

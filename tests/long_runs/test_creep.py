@@ -159,7 +159,7 @@ from stickslip.run import run_loop
 signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
 run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
 problem = ss.load_scenario("fig5-slab-printed").problem
-ss.simulate(problem, 20 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
+ss.simulate(problem, 200 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """
 
 

@@ -165,7 +165,7 @@ def sheet(usual: tuple[float, float], **place: Unpack[Place]) -> Figure:
     size, dpi = place.get("size"), place.get("dpi")
     ours = figure is None or (isinstance(figure, StickslipFigure) and not figure.axes)
     if figure is None:
-        figure = StickslipFigure()
+        figure = StickslipFigure(dpi=dpi)  # a resolution that is set later does not count when the figure is saved
     if isinstance(figure, Figure):
         if ours or size is not None:
             figure.set_size_inches(*(usual if size is None else read_size(size, usual)))
