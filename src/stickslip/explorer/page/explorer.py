@@ -1,0 +1,105 @@
+"""One open page: the setting of its controls, the answer that is shown, and what listens to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, Protocol
+
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.setting import Setting
+from stickslip.foundation.errors import InputError
+
+News = Literal["setting", "answer", "fault", "progress", "pin", "cursor"]
+"""What the parts of a page can listen to."""
+
+
+class Desk(Protocol):
+    """Where the work of one page is done, so that it does not wait: at most one piece of work at a time, and the latest counts."""
+
+    def ask(
+        self, work: Callable[[Callable[[str], None]], Any], done: Callable[[Any], None], failed: Callable[[Exception], None]
+    ) -> None:
+        """Begin `work` beside the page and drop work that is under way or waits; then call `done` or `failed` on the page."""
+
+    def stop(self) -> None:
+        """Stop the work that is under way; what it has calculated so far is its result."""
+
+
+class Explorer:
+    """The centre of a page. Parts of it change the setting here, and are told here of the answer.
+
+    Attributes
+    ----------
+    setting : Setting
+        What the controls hold. It is always one that could be read: a bad entry never gets here.
+    answer : Answer or None
+        The answer that is shown, None before the first one.
+    fault : str
+        What was wrong with the last entry, in one line; "" if nothing was.
+    progress : str
+        One line on work that is under way; "" if there is none.
+    pinned : tuple of (Setting, Answer), or None
+        The run with which the shown one is compared.
+    cursor : float
+        The time (s) at which all panels show the cursor.
+    """
+
+    def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer]) -> None:
+        self.setting, self.answer, self.pinned = setting, None, None
+        self.fault, self.progress, self.cursor = "", "", 0.0
+        self._desk, self._calculate = desk, answer
+        self._listeners: dict[News, list[Callable[[], None]]] = {}
+
+    answer: Answer | None
+    pinned: tuple[Setting, Answer] | None
+
+    def listen(self, news: News, call: Callable[[], None]) -> None:
+        """Have `call` called whenever there are news of this kind."""
+        self._listeners.setdefault(news, []).append(call)
+
+    def tell(self, news: News) -> None:
+        """Tell all that listen to these news."""
+        for call in self._listeners.get(news, ()):
+            call()
+
+    def change(self, setting: Setting) -> None:
+        """Take a new setting and ask for its answer; if it cannot be read, say why and keep the last good picture."""
+        try:
+            scenario = setting.scenario()
+        except InputError as error:
+            self.refuse(str(error))
+            return
+        self.setting = setting
+        self.tell("setting")
+        self._desk.ask(lambda told: self._calculate(scenario, told), self._show, self._fail)
+
+    def refuse(self, fault: str) -> None:
+        """Say what is wrong with an entry; the last good picture stays."""
+        self.fault = fault
+        self.tell("fault")
+
+    def told(self, progress: str) -> None:
+        """Show a line on the work that is under way."""
+        self.progress = progress
+        self.tell("progress")
+
+    def stop(self) -> None:
+        """Stop a long run; it is shown up to where it got."""
+        self._desk.stop()
+
+    def pin(self) -> None:
+        """Keep the run that is shown, to compare the next ones with it; or let go of the one that is kept."""
+        self.pinned = None if self.pinned or self.answer is None else (self.setting, self.answer)
+        self.tell("pin")
+
+    def _show(self, answer: Answer) -> None:
+        self.answer, self.fault, self.progress = answer, "", ""
+        for news in ("fault", "progress", "answer"):
+            self.tell(news)
+
+    def _fail(self, error: Exception) -> None:
+        self.progress = ""
+        self.tell("progress")
+        if not isinstance(error, InputError):
+            raise error
+        self.refuse(str(error))
