@@ -1,0 +1,24 @@
+"""The explorer beside a kernel: its desk delivers on the kernel's own thread, between two cells."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import panel as pn
+
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.server.desk import Call, ThreadDesk
+from stickslip.explorer.server.start import explorer_of
+from stickslip.scenarios.scenario import Scenario
+
+
+def shown_in_notebook(scenario: Scenario) -> Any:
+    """Return the explorer of a scenario as an object that a notebook shows."""
+    from stickslip.explorer.page.page import build_for_notebook
+
+    pn.extension()
+    desk = ThreadDesk(_deliver)
+    explorer = explorer_of(Setting.of(scenario), desk)
+    desk.report = explorer.told
+    return build_for_notebook(explorer)
