@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
+from stickslip.explorer.model.stop import Stopped, Told
 from stickslip.foundation.errors import InputError
 
-Told = Callable[[str], None]
 Call = Callable[[], None]
 
 PATIENCE = 0.3
@@ -40,9 +40,9 @@ class _Task:
 class ThreadDesk:
     """The `Desk` of a page: one piece of work at a time; of the requests that come meanwhile only the latest is kept.
 
-    Work learns of its end from the function `told` that it is given, and calls about ten times a second. It raises
-    KeyboardInterrupt, which ends a run with what it has calculated so far, after `stop`; and `Dropped` if the page is closed, or if
-    the work has taken longer than PATIENCE and a newer request waits.
+    Work learns of its end from the function `told` that it is given, and calls about ten times a second. It raises `Stopped`, which
+    ends a run with what it has calculated so far, after `stop`; and `Dropped` if the page is closed, or if the work has taken
+    longer than PATIENCE and a newer request waits.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class ThreadDesk:
             outcome: Call = partial(task.done, task.work(partial(self._told, task)))
         except Dropped:
             return
-        except KeyboardInterrupt:
+        except Stopped:
             outcome = partial(task.failed, InputError(STOPPED_EARLY))
         except InputError as error:
             outcome = partial(task.failed, error.with_traceback(None))
@@ -149,7 +149,7 @@ class ThreadDesk:
         if task.fate == "drop" or (self._next is not None and time.monotonic() - task.begun > PATIENCE):
             raise Dropped
         if task.fate == "stop":
-            raise KeyboardInterrupt
+            raise Stopped
         self.say(text)
 
     def _tell_news(self) -> None:

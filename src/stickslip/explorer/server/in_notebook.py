@@ -15,10 +15,17 @@ from stickslip.scenarios.scenario import Scenario
 
 def shown_in_notebook(scenario: Scenario) -> Any:
     """Return the explorer of a scenario as an object that a notebook shows."""
-    from stickslip.explorer.page.page import build_for_notebook
+    from stickslip.explorer.page.plain import build
 
     pn.extension()
     desk = ThreadDesk(_deliver)
     explorer = explorer_of(Setting.of(scenario), desk)
     desk.report = explorer.told
-    return build_for_notebook(explorer)
+    page = build(explorer)
+    page.explorer = explorer
+    explorer.change(explorer.setting)
+    return page
+
+
+def _deliver(call: Call) -> None:
+    _loop().call_soon_threadsafe(call)

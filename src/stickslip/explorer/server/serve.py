@@ -173,7 +173,7 @@ class ExplorerServer:
         explorer = self._make(desk)
         desk.report = explorer.told
         self._desks.add(desk)
-        untell = self.warming.tell(lambda line: desk.say(line))
+        untell = self.warming.tell(desk.say)
 
         def gone(_: Any) -> None:
             untell()
@@ -182,7 +182,9 @@ class ExplorerServer:
 
         pn.state.on_session_destroyed(gone)
         pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
-        return self._build(explorer)
+        page = self._build(explorer)
+        explorer.change(explorer.setting)
+        return page
 
 
 def deliver_to(document: Callable[[], Any], call: Call) -> None:
