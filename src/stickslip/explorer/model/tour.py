@@ -12,7 +12,7 @@ from typing import Any, Literal
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import StripRange
 
-Panel = Literal["law", "contact", "slip", "slip_rate", "traction", "slab", "energy"]
+Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy"]
 """The panels of the page to which a step can point."""
 
 
@@ -70,7 +70,7 @@ TOUR = (
         "wave returns from the driver.",
         "Compare the two lines of slip rate: one is a hump, the other a step with two corners.",
         "The paper prints a spring ten times as stiff, 3.43e14 N/m. Does the block still slip?",
-        "slip_rate",
+        "rate",
         1.84,
         StripRange("body.stiffness", 1e13, 4e14, log=True),
         "fig6-block-reconstructed",
@@ -137,7 +137,7 @@ TOUR = (
         "after 23.44 m of slip.",
         "Look at slip rate: two vertical lines, and a constant between them.",
         "Change the normal stress. Why does the rate of slip follow a straight line?",
-        "slip_rate",
+        "rate",
         2.857,
         StripRange("body.normal_stress", 1e7, 2e8),
         "fig6-slab",
@@ -150,7 +150,7 @@ TOUR = (
         "transition does.",
         "Look at the strip: the peak rate leaves zero at alpha_c, and then grows.",
         "Where is alpha_c if the normal stress is twice as large?",
-        "slip_rate",
+        "rate",
         2.857,
         StripRange("friction.alpha", 0.15, 0.25),
         "fig7-slab-critical",
