@@ -21,9 +21,19 @@ PATHS = ("/", "/ws", "/favicon.ico")
 STATIC = "/static/"
 NO_TOKEN = "This page needs its token: open the whole address that `stickslip explore` printed in the terminal."
 NOTHING_HERE = "There is nothing here: the explorer is at the address that `stickslip explore` printed in the terminal."
+SOURCES = {
+    "default-src": "'self'",
+    "script-src": "'self' 'unsafe-inline' 'unsafe-eval' blob:",
+    "style-src": "'self' 'unsafe-inline'",
+    "img-src": "'self' data: blob:",
+    "font-src": "'self' data:",
+    "connect-src": "'self' ws: wss:",
+    "worker-src": "'self' blob:",
+    "frame-ancestors": "'self'",
+}
+"""Where a page may load what from; Bokeh makes functions from text, and Panel loads its modules through blobs."""
 HEADERS = {
-    "Content-Security-Policy": "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
-    "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self' ws: wss:; worker-src 'self' blob:; frame-ancestors 'self'",
+    "Content-Security-Policy": "; ".join(f"{kind} {allowed}" for kind, allowed in SOURCES.items()),
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
@@ -64,7 +74,11 @@ class Access:
 
     def reply_to(self, request: HTTPServerRequest) -> Reply | None:
         """Return what a request gets in place of what it asks for; None if it is to be answered."""
-        if self.names is not None and _name_and_port(request.host)[0] not in self.names and request.host.lower() not in self.origins:
+        if (
+            self.names is not None
+            and _name_and_port(request.host)[0] not in self.names
+            and request.host.lower() not in self.origins
+        ):
             return Reply(403, f"This server is not known as {request.host}: `stickslip explore --allow-origin` permits that name.")
         given = request.query_arguments.get("token")
         if given is not None and self._is_token(given[-1]):

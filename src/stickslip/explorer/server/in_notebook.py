@@ -8,7 +8,7 @@ from typing import Any
 import panel as pn
 
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.server.desk import Call, ThreadDesk
+from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.explorer.server.start import explorer_of
 from stickslip.scenarios.scenario import Scenario
 
@@ -18,14 +18,10 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     from stickslip.explorer.page.plain import build
 
     pn.extension()
-    desk = ThreadDesk(_deliver)
+    desk = ThreadDesk(asyncio.get_event_loop().call_soon_threadsafe)
     explorer = explorer_of(Setting.of(scenario), desk)
     desk.report = explorer.told
     page = build(explorer)
     page.explorer = explorer
     explorer.change(explorer.setting)
     return page
-
-
-def _deliver(call: Call) -> None:
-    _loop().call_soon_threadsafe(call)

@@ -33,7 +33,7 @@ LARGEST_MESSAGE = 4_000_000
 """Size (bytes) of the largest message from a browser: an upload of 1 MB with all that surrounds it."""
 LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}
 """Bounds of what a browser may send outside the websocket: there is nothing to send but an address, which can hold a long link."""
-EVERYWHERE = ("0.0.0.0", "::", "")  # noqa: S104
+EVERYWHERE = ("0.0.0.0", "::", "")
 """Addresses by which a server listens on all networks of the computer."""
 
 MakeExplorer = Callable[[ThreadDesk], Explorer]
@@ -89,7 +89,9 @@ class ExplorerServer:
         self._desks: set[ThreadDesk] = set()
         self._bokeh = self._bound()
         application = self._bokeh._tornado
-        application._websocket_origins = {"*"}  # `Access` compares each origin with the address that was asked for, which is stricter
+        application._websocket_origins = {
+            "*"
+        }  # `Access` compares each origin with the address that was asked for, which is stricter
         self.access.guard(application)
         self.sessions.contexts = application.applications.values()
         self._looking = PeriodicCallback(self.sessions.look, LOOK_EVERY_MS)
@@ -133,7 +135,7 @@ class ExplorerServer:
         self._bokeh.stop(wait=False)
 
     def _bound(self) -> Any:
-        """Return a Bokeh server on the port that was asked for, or on the first that is free. Raises InputError if there is none."""
+        """Return a Bokeh server on the port that was asked for, or on the first one that is free. Raises InputError."""
         first = FIRST_PORT if self.place.port is None else self.place.port
         for port in range(first, first + (PORTS if self.place.port is None else 1)):
             try:

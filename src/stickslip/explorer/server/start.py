@@ -11,8 +11,8 @@ from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.explorer.server.serve import ExplorerServer, Place, open_browser
 
 WARNING = (
-    "warning: listening on {address}: whoever can reach this computer over the network, and has the address with the token, can use "
-    "the explorer; it is not encrypted"
+    "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
+    "the explorer; nothing is encrypted"
 )
 
 

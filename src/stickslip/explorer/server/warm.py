@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from stickslip.explorer.server.desk import unforeseen
-from stickslip.foundation.errors import InputError
 
 FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-and-state-block", 1.0), ("fig4-loop", 1.0))
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
@@ -46,13 +45,13 @@ class Warming:
             from stickslip.run.simulate import simulate
             from stickslip.scenarios.scenario import load_scenario
 
-            announce_by(lambda text: (self._say(f"{LINE[:-1]} ({text})."), tell(text))[0])
+            announce_by(lambda text: self._say(f"{LINE} {text[0].upper()}{text[1:]}."))
             try:
                 for name, duration in FIRST_RUNS:
                     simulate(load_scenario(name), duration)
             finally:
                 announce_by(tell)
-        except (InputError, Exception) as error:  # pages say what is wrong when they run into it themselves
+        except Exception as error:  # pages say what is wrong when they run into it themselves
             unforeseen(error)
         finally:
             self._say("")
