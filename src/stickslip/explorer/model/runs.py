@@ -36,10 +36,15 @@ def companion_of(scenario: Scenario) -> Scenario | None:
     try:
         if scenario.problem.body.has_waves:
             return replace(scenario, problem=block_for(scenario.problem), creep_rtol=None, shortest_event=None)
-        slab = next((name for start, name in SLABS.items() if scenario.name.startswith(start)), None)
+        slab = slab_of_figure(scenario.name)
         return None if slab is None else replace(scenario, problem=_slab_beside(scenario.problem, load_scenario(slab).problem))
     except InputError:  # such as a driver that is not rigid
         return None
+
+
+def slab_of_figure(name: str) -> str | None:
+    """Return the name of the bundled slab that the paper shows beside a bundled block, or None for another name."""
+    return next((slab for start, slab in SLABS.items() if name.startswith(start)), None)
 
 
 def _slab_beside(block: Problem, slab: Problem) -> Problem:

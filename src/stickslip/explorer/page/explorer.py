@@ -70,8 +70,11 @@ class Explorer:
         for call in self._listeners.get(news, ()):
             call()
 
-    def change(self, setting: Setting) -> None:
-        """Take a new setting and ask for its answer; if it cannot be read, say why and keep the last good picture."""
+    def change(self, setting: Setting, cursor: float | None = None) -> None:
+        """Take a new setting and ask for its answer; if it cannot be read, say why and keep the last good picture.
+
+        With the answer the cursor moves to the time `cursor` (s), if one is given.
+        """
         try:
             scenario = setting.scenario()
         except InputError as error:
@@ -81,7 +84,7 @@ class Explorer:
         self.tell("setting")
         self._asked += 1
         number = self._asked
-        self._desk.ask(lambda told: self._calculate(scenario, told), lambda answer: self._show(answer, number), self._fail)
+        self._desk.ask(lambda told: self._calculate(scenario, told), lambda answer: self._show(answer, number, cursor), self._fail)
 
     def beside(self, work: Callable[[Callable[[str], None]], Any], done: Callable[[Any], None]) -> None:
         """Have something more worked out about the run that is shown, such as a strip; the next change of the setting drops it.
@@ -97,9 +100,7 @@ class Explorer:
         self.tell("tour")
         if setting is not None:
             self.show_strip(strip)
-            self.cursor = cursor
-            self.change(setting)
-            self.tell("cursor")
+            self.change(setting, cursor)
 
     def show_strip(self, strip: StripRange | None) -> None:
         """Show a strip, or none."""
@@ -125,10 +126,14 @@ class Explorer:
         self.pinned = None if self.pinned or self.answer is None else (self.setting, self.answer)
         self.tell("pin")
 
-    def _show(self, answer: Answer, number: int) -> None:
+    def _show(self, answer: Answer, number: int, cursor: float | None) -> None:
         self.answer, self.fault, self.progress, self._shown = answer, "", "", number
+        if cursor is not None:
+            self.cursor = cursor
         for news in ("fault", "progress", "answer"):
             self.tell(news)
+        if cursor is not None:
+            self.tell("cursor")
 
     def _fail(self, error: Exception) -> None:
         self.progress = ""
