@@ -27,7 +27,7 @@ SOURCES = {
     "style-src": "'self' 'unsafe-inline'",
     "img-src": "'self' data: blob:",
     "font-src": "'self' data:",
-    "connect-src": "'self' ws: wss:",
+    "connect-src": "'self' blob: ws: wss:",
     "worker-src": "'self' blob:",
     "frame-ancestors": "'self'",
 }

@@ -15,7 +15,7 @@ from stickslip.scenarios.scenario import Scenario
 
 def shown_in_notebook(scenario: Scenario) -> Any:
     """Return the explorer of a scenario as an object that a notebook shows."""
-    from stickslip.explorer.page.plain import build
+    from stickslip.explorer.page.page import build
 
     pn.extension()
     desk = ThreadDesk(asyncio.get_event_loop().call_soon_threadsafe)

@@ -35,7 +35,7 @@ def start(setting: Setting, place: Place, *, browser: bool, say: Callable[[str],
     InputError
         If the port is taken.
     """
-    from stickslip.explorer.page.plain import build
+    from stickslip.explorer.page.page import build
 
     server = ExplorerServer(place, partial(explorer_of, setting), build)
     if not place.is_loopback:
