@@ -33,7 +33,21 @@ from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
 from tests.limits import limit_of_process
 
-COMMANDS = ["new", "check", "run", "show", "export", "fit", "compare", "sweep", "analogy", "ensemble", "regularise", "paper"]
+COMMANDS = [
+    "new",
+    "check",
+    "run",
+    "show",
+    "export",
+    "fit",
+    "compare",
+    "sweep",
+    "analogy",
+    "ensemble",
+    "regularise",
+    "paper",
+    "doctor",
+]
 
 
 @pytest.mark.parametrize("name", COMMANDS)

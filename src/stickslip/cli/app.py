@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 from stickslip.cli.commands.analogy import analogy
 from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
+from stickslip.cli.commands.doctor import doctor
 from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.export import export
 from stickslip.cli.commands.fit import fit
@@ -41,6 +42,7 @@ GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "Measured friction": (fit,),
     "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise),
     "The source paper": (paper,),
+    "This installation": (doctor,),
 }
 """The functions of all commands, by the heading under which the help shows them."""
 COMMANDS = {command.__name__: command for commands in GROUPS.values() for command in commands}
