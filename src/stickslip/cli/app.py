@@ -67,8 +67,8 @@ class Commands(TyperGroup):
         return _built(cmd_name) if cmd_name in COMMANDS else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the command that is meant. Raises InputError for an unknown one."""
-        if args[0] not in COMMANDS and not args[0].startswith("-"):
+        """Return the command that is meant. Raises InputError for an unknown one, but not while the shell completes words."""
+        if args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
             raise InputError(_unknown(args[0]))
         return super().resolve_command(ctx, args)
 
