@@ -12,6 +12,7 @@ from tests.cli.conftest import Outcome
 
 Complete = Callable[[str, str], list[str]]
 SHELLS = ("bash", "zsh", "fish")
+OFFERED_TO_ZSH = re.compile("""^(?:_arguments '[^(]*[(]{2})?"([^"]+)["]""", re.MULTILINE)
 
 
 @pytest.fixture
@@ -27,7 +28,7 @@ def complete(command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch) -
         found = command()
         assert found.err == ""
         if shell == "zsh":
-            return re.findall(r"""^(?:_arguments '[^(]*[(]{2})?"([^"]+)"""", found.out, re.MULTILINE)
+            return OFFERED_TO_ZSH.findall(found.out)
         return [line.split("\t")[0] for line in found.out.splitlines() if line]
 
     return ask
