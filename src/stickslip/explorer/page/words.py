@@ -24,7 +24,7 @@ class Words:
     def show(self) -> None:
         """Show the words of the explorer as it is now."""
         explorer, answer = self._explorer, self._explorer.answer
-        sentence = _sentence(answer) if answer else "The first answer is being calculated."
+        sentence = sentence_html(answer) if answer else "The first answer is being calculated."
         notes = "".join(f"<li>{escape(note)}</li>" for note in answer.notes) if answer else ""
         self.view.object = (
             f'<div class="words"><p class="sentence" role="status" aria-live="polite">{sentence}</p>'
@@ -33,7 +33,7 @@ class Words:
         )
 
 
-def _sentence(answer: Answer) -> str:
+def sentence_html(answer: Answer) -> str:
     """Return the sentence as HTML; the word for the regime stands out if it comes first."""
     text, word = escape(answer.sentence), answer.regime
     first, rest = text[: len(word)], text[len(word) :]

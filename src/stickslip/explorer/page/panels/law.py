@@ -63,7 +63,7 @@ def plot(stage: Stage) -> Any:
     stage.note("axis:law_powers", powers)
     paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="grey")
     paint(drawn.line("x", "y", source=stage.source("visited", "x", "y"), line_width=3.2, line_cap="round").glyph, line_color="law")
-    stage.source("visits", "time", "x", "y")
+    drawn.line("x", "y", source=stage.source("visits", "time", "x", "y"), visible=False)  # what the cursor's script reads
     dot = drawn.scatter("x", "y", source=stage.source("now_law", "x", "y"), size=9, level="overlay")
     paint(dot.glyph, fill_color="cursor", line_color="card")
     return drawn
