@@ -113,7 +113,7 @@ export function render({ model }) {
   const root = document.createElement("div");
   const tools = new Tools(root, model);
   model.on(["pinned", "ready", "busy", "query"], () => tools.update());
-  model.on("msg:custom", ({ data }) => saveFile(data.save, data.media, data.content));
+  model.on("msg:custom", ({ save, media, content }) => saveFile(save, media, content));
   model.on("remove", () => tools.leave());
   tools.update();
   return root;
