@@ -12,8 +12,10 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.pin import PinnedRun
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
+from stickslip.explorer.page.tools import Tools
 from stickslip.explorer.page.tour import Tour
 from stickslip.explorer.page.words import Words
 
@@ -71,6 +73,7 @@ def build(explorer: Explorer, **parts: Any) -> Any:
         Further parts by the name of their place, one of `SLOTS`.
     """
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
+    parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
     tour, strip = Tour(explorer), StripView(explorer)
     page = pn.Template(asset("page.html"))
     page.add_variable("page_style", style_sheet() + asset("page.css"))
