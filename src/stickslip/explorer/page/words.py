@@ -27,9 +27,10 @@ class Words:
         sentence = _sentence(answer) if answer else "The first answer is being calculated."
         notes = "".join(f"<li>{escape(note)}</li>" for note in answer.notes) if answer else ""
         self.view.object = (
-            f'<div class="words"><p class="sentence" role="status" aria-live="polite">{sentence}</p>'
+            f'<div class="words"><p class="sentence" role="status" aria-live="polite">{sentence}</p><div class="below">'
+            f'<p class="fault" role="alert" title="{escape(explorer.fault)}">{escape(explorer.fault)}</p>'
             f'<p class="progress" aria-live="polite">{escape(explorer.progress)}</p>'
-            f'<p class="fault" role="alert">{escape(explorer.fault)}</p><ul class="notes">{notes}</ul></div>'
+            f'<ul class="notes" title="{escape(" · ".join(answer.notes if answer else ()))}">{notes}</ul></div></div>'
         )
 
 

@@ -56,8 +56,8 @@ function showMoment(models, facts, t) {
 
 /** The friction coefficient that acts at time t; at rest it is what the load needs, and lies below the law's curve. */
 function showLaw(models, t) {
-  const times = models.column("visits", "time");
-  const [x, y] = ["x", "y"].map((name) => valueAt(times, models.column("visits", name), t));
+  const times = models.column("motion", "time");
+  const [x, y] = ["law_x", "law_y"].map((name) => valueAt(times, models.column("motion", name), t));
   models.put("now_law", { x: [x], y: [y] });
 }
 

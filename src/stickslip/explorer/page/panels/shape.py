@@ -55,7 +55,7 @@ def plot(stage: Stage) -> Any:
     body = drawn.patches("x", "y", source=stage.source("body", "x", "y"), fill_alpha=0.12, level="overlay")
     paint(body.glyph, fill_color="slip", line_color="slip")
     lines = drawn.multi_line("x", "y", source=stage.source("lines", "x", "y"), line_width=1, level="overlay")
-    paint(lines.glyph, line_color="grey")
+    paint(lines.glyph, line_color="faint")
     driver = drawn.multi_line("x", "y", source=stage.source("driver", "x", "y"), line_width=3, level="overlay")
     paint(driver.glyph, line_color="ink")
     dots = drawn.scatter("x", "y", source=stage.source("particles", "x", "y", "velocity"), size=5, level="overlay")
