@@ -114,7 +114,17 @@ def _row(control: Control) -> Row:
 
 def _whole(row: Row) -> Row:
     """Return a row with every key that the script reads."""
-    empty = {"unit": "", "help": "", "letter": "", "index": "", "empty": "", "rare": False, "value": 0.0, "range": None, "options": []}
+    empty = {
+        "unit": "",
+        "help": "",
+        "letter": "",
+        "index": "",
+        "empty": "",
+        "rare": False,
+        "value": 0.0,
+        "range": None,
+        "options": [],
+    }
     return empty | row
 
 
@@ -128,5 +138,3 @@ def spelled(unit: str) -> str:
     """Return a unit as readers expect to see it."""
     unit = SPELLED.get(unit, unit)
     return re.sub(r"\bu(?=[mNPs])", "µ", unit).replace("/ m", "1/m") if unit.startswith(("u", "/")) else unit
-
-

@@ -13,6 +13,8 @@ function positionOf(row, value) {
   return Number.isFinite(share) ? 1000 * Math.min(Math.max(share, 0), 1) : 0;
 }
 
+const LONGEST_WAIT = 400; // ms; after it the next value is sent although nothing came back
+
 class Controls {
   constructor(root, send) {
     this.root = root; this.send = send; this.rows = new Map(); this.drawn = "";
@@ -21,6 +23,7 @@ class Controls {
 
   /** Show groups of rows: they are made anew only if other rows are needed, so that the focus stays where it is. */
   update(groups, faults) {
+    this.heard();
     const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range, rare }) => [path, kind, options, unit, !range, rare])]));
     if (form !== this.drawn) this.make(groups);
     this.drawn = form;
@@ -89,11 +92,25 @@ class Controls {
     parts.line.insertBefore(slider, parts.fault);
   }
 
-  /** Send the latest value of a slider that moves, at most one a frame. */
+  /** Send the latest value of a slider that moves, at most one a frame, and the next one only when the last one has been heard. */
   later(message) {
-    const waits = this.waiting;
+    const waits = this.waiting || this.unheard;
     this.waiting = message;
-    if (!waits) requestAnimationFrame(() => { const latest = this.waiting; this.waiting = null; this.send(latest); });
+    if (!waits) requestAnimationFrame(() => this.sendWaiting());
+  }
+
+  sendWaiting() {
+    const message = this.waiting;
+    this.waiting = null;
+    if (!message) return;
+    this.unheard = setTimeout(() => this.heard(), LONGEST_WAIT);
+    this.send(message);
+  }
+
+  heard() {
+    clearTimeout(this.unheard);
+    this.unheard = null;
+    if (this.waiting) requestAnimationFrame(() => this.sendWaiting());
   }
 
   fill(row) {

@@ -220,9 +220,9 @@ export function render({ model, view, el }) {
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
   const update = () => player.update(model.facts);
   model.on("facts", update);
-  model.on("cursor", () => player.goSeconds(model.cursor));
+  model.on("cursor", () => player.goSeconds(model.cursor.seconds));
   update();
-  if (model.cursor) player.goSeconds(model.cursor);
+  player.goSeconds(model.cursor.seconds);
   return root;
 }
 
