@@ -29,7 +29,7 @@ from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
 from stickslip.explorer.page.tour import told_steps
 from stickslip.explorer.page.view import View
-from stickslip.explorer.page.words import sentence_html
+from stickslip.explorer.page.words import words_of
 from stickslip.explorer.static.packing import packed_view, script
 from stickslip.figures.style import unit_of
 from stickslip.foundation.atomic_write import draft_beside, sync_folder
@@ -144,7 +144,7 @@ def content_of(step: Step, places: int) -> dict[str, Any]:
 def shown_of(answer: Answer) -> dict[str, Any]:
     """Return what the panels and the sentence show of an answer."""
     view = view_of(answer)
-    return {"sentence": sentence_html(answer), "headings": headings_of(view, TITLES), "view": packed_view(view)}
+    return {"words": words_of(answer), "headings": headings_of(view, TITLES), "view": packed_view(view)}
 
 
 def headings_of(view: View, titles: dict[str, str]) -> dict[str, str]:
@@ -172,11 +172,13 @@ def index_page() -> str:
     made, places = components(models, wrap_script=False)
     facts = {"look": look(), "steps": told_steps(), "named": [*stages[0].named, *stages[1].named], "titles": TITLES}
     return Template(_asset("index.html")).substitute(
-        style=style_sheet() + "\n".join(asset(name) for name in ("page.css", "heading.css", "words.css")) + _asset("static.css"),
+        style=style_sheet() + "\n".join(asset(name) for name in ("page.css", "heading.css")) + _asset("static.css"),
         library=LIBRARY,
         plots=made,
         player=_module(player_script(), "Player"),
         card=_module(asset("tour.js"), "TourCard"),
+        words=asset("words.js") + "\nwindow.Words = render;",
+        words_css=_in_script(asset("words.css")),
         player_css=_in_script(asset("player.css")),
         card_css=_in_script(asset("tour.css")),
         facts=_in_script(facts),

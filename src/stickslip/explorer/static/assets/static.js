@@ -48,6 +48,8 @@ class Tour {
     this.ArrayOfBokeh = bokeh.get_model_by_name("source:field").get_column("velocity")[0].constructor;
     this.player = new window.Player(bokeh, part("footer.time", PLAYER_CSS), FACTS.look);
     this.card = new window.TourCard(part(".tour", CARD_CSS), FACTS.steps, (step) => this.go(step), false);
+    this.words = { texts: { sentence: "" }, on: (_, heard) => { this.tell = heard; }, send_msg: () => {} }; // as Panel's model
+    part(".words-place", WORDS_CSS).append(window.Words({ model: this.words }));
     this.slider = document.querySelector("#place");
     this.slider.addEventListener("input", () => this.show(Number(this.slider.value)));
     for (const name of ["pulses", "slip", "first_end", "peak_rate"]) {
@@ -62,7 +64,7 @@ class Tour {
     if (step === this.step || !FACTS.steps[step - 1]) return;
     this.asked = step;
     let content;
-    try { content = await load(step); } catch (error) { document.querySelector(".sentence").textContent = error.message; return; }
+    try { content = await load(step); } catch (error) { this.say({ fault: error.message }); return; }
     if (this.asked !== step) return; // another step has been asked for since
     this.step = step;
     this.content = content;
@@ -83,11 +85,13 @@ class Tour {
     this.slider.value = number;
     document.querySelector(".knob output").textContent = `${place.value} ${this.content.unit}`.trim();
     this.slider.setAttribute("aria-valuetext", `${place.value} ${this.content.unit}`);
-    document.querySelector(".sentence").innerHTML = place.sentence;
+    this.say(place.words);
     this.put({ ...place.view, headings: place.headings });
     for (const name of FACTS.named) if (name.startsWith("here:")) this.bokeh.get_model_by_name(name).location = place.at;
     this.player.update(place.view.facts);
   }
+
+  say(texts) { this.words.texts = texts; this.tell(); }
 
   /** Show the answer whose place on the strip is nearest to a click. */
   goTo(at) {
