@@ -31,6 +31,7 @@ from stickslip.explorer.page.view import Key, View, axis_label, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import read_typed
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
@@ -209,5 +210,13 @@ class StripView:
         chosen = None
         if where is not None:
             ends = {"low": f"{where.low:.6g}", "high": f"{where.high:.6g}"}
-            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": numeric(scenario, where.parameter).unit}
+            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": unit_in(scenario, where.parameter)}
         self.bar.state = {"choices": choices(scenario), "chosen": chosen, "said": said}
+
+
+def unit_in(scenario: Scenario, name: str) -> str:
+    """Return the SI unit of a parameter; "" if the scenario has no such parameter, as before the first answer of a link."""
+    try:
+        return numeric(scenario, name).unit
+    except InputError:
+        return ""
