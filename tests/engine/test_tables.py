@@ -19,8 +19,7 @@ from stickslip.engine.series.polynomial import crossings
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
-from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate, highest, keeps_its_sign
 from tests.long_runs.problems import RUNS
 from tests.problems import SLAB, scaled_rate
 

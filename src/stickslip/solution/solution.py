@@ -20,8 +20,9 @@ from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
+from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import Status
-from stickslip.trajectory.tables import creep_note, creep_table, default_event_rate
+from stickslip.trajectory.tables import creep_note, creep_table
 
 if TYPE_CHECKING:
     import pandas as pd

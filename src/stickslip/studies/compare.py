@@ -22,8 +22,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
-from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),

@@ -57,11 +57,6 @@ CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 """Names of the causes of shocks, by their code in the history; code 0 is no shock."""
 
 
-def default_event_rate(problem: Problem) -> float:
-    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
-    return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
-
-
 def event_columns(history: History, events: SlipEvents) -> Columns:
     """Return the columns of EVENT_COLUMNS, with one row per event."""
     begin, peak, end = events.begin, events.peak, events.end

@@ -32,8 +32,8 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary of a run on standard output."""
-    from stickslip.trajectory.slip_events import SlipEvents
-    from stickslip.trajectory.tables import default_event_rate, event_columns, shock_columns
+    from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
+    from stickslip.trajectory.tables import event_columns, shock_columns
 
     screen, load, history = titled(scenario), scenario.problem.load_unit, solution.history
     _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
