@@ -29,7 +29,7 @@ LAYERS = (
     ("batch",),
     ("studies", "sweeps"),
     ("figures",),
-    ("paper",),
+    ("explorer", "paper"),
     ("cli",),
 )
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
@@ -54,6 +54,7 @@ ROOMS = {
     "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("legends", "panels"), ("contact", "runs", "sweeps"), ("studies",)),
+    "explorer": (("model",), ("page",), ("server",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (
         ("output", "names", "overrides", "mistyped"),

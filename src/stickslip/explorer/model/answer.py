@@ -1,0 +1,146 @@
+"""The answer to a setting: everything that the panels of the explorer show of one run, as plain arrays in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.solution import Solution
+
+Floats = NDArray[np.float64]
+MarkKind = Literal["start", "pulse", "arrest", "jump", "fold", "echo"]
+
+
+@dataclass(frozen=True)
+class LawPicture:
+    """The friction law as a curve: the friction coefficient against slip (m) or slip rate (m/s).
+
+    `along` says against which. A law of both is drawn against slip rate at the slip of the start. `visited` is the part of the
+    horizontal axis that the run passed through: its smallest and its largest value.
+    """
+
+    along: Literal["slip", "slip_rate"]
+    x: Floats
+    coefficient: Floats
+    visited: tuple[float, float]
+    log: bool
+    """True if the horizontal axis is better logarithmic, as for rate-and-state laws."""
+
+
+@dataclass(frozen=True)
+class ContactPicture:
+    """The contact equation: g(v) = Z v + S mu(v) with the set K, its folds, the load line, and the path of the run on it.
+
+    `rate` (m/s) and `load` (Pa) are the curve, `stability` is 1 on stable, -1 on unstable parts and 0 on a continuum of solutions;
+    a stuck contact is at rate 0 up to `strength` (Pa). `folds` and `jumps` are pairs and quadruples of (rate, load) and
+    (rate before, load before, rate after, load after). The path has NaN between pieces that a jump separates.
+    """
+
+    rate: Floats
+    load: Floats
+    stability: NDArray[np.int64]
+    strength: float
+    folds: Floats
+    jumps: Floats
+    path_time: Floats
+    path_rate: Floats
+    path_load: Floats
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Slip (m), slip rate (m/s), traction and load (Pa, for a block N) of one body against time (s).
+
+    All arrays have one length. A shock has two points at one time, the limit from the left first.
+    """
+
+    body: Literal["slab", "block"]
+    name: str
+    """How the legend calls it: "slab", "block", or "equivalent block"."""
+    time: Floats
+    slip: Floats
+    slip_rate: Floats
+    traction: Floats
+    load: Floats
+    load_unit: Literal["Pa", "N"]
+    normal_load: float = 1.0
+    """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
+
+
+@dataclass(frozen=True)
+class SlabPicture:
+    """What happens inside the slab: arrays of shape (times, places), and the wave fronts that leave the contact.
+
+    `time` (s since the start of the run) and `place` (m from the contact) are evenly spaced, from the first to the last shown;
+    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there. Each front is an array
+    of shape (corners, 2) with (time, place). Of a run over many round trips only the times around its last large slip event are
+    shown.
+    """
+
+    time: Floats
+    place: Floats
+    displacement: Floats
+    velocity: Floats
+    stress: Floats
+    fronts: tuple[Floats, ...]
+
+
+@dataclass(frozen=True)
+class EnergyPicture:
+    """Energies against time (s): each is a curve by its name, J/m^2 for a slab and J for a block.
+
+    The parts are elastic (above its smallest value), kinetic, heat, radiated and damped, and "total", which is their sum: what the
+    body had at the first of these times, and the work of the driver since then. Parts that are zero throughout are left out. The
+    times are those of the picture of the slab.
+    """
+
+    time: Floats
+    parts: Mapping[str, Floats]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something that happens at one time (s), which can be clicked: a pulse, the arrest, a jump. `text` says what, in one line."""
+
+    time: float
+    kind: MarkKind
+    text: str
+
+
+@dataclass(frozen=True)
+class KeyNumber:
+    """One number by which two runs are compared: a name, its value in SI and its unit; NaN if the run has no such number."""
+
+    name: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """All that the explorer shows of one setting.
+
+    `motions` holds the body itself first, then its companion of the other kind if there is one. `sentence` says regime, alpha over
+    alpha_c, what jumped, and what rests on the selection rule; `regime` is "regular", "irregular" or "continuum". `notes` are
+    warnings, one line each.
+    """
+
+    scenario: Scenario
+    solution: Solution
+    companion: Solution | None
+    regime: str
+    sentence: str
+    law: LawPicture
+    contact: ContactPicture | None
+    motions: tuple[Motion, ...]
+    slab: SlabPicture | None
+    energy: EnergyPicture
+    marks: tuple[Mark, ...]
+    numbers: tuple[KeyNumber, ...]
+    notes: tuple[str, ...]

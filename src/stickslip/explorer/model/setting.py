@@ -1,0 +1,76 @@
+"""The setting of the explorer's controls: a scenario document and what has been changed in it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any, Self
+
+from stickslip.scenarios import library
+from stickslip.scenarios.entries import Source
+from stickslip.scenarios.scenario import Scenario, scenario_of
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A scenario as the controls hold it: a TOML document whose entries can be replaced one by one.
+
+    Attributes
+    ----------
+    name : str
+        The bundled scenario it began with, or the name of a file or an upload.
+    document : dict
+        The tables of the scenario, as `tomllib` reads them; never changed in place.
+    """
+
+    name: str
+    document: Mapping[str, Any] = field(repr=False)
+
+    @classmethod
+    def bundled(cls, name: str) -> Self:
+        """Return the setting of a bundled scenario. Raises InputError for an unknown name."""
+        return cls(name, _bundled(name))
+
+    def value(self, path: str) -> Any:
+        """Return the entry at a path such as "friction.alpha" or "loading.pull_rate"; None if the document has none."""
+        found: Any = self.document
+        for key in path.split("."):
+            found = found.get(key) if isinstance(found, Mapping) else None
+        return found
+
+    def with_value(self, path: str, value: Any) -> Self:
+        """Return a setting in which one entry is replaced, or left away if `value` is None."""
+        document = deepcopy(dict(self.document))
+        *tables, key = path.split(".")
+        place = document
+        for table in tables:
+            place = place.setdefault(table, {})
+        if value is None:
+            place.pop(key, None)
+        else:
+            place[key] = value
+        return replace(self, document=document)
+
+    @property
+    def is_changed(self) -> bool:
+        """True if the setting began with a bundled scenario and differs from it."""
+        return self.name in library.names() and self.document != _bundled(self.name)
+
+    @property
+    def title(self) -> str:
+        """The title of the scenario; it says so if the scenario is changed, because it may name numbers that no longer hold."""
+        title = str(self.value("title") or "")
+        return f"{title}, changed" if title and self.is_changed else title
+
+    def scenario(self) -> Scenario:
+        """Return the scenario. Raises InputError, with one line that names the entry that is wrong."""
+        return replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
+
+
+@cache
+def _bundled(name: str) -> dict[str, Any]:
+    """Return the document of a bundled scenario, which must not be changed."""
+    return tomllib.loads(library.text(name))
