@@ -183,6 +183,9 @@ def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable
     columns = columns_of(table, kind)
     if columns:
         lines.append(f'# file = "points.csv"  # instead of lists: columns {", ".join(columns)}, in SI or with units as in (mm/s)')
+    if len(columns) > 2:
+        *others, _ = columns
+        lines.append(f'# along = "{others[-1]}"  # the column that counts, if the file has {" and ".join(others)}')
     return lines + inner
 
 
