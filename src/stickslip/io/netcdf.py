@@ -345,7 +345,8 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, scenario.title)
+    named = scenario.title, scenario.description
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, *named)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -133,6 +133,7 @@ class Session:
             creep_rtol=options.creep_rtol,
             shortest_event=options.shortest_event,
             title=options.title,
+            description=options.description,
             lumping_note=self.lumping_note,
             rounding_note=self.rounding_note,
         )

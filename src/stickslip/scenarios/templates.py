@@ -19,7 +19,7 @@ from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
-STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
+STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed"}
 """Names of the generic starters, each with the bundled scenario whose values it shows."""
 
 _HEADER = """\
@@ -50,7 +50,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     Parameters
     ----------
     name : str
-        "slab" or "block" for a starter, or the name of a bundled scenario.
+        "slab", "lab-slab" or "block" for a starter, or the name of a bundled scenario.
     friction : str, optional
         Kind of another friction law for a starter, which then has plausible values.
     pull : str, optional

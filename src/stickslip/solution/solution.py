@@ -59,6 +59,8 @@ class Solution(Exports):
     """One line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
     title: str = ""
     """Title of the scenario, which figures show; empty for a problem from Python."""
+    description: str = ""
+    """Description of the scenario; empty for a problem from Python."""
 
     @cached_property
     def events(self) -> pd.DataFrame:
