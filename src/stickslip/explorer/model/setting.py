@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Self
 
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
@@ -33,6 +35,19 @@ class Setting:
     def bundled(cls, name: str) -> Self:
         """Return the setting of a bundled scenario. Raises InputError for an unknown name."""
         return cls(name, _bundled(name))
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> Self:
+        """Return the setting of a scenario: with the entries of its text, or in SI if it has none or names files of data.
+
+        Raises InputError if the scenario cannot be written as text, because its law is a function of Python.
+        """
+        if scenario.source:
+            setting = cls(scenario.name, tomllib.loads(scenario.source))
+            with suppress(InputError):
+                if setting.scenario() == scenario:
+                    return setting
+        return cls(scenario.name, tomllib.loads(scenario.to_toml()))
 
     def value(self, path: str) -> Any:
         """Return the entry at a path such as "friction.alpha" or "loading.pull_rate"; None if the document has none."""

@@ -12,10 +12,12 @@ from stickslip.explorer.model.marks import marks_of
 from stickslip.explorer.model.motion import motion
 from stickslip.explorer.model.numbers import key_numbers
 from stickslip.explorer.model.runs import run, run_companion
+from stickslip.explorer.model.sampled_waves import SampledWaves
 from stickslip.explorer.model.sentence import sentence
 from stickslip.explorer.model.shown import Shown
 from stickslip.explorer.model.slab_picture import slab_picture
 from stickslip.explorer.model.stop import Told, silent
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios.examine import warnings_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
@@ -52,6 +54,7 @@ def answer_of(scenario: Scenario, solution: Solution, companion: Solution | None
     """Return what is shown of finished runs."""
     found, own, influence = Found.of(solution), motion(solution), solution.rule_influence
     shown = Shown.of(solution)
+    waves = _waves(shown)
     return Answer(
         scenario=scenario,
         solution=solution,
@@ -61,12 +64,22 @@ def answer_of(scenario: Scenario, solution: Solution, companion: Solution | None
         law=law_picture(solution, own),
         contact=contact_picture(contact, own),
         motions=(own, *_beside(companion)),
-        slab=slab_picture(shown),
-        energy=energy_picture(shown),
+        slab=None if waves is None else slab_picture(waves),
+        energy=energy_picture(shown, waves),
         marks=marks_of(found, own),
         numbers=key_numbers(found, contact, own),
         notes=notes_of(scenario, solution, contact),
     )
+
+
+def _waves(shown: Shown) -> SampledWaves | None:
+    """Return the waves in the slab; None for a block, and where they are not known because the run leaped over creep."""
+    if not shown.readings.problem.body.has_waves:
+        return None
+    try:
+        return SampledWaves(shown)
+    except InputError:
+        return None
 
 
 def _beside(companion: Solution | None) -> tuple[Motion, ...]:

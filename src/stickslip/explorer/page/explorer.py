@@ -99,8 +99,8 @@ class Explorer:
         self.tour = step
         self.tell("tour")
         if setting is not None:
-            self.show_strip(strip)
             self.change(setting, cursor)
+            self.show_strip(strip)
 
     def show_strip(self, strip: StripRange | None) -> None:
         """Show a strip, or none."""

@@ -13,6 +13,8 @@ from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
 from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.strip import StripView
+from stickslip.explorer.page.tour import Tour
 from stickslip.explorer.page.words import Words
 
 TITLES = {
@@ -69,12 +71,16 @@ def build(explorer: Explorer, **parts: Any) -> Any:
         Further parts by the name of their place, one of `SLOTS`.
     """
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
+    tour, strip = Tour(explorer), StripView(explorer)
     page = pn.Template(asset("page.html"))
     page.add_variable("page_style", style_sheet() + asset("page.css"))
     page.add_variable("app_title", "stickslip explorer")
+    page.add_variable("parts", sorted(parts))
     for name, pane in panels.plots.items():
         page.add_panel(name, pane)
         page.add_panel(f"{name}_heading", panels.headings[name])
-    for name, part in {"player": panels.player, "words": words.view, "controls": controls.view, **parts}.items():
+    own = {"player": panels.player, "words": words.view, "controls": controls.view}
+    own |= {"tour": tour.card, "tour_button": tour.button, "strip": strip.view}
+    for name, part in {**own, **parts}.items():
         page.add_panel(name, part)
     return page
