@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from stickslip import ElasticSlab, Problem, SpringBlock
+from stickslip.contact.rules.loop import resolved
 from stickslip.friction import LAWS, FromTable, SinusoidalSlip
 from stickslip.scenarios import library
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.scenarios.stability import unresolved_rate
 from stickslip.scenarios.templates import template
 
 LAW = SinusoidalSlip(1.0, 0.5, 5.0)
@@ -194,7 +194,6 @@ def test_only_what_a_body_and_a_law_can_feel_is_listed() -> None:
     assert {"counts", "memory", "far_stress_rate"} <= listed(Scenario(Problem(matched, slips, initial_excess=0.0), 1.0))
 
 
-def test_a_rate_that_rounding_hides_is_rest() -> None:
-    """Z v of 2e-61 m/s is nothing beside a strength of 60 MPa; that of 2e-6 m/s is not."""
-    problem = Problem(SLAB, FromTable(rate=[0.0, 1.0], friction=[0.6, 0.5]), initial_excess=0.0)
-    assert 2e-61 < unresolved_rate(problem) < 1e-12
+@pytest.mark.parametrize(("rate", "shown"), [(2e-61, 0.0), (1e-16, 0.0), (-0.0, 0.0), (2e-6, 2e-6), (4.1, 4.1)])
+def test_a_rate_whose_load_rounding_hides_is_rest(rate: float, shown: float) -> None:
+    assert resolved(rate, 8e7, 9.8e6) == shown

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import cmath
 import math
-import sys
 
 from stickslip.bodies import SpringBlock, as_block, as_slab
-from stickslip.contact.rules.loop import first_rate
+from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.friction import RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
@@ -25,21 +24,13 @@ def loading_rate(problem: Problem) -> float:
     return body.stiffness * problem.first_pull_rate
 
 
-def unresolved_rate(problem: Problem) -> float:
-    """Return the slip rate (m/s) below which the contact rests to what double precision resolves.
-
-    The load that such a rate radiates (Z v; for a block sqrt(K m) replaces Z) is lost in the rounding of friction.
-    """
-    return sys.float_info.epsilon * problem.normal * problem.friction.variation / problem.body.impedance
-
-
 def start_of(problem: Problem) -> str:
     """Return a sentence on what the contact does at t = 0+ and, if it sticks, on when it will slip."""
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
-    rate = rate if rate > unresolved_rate(problem) else 0.0
+    rate = resolved(rate, problem.load, problem.body.impedance)
     jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
     if problem.load < -problem.strength:
         return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"

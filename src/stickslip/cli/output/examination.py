@@ -21,8 +21,6 @@ MOST_UNDECIDED = 10
 
 def show_examination(scenario: Scenario, found: Examination) -> None:
     """Print what was found about a scenario on standard output."""
-    from stickslip.scenarios.stability import unresolved_rate
-
     screen = titled(scenario)
     if scenario.description:
         say(screen, clean(scenario.description))
@@ -34,12 +32,12 @@ def show_examination(scenario: Scenario, found: Examination) -> None:
         ]
     print_words(screen, ("", "value", "meaning"), rows)
     screen.print()
-    findings = [*_findings(found, unresolved_rate(scenario.problem)), *(("warning", warning) for warning in found.warnings)]
+    findings = [*_findings(found), *(("warning", warning) for warning in found.warnings)]
     print_words(screen, ("", ""), findings, {"warning": "yellow"})
 
 
-def _findings(found: Examination, unresolved: float) -> Iterator[tuple[str, str]]:
-    """Yield the name and the text of each finding but the warnings; slip rates up to `unresolved` (m/s) are rest."""
+def _findings(found: Examination) -> Iterator[tuple[str, str]]:
+    """Yield the name and the text of each finding but the warnings."""
     yield "start", found.start
     yield "stability", found.stability
     yield "uniqueness", found.uniqueness.summary
@@ -52,7 +50,7 @@ def _findings(found: Examination, unresolved: float) -> Iterator[tuple[str, str]
         yield "fold", f"slip rate {fold.rate:.9g} m/s, load {fold.load:.12g} Pa{_proof(fold)}"
     for low, high in found.uniqueness.undecided[:MOST_UNDECIDED]:
         yield "not decided", f"whether there is a fold between {low:.9g} and {high:.9g} m/s"
-    yield from _by_rule(found.uniqueness, unresolved)
+    yield from _by_rule(found.uniqueness)
 
 
 def _proof(fold: Fold) -> str:
@@ -63,12 +61,11 @@ def _proof(fold: Fold) -> str:
     return f"; proven to within {high - low:.1g} m/s" if high > low else "; proven, at a kink of the law"
 
 
-def _by_rule(contact: Uniqueness, unresolved: float) -> Iterator[tuple[str, str]]:
+def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
     """Yield what depends on the selection rule: the jumps, and the loop that they enclose."""
     for jump in contact.jumps:
         change = jump.traction_after - jump.traction_before
-        before, after = (f"{rate:.9g} m/s" if rate > unresolved else "rest" for rate in (jump.rate_before, jump.rate_after))
-        rates = f"slip rate {before} to {after} at a load of {jump.load:.12g} Pa"
+        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {jump.load:.12g} Pa"
         yield f"jump {jump.direction} *", f"{rates}; traction changes by {change:.6g} Pa"
     if contact.jumps:
         retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
