@@ -38,12 +38,20 @@ def read_points(
         if along not in others:
             at = where.removesuffix(" file")
             raise InputError(f"{at} along: {show(along)} is no column to go along; {nearest(str(along), others)}")
-        others, columns = [along], {column: columns[column] for column in (along, value)}
+        columns = {column: columns[column] for column in (along, value)}
     try:
         text = _text(name, folder)
     except InputError as error:
         raise InputError(f"{where} {show(name)}: {error}") from None
-    file = f"{where}: {show(name)}"
+    return points_in(text, columns, f"{where}: {show(name)}")
+
+
+def points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
+    """Return the numbers (SI) in CSV text by the field to which they belong, as `read_points` does.
+
+    `file` is the name of the text in messages.
+    """
+    *others, value = columns
     number, header = header_of(text, file, tuple(columns))
     table = read_text(text, tuple(columns), file, LARGEST_SERIES)
     place, found = f"{file}, line {number}", [column for column in others if column in table.columns]

@@ -152,6 +152,15 @@ def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Fl
         table = Table(columns, points.name, np.arange(len(points)), "point")
     else:
         table = _table_in(source)
+    return _joined(table, along)
+
+
+def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
+    """Return the points in the text of a CSV file, called `name` in messages, as `read_table` does."""
+    return _joined(_from_text(text, name))
+
+
+def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
     found = [name for name in ALONG if name in table.columns and along in (None, name)]
     if along is not None and not found:
         hint = nearest(str(along), [name for name in ALONG if name in table.columns])
@@ -187,6 +196,10 @@ def _from_file(path: Path) -> Table:
         raise InputError(f"{name}: cannot be read: {error.strerror}") from None
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
+    return _from_text(text, name)
+
+
+def _from_text(text: str, name: str) -> Table:
     number, header = header_of(text, name, WANTED)
     return _complete(read_text(text, WANTED, name, MOST_POINTS), f"{name}, line {number}", header)
 
