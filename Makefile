@@ -39,7 +39,7 @@ $(BIN)/python:
 
 # Needs uv; writes versions and hashes, no host.
 lock:
-	for extra in run test; do \
+	for extra in run test site; do \
 	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	        $$([ $$extra = run ] || echo --extra $$extra) pyproject.toml requirements/build.in --output-file requirements/$$extra.txt --quiet; \
 	done

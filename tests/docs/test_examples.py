@@ -26,7 +26,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 def page_name(page: Path) -> str:
-    return page.stem
+    return page.relative_to(ROOT).with_suffix("").as_posix()
 
 
 @pytest.fixture(autouse=True)
@@ -95,8 +95,8 @@ def headings(page: Path) -> list[str]:
 
 
 def test_no_page_is_lost() -> None:
-    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     for page in PAGES[1:]:
+        index = (page.parent / "index.md").read_text(encoding="utf-8")
         assert page.stem == "index" or f"({page.name})" in index
 
 
