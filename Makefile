@@ -5,14 +5,18 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: paper test lint bench lock clean
+.PHONY: paper test browser lint bench lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
 # The tests run in as many processes as there are cores; threads of linear algebra would only compete with them.
-test: lint
+test: lint browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+
+# The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
+browser: $(VENV)/.installed-test
+	tests/explorer/install_browser.sh $(BIN)/python
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .

@@ -11,7 +11,7 @@ from stickslip.engine.loop import run_until
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
-from stickslip.engine.state.workspace import counts_in, lend, memory_of
+from stickslip.engine.state.workspace import counts_in, lend_history
 from stickslip.engine_input.prepare import prepare
 from stickslip.run.run_loop import split_time
 from stickslip.solution.solution import Solution
@@ -24,13 +24,13 @@ BUDGET = 1_000_000
 
 def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until) -> Runner:
     """Run `kernel`, which reads the engine's table: the engine itself, or its copy in C."""
-    setup, state, count = prepare(case.problem, tolerance)
+    setup, memory = prepare(case.problem, tolerance)
+    count = counts_in(memory)
     count.to_the_end = 1  # nothing goes on behind it
     store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
-    memory = memory_of(setup.params, state, count)
-    lend(memory, setup, store, echoes)
+    lend_history(memory, store, echoes)
     lend_parts_of_batch(memory, setup.params, count)
-    first, count = memory.copy(), counts_in(memory)
+    first = memory.copy()
     last_trip, last_phase = split_time(case.duration, case.problem.round_trip_time)
 
     lent = (setup, store, echoes)  # the memory holds their addresses only: they live as long as the runner

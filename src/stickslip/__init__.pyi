@@ -4,6 +4,7 @@
 # Many runs
 from . import figures, friction, loading, studies
 from .bodies import ElasticSlab, SpringBlock
+from .explorer.notebook import explore
 
 # One run
 from .foundation.constants import YEAR
@@ -30,6 +31,7 @@ __all__ = [
     "Solution",
     "SpringBlock",
     "catalogue",
+    "explore",
     "figures",
     "friction",
     "load_scenario",

@@ -14,6 +14,7 @@ from stickslip.batch.setups import Setups, set_up
 from stickslip.batch.vectorised_problem import groups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
+from stickslip.engine.state.workspace import counts_in, state_in
 from stickslip.engine_input.automatic import wait_for_creep
 from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
@@ -47,7 +48,8 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
         for n, place in enumerate(places.tolist()):
             alone = one(case, drawn, place)
             problem = alone.problem
-            setup, state, count = prepare(problem, alone.rtol, alone.shortest_event)
+            setup, memory = prepare(problem, alone.rtol, alone.shortest_event)
+            state, count = state_in(memory), counts_in(memory)
             wait_for_creep(count, problem, alone.creep_rtol)
             assert Params(row_of(setups.params, n)).stick_to == pytest.approx(
                 setup.params.stick_to, rel=0, abs=LEVEL * problem.strength

@@ -21,7 +21,7 @@ import stickslip as ss
 from stickslip.engine.loop import run_until
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
-from stickslip.engine.state.workspace import counts_in, lend, memory_of, state_in
+from stickslip.engine.state.workspace import counts_in, lend_history, state_in
 from stickslip.engine_input.prepare import prepare
 from stickslip.trajectory.history import History
 
@@ -37,18 +37,17 @@ def printed(faster: float) -> ss.Problem:
 
 def by_engine(problem: ss.Problem) -> float:
     """Time (s) at which slip has grown by GROWN, by the exact engine, one round trip at a time."""
-    setup, state, count = prepare(problem, 1e-10)
+    _setup, memory = prepare(problem, 1e-10)  # its tables live as long as the memory that holds their addresses
     store, trees = at.new_store(4096), at.EchoNode.table(4096)
-    memory = memory_of(setup.params, state, count)
     state, count = state_in(memory), counts_in(memory)
-    lend(memory, setup, store, trees)
+    lend_history(memory, store, trees)
     count.pause_at = 1
     while True:
         code = run_until(memory, 10**9, 1.0, 10**9)
         if code == Stop.FULL:
             store = at.resized_store(store, int(count.length), 2 * len(store.pieces))
             trees = at.EchoNode.table(len(store.pieces))
-            lend(memory, setup, store, trees)
+            lend_history(memory, store, trees)
             continue
         assert code == Stop.PAUSED
         row = slice(int(count.previous_from), int(count.previous_to))

@@ -131,7 +131,7 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
         capacities.add(len(run.store.pieces))
     assert stream.told > 9_000
     assert run.forgotten > 150_000
-    assert capacities == {512}
+    assert capacities == {256}
 
 
 def test_an_event_that_does_not_end_fills_the_memory_and_says_so() -> None:

@@ -12,6 +12,7 @@ from stickslip.cli.commands.analogy import analogy
 from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
 from stickslip.cli.commands.ensemble import ensemble
+from stickslip.cli.commands.explore import explore
 from stickslip.cli.commands.export import export
 from stickslip.cli.commands.fit import fit
 from stickslip.cli.commands.new import new
@@ -37,7 +38,7 @@ What happens at a frictional contact once inertia and waves matter: how it slips
   stickslip COMMAND --help         options, with examples
 """
 GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
-    "A scenario and its run": (new, check, run, show, export),
+    "A scenario and its run": (new, check, run, show, export, explore),
     "Measured friction": (fit,),
     "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise),
     "The source paper": (paper,),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -25,6 +26,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import quantities_of
 from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SELECTION_RULES
 
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` shows."""
@@ -194,6 +196,12 @@ class Uniqueness:
 def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`, where all is described."""
     slip = None if law_slip is None else quantities_of(Problem)["initial_slip"].check("uniqueness", "law_slip", law_slip)
+    # A rule of the user can be registered again under its name, and its result must then not be an old one.
+    return (_kept if problem.selection in SELECTION_RULES else _determined)(problem, slip)
+
+
+def _determined(problem: Problem, slip: float | None) -> Uniqueness:
+    """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
@@ -222,6 +230,10 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
         branches=stable,
         loop=loop_of(g, stable, table),
     )
+
+
+_kept = lru_cache(maxsize=16)(_determined)
+"""The same function, which keeps its last results: a run, its tables and its notes ask again and again for that of one problem."""
 
 
 def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:

@@ -13,7 +13,8 @@ import numpy as np
 from stickslip.contact.rules.selection import rule_of
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, FirstLoad, LawPiece, LoadingSegment, Params, Setup, State
+from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
+from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.automatic import set_length, set_lumping
 from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import inflow_of, steady_inflow
@@ -22,17 +23,15 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
 
 
-def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, State, Counts]:
-    """Return the setup that the engine needs for a problem, and the state and counts at t = 0, which the run changes.
+def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, Integers]:
+    """Return the setup that the engine needs for a problem, and the memory of a run at t = 0, to which a history must be lent.
 
-    Compiles the law's formulas if they are new. The parts that do not depend on the tolerance are cached for the next run.
+    `Setup.params` are those in the memory, which holds the addresses of the setup's tables: the caller keeps both. Compiles the
+    law's formulas if they are new. The result is cached for the next run.
     """
-    setup, state, count = _prepared(problem, rule_of(problem))
-    params = setup.params.copy()
-    set_tolerance(params, rtol, shortest)
-    count = count.copy()
-    set_lumping(count, problem, shortest)
-    return setup._replace(params=params), state.copy(), count
+    setup, first = _prepared(problem, rule_of(problem), rtol, shortest)
+    memory = first.copy()
+    return Setup(params_in(memory), *setup[1:]), memory
 
 
 def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
@@ -42,7 +41,18 @@ def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
 
 
 @lru_cache(maxsize=256)
-def _prepared(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
+def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: float | None) -> tuple[Setup, Integers]:
+    setup, state, counts = _of_problem(problem, rule)
+    memory = memory_of(setup.params, state, counts)
+    set_tolerance(params_in(memory), rtol, shortest)
+    set_lumping(counts_in(memory), problem, shortest)
+    lend_problem(memory, setup)
+    memory.flags.writeable = False
+    return setup, memory
+
+
+@lru_cache(maxsize=256)
+def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)

@@ -46,17 +46,17 @@ def with_unit(value: float, unit: str) -> str:
     return plain
 
 
-def brief(value: float, unit: str) -> str:
-    """Format a quantity with 6 digits in the unit in which it is short: "10 km", "0.05 m/year", "100 MPa".
+def brief(value: float, unit: str, digits: int = DIGITS) -> str:
+    """Format a quantity, with 6 digits by default, in the unit in which it is short: "10 km", "0.05 m/year", "100 MPa".
 
     Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
     """
     if unit in ("1", ""):
-        return f"{value:.{DIGITS}g}"
+        return f"{value:.{digits}g}"
     units = ((unit.removeprefix("1"), 1.0), *_ALTERNATIVES.get(unit, ()))
     if unit in _SCALED:
         units = (*units, *((prefix + unit, factor) for factor, prefix in reversed(_PREFIXES)))
-    sizes = ((f"{value / factor:.{DIGITS}g}", name, abs(value / factor)) for name, factor in units)
+    sizes = ((f"{value / factor:.{digits}g}", name, abs(value / factor)) for name, factor in units)
     shown, name, _ = min(sizes, key=lambda one: len(one[0] + one[1]) + (0 if 0.1 <= one[2] < 1000.0 else UNHANDY))
     return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"
 

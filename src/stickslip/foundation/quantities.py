@@ -10,6 +10,7 @@ import dataclasses
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
@@ -73,6 +74,9 @@ class Quantity:
             number = value if type(value) is float else to_number(value, self.unit, ("inf", self.word) if self.infinite else ())
         except InputError as error:
             raise InputError(f"{where} must be {self.allowed}, got {error}") from None
+        low, high = self._plain
+        if low <= number <= high:
+            return number
         for broken, rule in self._rules(number):
             if broken:
                 origin = f" (from {shown(value)})" if isinstance(value, str) else ""
@@ -85,6 +89,14 @@ class Quantity:
         for broken, _ in self._rules(values):
             fine &= ~broken
         return fine
+
+    @cached_property
+    def _plain(self) -> tuple[float, float]:
+        """An interval of numbers that break no rule, for a quick answer; it is empty for whole numbers."""
+        if self.whole:
+            return 1.0, 0.0
+        beyond = -math.inf if self.above is None else max(self.above + SMALLEST, math.nextafter(self.above, math.inf))
+        return max(beyond, -LARGEST if self.at_least is None else self.at_least, -LARGEST), LARGEST
 
     def _rules(self, number: Any) -> Iterator[tuple[Any, str]]:
         """Yield for each rule where a number, or each number of an array, breaks it, and what the rule demands."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.engine.codegen.records import Record
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
-from stickslip.engine.state.workspace import WORK_ROWS
+from stickslip.engine.state.workspace import WORK_ROWS, counts_in
 from stickslip.engine_input.branch_table import STORM_OF, folds_move, has_levels_to_set, table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
@@ -153,7 +153,8 @@ def check_checkpoint(solution: Solution, path: Path) -> None:
     """Refuse a checkpoint from which the engine would read or write outside its tables, or never return. Raises InputError."""
     checkpoint, history = solution.checkpoint, solution.history
     assert checkpoint is not None
-    setup, _, count = prepare(solution.problem, solution.rtol, solution.shortest_event)
+    setup, memory = prepare(solution.problem, solution.rtol, solution.shortest_event)
+    count = counts_in(memory)
     _refuse(_shapes_of_checkpoint(checkpoint), path)
     _refuse(_faults_of_places(Counts(checkpoint.count), setup, len(history), len(history.creep)), path)
     _refuse(_faults_of_codes(Counts(checkpoint.count), count), path)

@@ -81,16 +81,17 @@ class RunOptions:
         shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
-        return replace(
-            self,
-            duration=DURATION.check(who, "duration", self.duration),
-            rtol=check_rtol(self.rtol, who),
-            creep_rtol=check_creep_rtol(problem, creep_rtol, who),
-            shortest_event=check_shortest_event(problem, shortest, who),
-            checkpoint_every=CHECKPOINT_INTERVAL.check(who, "checkpoint_every", self.checkpoint_every),
-            max_events=None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
-            max_pieces=None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces),
-        )
+        checked: dict[str, Any] = {
+            "duration": DURATION.check(who, "duration", self.duration),
+            "rtol": check_rtol(self.rtol, who),
+            "creep_rtol": check_creep_rtol(problem, creep_rtol, who),
+            "shortest_event": check_shortest_event(problem, shortest, who),
+            "checkpoint_every": CHECKPOINT_INTERVAL.check(who, "checkpoint_every", self.checkpoint_every),
+            "max_events": None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
+            "max_pieces": None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces),
+        }
+        converted = {name: value for name, value in checked.items() if value is not getattr(self, name)}
+        return replace(self, **converted) if converted else self
 
     @property
     def most_pieces(self) -> int:

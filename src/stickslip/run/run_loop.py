@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import _signal  # `signal` also looks for members of enums, which takes longer than a short run
 import math
-import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from signal import SIGINT, default_int_handler
 from types import FrameType
 from typing import Protocol, Self
 
@@ -70,7 +71,7 @@ class Watch(Protocol):
 def run_loop(run: Session, duration: float, watch: Watch) -> int:
     """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
     last, budget = split_time(duration, run.problem.round_trip_time), FIRST_BUDGET
-    with interrupts() as is_interrupted:
+    with Interrupts() as interrupts:
         try:
             while True:
                 start = time.perf_counter()
@@ -80,10 +81,10 @@ def run_loop(run: Session, duration: float, watch: Watch) -> int:
                 end = after_call(run, code, watch)
                 if end is not None:
                     return end
-                if is_interrupted():
+                if interrupts.noted:
                     return INTERRUPTED
         except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
-            if is_interrupted():
+            if interrupts.noted:
                 raise
             return INTERRUPTED
 
@@ -116,28 +117,31 @@ def next_budget(budget: int, took: float) -> int:
     return int(min(max(wanted, SMALLEST_BUDGET), LARGEST_BUDGET))
 
 
-@contextmanager
-def interrupts() -> Iterator[Callable[[], bool]]:
+class Interrupts:
     """Note the first Ctrl-C instead of raising KeyboardInterrupt, so that the run ends between two calls of the engine.
 
-    Yields a function that returns True after Ctrl-C. A second Ctrl-C raises KeyboardInterrupt at once. A handler that is not
-    Python's default stays in place; so does every handler outside the main thread, where none can be set.
+    A second Ctrl-C raises KeyboardInterrupt at once. A handler that is not Python's default stays in place; so does every handler
+    outside the main thread, where none can be set.
     """
-    noted = False
 
-    def note(_: int, __: FrameType | None) -> None:
-        nonlocal noted
-        noted = True
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    def __init__(self) -> None:
+        self.noted = False
+        in_main = threading.current_thread() is threading.main_thread()
+        self.ours = in_main and _signal.getsignal(SIGINT) is default_int_handler
 
-    ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if ours:
-        signal.signal(signal.SIGINT, note)
-    try:
-        yield lambda: noted
-    finally:
-        if ours:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+    def __enter__(self) -> Self:
+        if self.ours:
+            _signal.signal(SIGINT, self.note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.ours:
+            _signal.signal(SIGINT, default_int_handler)
+
+    def note(self, _: int, __: FrameType | None) -> None:
+        """Note a Ctrl-C; this is the handler."""
+        self.noted = True
+        _signal.signal(SIGINT, default_int_handler)
 
 
 def check_round_trips(duration: float, row: float, where: str) -> None:

@@ -15,7 +15,7 @@ from stickslip.creep.stepper import CreepLeaps
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
-from stickslip.engine.state.workspace import counts_in, lend, memory_of, params_in, scratch_in, state_in
+from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import RuleFollower, renewed
@@ -29,8 +29,8 @@ from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.status import STATUSES, rounding_note
 
-FIRST_CAPACITY = 512
-"""Pieces of history for which a run has room at first, 0.2 MB; the room grows fourfold when it is full."""
+FIRST_CAPACITY = 256
+"""Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""
 SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
@@ -47,7 +47,6 @@ class Session:
     store: Store
     echoes: Integers
     """Table of `EchoNode`, with a row for each piece of history."""
-    follower: RuleFollower
     leaps: CreepLeaps | None = None
     before_end: Checkpoint | None = None
     """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
@@ -55,23 +54,22 @@ class Session:
     """Number of pieces of history that have been discarded."""
 
     def __post_init__(self) -> None:
-        self.params, self.state, self.count = params_in(self.memory), state_in(self.memory), counts_in(self.memory)
+        self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
-        self._lend()
+        self.follower = RuleFollower(self.problem, self.problem.round_trip_time, self.state, self.count)
+        if self.leaps is not None:
+            self.leaps.begin(self.count)
+        lend_history(self.memory, self.store, self.echoes)
+        lend_parts_at_hand(self.memory)
 
     @classmethod
     def begin(cls, problem: Problem, options: RunOptions) -> Self:
         """Return a run at t = 0."""
-        setup, state, count = prepare(problem, options.rtol, options.shortest_event)
-        memory = memory_of(setup.params, state, count)
-        state, count = state_in(memory), counts_in(memory)
+        setup, memory = prepare(problem, options.rtol, options.shortest_event)
         store = at.new_store(FIRST_CAPACITY, problem.friction.state is not None)
-        follower = RuleFollower(problem, problem.round_trip_time, state, count)
         tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
         leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
-        if leaps is not None:
-            leaps.begin(count)
-        return cls(problem, options, setup, memory, store, EchoNode.table(FIRST_CAPACITY), follower, leaps)
+        return cls(problem, options, setup, memory, store, EchoNode.table(FIRST_CAPACITY), leaps)
 
     @classmethod
     def at_checkpoint(cls, history: History, checkpoint: Checkpoint, options: RunOptions) -> Self:
@@ -86,7 +84,6 @@ class Session:
 
     def _lend(self) -> None:
         lend(self.memory, self.setup, self.store, self.echoes)
-        lend_parts_at_hand(self.memory)
 
     @property
     def length(self) -> int:

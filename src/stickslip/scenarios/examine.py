@@ -69,7 +69,7 @@ def examine(scenario: Scenario) -> Examination:
         uniqueness=contact,
         critical=_critical(problem, contact),
         along_slip=_along_slip(problem, contact),
-        warnings=_warnings(scenario, contact),
+        warnings=warnings_of(scenario, contact),
     )
 
 
@@ -219,7 +219,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
 
-def _warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
+def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
+    """Return what a user should know before trusting a run of a scenario whose uniqueness is `contact`, one line each."""
     problem, found = scenario.problem, _noise(scenario.problem.friction, contact)
     steady = math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0

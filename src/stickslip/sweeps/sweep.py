@@ -206,7 +206,7 @@ def _finish(store: ResultStore, unfinished: dict[int, ChunkResult], run: Runner,
 def ctrl_c_breaks_in() -> Iterator[None]:
     """Let Ctrl-C end the whole sweep and not only the run of one member.
 
-    A run (`run.run_loop.interrupts`) replaces Python's own handler to note Ctrl-C for itself, and might be about to end anyway.
+    A run (`run.run_loop.Interrupts`) replaces Python's own handler to note Ctrl-C for itself, and might be about to end anyway.
     It leaves the handler that is set here in place. Other handlers than Python's own are not replaced, nor are any outside the
     main thread, where none can be set.
     """

@@ -6,6 +6,7 @@ more than the work itself in functions as small as these.
 
 from __future__ import annotations
 
+from ctypes import addressof, c_char
 from typing import Any
 
 import numpy as np
@@ -89,6 +90,12 @@ PLACES = Run.total
 """Length of the memory of a run, in places of 8 bytes."""
 ADDRESSES = Run.places["pieces"].first
 """Number of places that hold addresses; the lengths of the tables follow them."""
+PROBLEM, HISTORY = slice(0, Run.places["history"].first), slice(Run.places["history"].first, ADDRESSES)
+"""Places of the addresses of the problem's tables (`Setup`), and of those of the history (`Store`, `EchoNode`)."""
+PARAMS, STATE, COUNTS = (
+    slice(place.first, place.first + place.size) for place in (Run.places[name] for name in ("params", "state", "counts"))
+)
+"""Places of the problem's numbers, of the state and of the counts."""
 SCRATCH = Run.places["load"].first
 """First place of scratch space in a run's memory; it extends to the end."""
 WORK_ROWS = (PLACES - SCRATCH) // TERMS
@@ -112,20 +119,17 @@ def memory_of(params: Params, state: State, counts: Counts) -> Integers:
 
 def params_in(memory: Integers) -> Params:
     """Return the problem's numbers in the memory of a run; the record shares that memory."""
-    place = Run.places["params"]
-    return Params(memory[..., place.first : place.first + place.size].view(np.float64))
+    return Params(memory[..., PARAMS].view(np.float64))
 
 
 def state_in(memory: Integers) -> State:
     """Return the state in the memory of a run, or of many runs if the array has a row for each; the record shares that memory."""
-    place = Run.places["state"]
-    return State(memory[..., place.first : place.first + place.size].view(np.float64))
+    return State(memory[..., STATE].view(np.float64))
 
 
 def counts_in(memory: Integers) -> Counts:
     """Return the counts in the memory of a run; the record shares that memory."""
-    place = Run.places["counts"]
-    return Counts(memory[..., place.first : place.first + place.size])
+    return Counts(memory[..., COUNTS])
 
 
 def scratch_in(memory: Integers) -> Floats:
@@ -134,17 +138,33 @@ def scratch_in(memory: Integers) -> Floats:
 
 
 def lend(memory: Integers, setup: Setup, store: Store, echoes: Integers) -> None:
-    """Write the addresses and lengths of its tables into the memory of a run.
+    """Write the addresses and lengths of all tables into the memory of a run.
 
-    The caller keeps the tables alive, and lends them again if the history has grown or moved.
+    The caller keeps the tables alive, and lends them again if they have moved.
     """
-    tables = (*setup[1:], *store, echoes)
+    lend_problem(memory, setup)
+    lend_history(memory, store, echoes)
+
+
+def lend_problem(memory: Integers, setup: Setup) -> None:
+    """Write the addresses and lengths of the problem's tables into the memory of a run."""
+    tables = setup[1:]
     if UNCOMPILED:
         lend_memory(*tables)
-    assert memory.shape == (PLACES,)
-    assert all(table.flags.c_contiguous for table in (memory, *tables))
-    memory[:ADDRESSES] = [table.__array_interface__["data"][0] for table in tables]
+    assert all(table.flags.c_contiguous for table in tables)
+    memory[PROBLEM] = [table.__array_interface__["data"][0] for table in tables]
     run = Run(memory)
     run.pieces, run.size = setup.constants.shape
     run.branches, run.loads, run.segments = len(setup.branches), len(setup.first_load), len(setup.loading)
-    run.capacity = len(store.pieces)
+
+
+def lend_history(memory: Integers, store: Store, echoes: Integers) -> None:
+    """Write the addresses of the tables of the history and their length into the memory of a run."""
+    if UNCOMPILED:
+        lend_memory(*store, echoes)
+    memory[HISTORY] = [addressof(_START.from_buffer(table.data)) for table in (*store, echoes)]
+    Run(memory).capacity = len(store.pieces)
+
+
+_START = c_char * 0
+"""The start of a table: from it an address is found in a quarter of the time, and only of a table that can be written to."""

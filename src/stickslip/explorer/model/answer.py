@@ -68,14 +68,18 @@ class Motion:
     traction: Floats
     load: Floats
     load_unit: Literal["Pa", "N"]
+    normal_load: float = 1.0
+    """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
 
 
 @dataclass(frozen=True)
 class SlabPicture:
     """What happens inside the slab: arrays of shape (times, places), and the wave fronts that leave the contact.
 
-    `time` (s) and `place` (m from the contact) are the centres of the cells; `displacement` (m), `velocity` (m/s) and `stress` (Pa)
-    are values there. Each front is an array of shape (corners, 2) with (time, place).
+    `time` (s since the start of the run) and `place` (m from the contact) are evenly spaced, from the first to the last shown;
+    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there. Each front is an array
+    of shape (corners, 2) with (time, place). Of a run over many round trips only the times around its last large slip event are
+    shown.
     """
 
     time: Floats
@@ -88,7 +92,12 @@ class SlabPicture:
 
 @dataclass(frozen=True)
 class EnergyPicture:
-    """Energies against time (s): each is a curve by its name, J/m^2 for a slab and J for a block."""
+    """Energies against time (s): each is a curve by its name, J/m^2 for a slab and J for a block.
+
+    The parts are elastic (above its smallest value), kinetic, heat, radiated and damped, and "total", which is their sum: what the
+    body had at the first of these times, and the work of the driver since then. Parts that are zero throughout are left out. The
+    times are those of the picture of the slab.
+    """
 
     time: Floats
     parts: Mapping[str, Floats]

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any, Self
 
+from stickslip.foundation.errors import InputError
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
@@ -31,7 +34,20 @@ class Setting:
     @classmethod
     def bundled(cls, name: str) -> Self:
         """Return the setting of a bundled scenario. Raises InputError for an unknown name."""
-        return cls(name, tomllib.loads(library.text(name)))
+        return cls(name, _bundled(name))
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> Self:
+        """Return the setting of a scenario: with the entries of its text, or in SI if it has none or names files of data.
+
+        Raises InputError if the scenario cannot be written as text, because its law is a function of Python.
+        """
+        if scenario.source:
+            setting = cls(scenario.name, tomllib.loads(scenario.source))
+            with suppress(InputError):
+                if setting.scenario() == scenario:
+                    return setting
+        return cls(scenario.name, tomllib.loads(scenario.to_toml()))
 
     def value(self, path: str) -> Any:
         """Return the entry at a path such as "friction.alpha" or "loading.pull_rate"; None if the document has none."""
@@ -53,6 +69,23 @@ class Setting:
             place[key] = value
         return replace(self, document=document)
 
+    @property
+    def is_changed(self) -> bool:
+        """True if the setting began with a bundled scenario and differs from it."""
+        return self.name in library.names() and self.document != _bundled(self.name)
+
+    @property
+    def title(self) -> str:
+        """The title of the scenario; it says so if the scenario is changed, because it may name numbers that no longer hold."""
+        title = str(self.value("title") or "")
+        return f"{title}, changed" if title and self.is_changed else title
+
     def scenario(self) -> Scenario:
         """Return the scenario. Raises InputError, with one line that names the entry that is wrong."""
-        return replace(scenario_of(self.document, Source(self.name, None)), name=self.name)
+        return replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
+
+
+@cache
+def _bundled(name: str) -> dict[str, Any]:
+    """Return the document of a bundled scenario, which must not be changed."""
+    return tomllib.loads(library.text(name))

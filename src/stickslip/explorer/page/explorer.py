@@ -7,9 +7,10 @@ from typing import Any, Literal, Protocol
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.strip import StripRange
 from stickslip.foundation.errors import InputError
 
-News = Literal["setting", "answer", "fault", "progress", "pin", "cursor"]
+News = Literal["setting", "answer", "fault", "progress", "pin", "cursor", "tour", "strip"]
 """What the parts of a page can listen to."""
 
 
@@ -42,16 +43,23 @@ class Explorer:
         The run with which the shown one is compared.
     cursor : float
         The time (s) at which all panels show the cursor.
+    tour : int
+        The step of the tour that is shown, from 1; 0 if the tour is closed.
+    strip : StripRange or None
+        The parameter through which a strip goes, and its range; None if no strip is shown.
     """
 
     def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer]) -> None:
         self.setting, self.answer, self.pinned = setting, None, None
         self.fault, self.progress, self.cursor = "", "", 0.0
+        self.tour, self.strip = 0, None
+        self._asked = self._shown = 0
         self._desk, self._calculate = desk, answer
         self._listeners: dict[News, list[Callable[[], None]]] = {}
 
     answer: Answer | None
     pinned: tuple[Setting, Answer] | None
+    strip: StripRange | None
 
     def listen(self, news: News, call: Callable[[], None]) -> None:
         """Have `call` called whenever there are news of this kind."""
@@ -62,8 +70,11 @@ class Explorer:
         for call in self._listeners.get(news, ()):
             call()
 
-    def change(self, setting: Setting) -> None:
-        """Take a new setting and ask for its answer; if it cannot be read, say why and keep the last good picture."""
+    def change(self, setting: Setting, cursor: float | None = None) -> None:
+        """Take a new setting and ask for its answer; if it cannot be read, say why and keep the last good picture.
+
+        With the answer the cursor moves to the time `cursor` (s), if one is given.
+        """
         try:
             scenario = setting.scenario()
         except InputError as error:
@@ -71,7 +82,30 @@ class Explorer:
             return
         self.setting = setting
         self.tell("setting")
-        self._desk.ask(lambda told: self._calculate(scenario, told), self._show, self._fail)
+        self._asked += 1
+        number = self._asked
+        self._desk.ask(lambda told: self._calculate(scenario, told), lambda answer: self._show(answer, number, cursor), self._fail)
+
+    def beside(self, work: Callable[[Callable[[str], None]], Any], done: Callable[[Any], None]) -> None:
+        """Have something more worked out about the run that is shown, such as a strip; the next change of the setting drops it.
+
+        While a newer setting waits for its answer nothing is begun: that answer tells its news in turn.
+        """
+        if self._shown == self._asked:
+            self._desk.ask(work, done, self._fail)
+
+    def show_step(self, step: int, setting: Setting | None, strip: StripRange | None, cursor: float) -> None:
+        """Show a step of the tour: its setting, strip and cursor; 0 closes the tour and leaves the page as it is."""
+        self.tour = step
+        self.tell("tour")
+        if setting is not None:
+            self.show_strip(strip)
+            self.change(setting, cursor)
+
+    def show_strip(self, strip: StripRange | None) -> None:
+        """Show a strip, or none."""
+        self.strip = strip
+        self.tell("strip")
 
     def refuse(self, fault: str) -> None:
         """Say what is wrong with an entry; the last good picture stays."""
@@ -92,10 +126,14 @@ class Explorer:
         self.pinned = None if self.pinned or self.answer is None else (self.setting, self.answer)
         self.tell("pin")
 
-    def _show(self, answer: Answer) -> None:
-        self.answer, self.fault, self.progress = answer, "", ""
+    def _show(self, answer: Answer, number: int, cursor: float | None) -> None:
+        self.answer, self.fault, self.progress, self._shown = answer, "", "", number
+        if cursor is not None:
+            self.cursor = cursor
         for news in ("fault", "progress", "answer"):
             self.tell(news)
+        if cursor is not None:
+            self.tell("cursor")
 
     def _fail(self, error: Exception) -> None:
         self.progress = ""

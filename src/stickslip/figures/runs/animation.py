@@ -17,10 +17,11 @@ from matplotlib.figure import Figure
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import set_title, zero_line
-from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, places, snapshots
+from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, places, snapshots
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
+from stickslip.solution.interval import choose_interval
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings

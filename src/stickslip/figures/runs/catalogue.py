@@ -16,7 +16,6 @@ from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, letter_panels, set_scale, set_title, zero_line
-from stickslip.figures.runs.slab_panels import last_large_event
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import (
     BLUE,
@@ -37,6 +36,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
+from stickslip.solution.interval import last_large_event
 from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
 

@@ -9,7 +9,6 @@ import xarray as xr
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import set_title
-from stickslip.figures.runs.slab_panels import choose_interval
 from stickslip.figures.sheet import one_panel, result
 from stickslip.figures.style import (
     BLUE,
@@ -27,6 +26,7 @@ from stickslip.figures.style import (
     unit_of,
 )
 from stickslip.observables.energy.balance import energies
+from stickslip.solution.interval import choose_interval
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Shared by the figures of the inside of the slab: choice of the interval, datasets of the field, and scales of the axes.
+"""Shared by the figures of the inside of the slab: datasets of the field, and scales of the axes.
 
 The slab is drawn as in the paper: the contact below, the driver above.
 """
@@ -22,41 +22,13 @@ from stickslip.figures.style import (
     title_of,
     unit_of,
 )
-from stickslip.foundation.errors import InputError
 from stickslip.observables.field import slab_of
-from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Curve, Readings
 
-LONG = 50
-"""Of a run over more round trips than this, only the time around one slip event is shown: waves could not be seen otherwise."""
 ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
-
-
-def choose_interval(readings: Readings, start: float | None, end: float | None) -> tuple[Readings, float, float]:
-    """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
-
-    The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a
-    slab; periods of a block) the last event whose slip is at least 99 % of the largest, in local time. Raises InputError if the
-    interval is empty.
-    """
-    round_trip = readings.history.round_trip_time
-    if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
-        slips = readings.events.slip.to_numpy(float)
-        if len(slips):
-            readings = readings.window(last_large_event(slips), before=0.25 * round_trip)
-            end = min(readings.shown[1] + round_trip, readings.history.span[1])
-    start, end = readings.shown[0] if start is None else start, readings.shown[1] if end is None else end
-    if not start < end:
-        raise InputError(f"figure: must end after it starts, at {start:g} s; got {end:g} s")
-    return readings, start, end
-
-
-def last_large_event(slips: Floats) -> int:
-    """Return the row number of the last event whose slip is at least 99 % of the largest."""
-    return int(np.flatnonzero(slips >= 0.99 * slips.max())[-1])
 
 
 def about(readings: Readings) -> dict[str, Any]:

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import letter_panels, set_title
-from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, places, snapshots
+from stickslip.figures.runs.slab_panels import Scales, about, places, snapshots
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import label, shown, styled, unit_shown
 from stickslip.observables.field import slab_of
+from stickslip.solution.interval import choose_interval
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:

@@ -10,15 +10,13 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import letter_panels, set_title, zero_line
-from stickslip.figures.runs.curves import MANY
-from stickslip.figures.runs.slab_panels import Scales, about, choose_interval, contact_variables, means, places
+from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, means, places
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, VERMILLION, Floats, label, narrow, quantity, styled, unit_shown
 from stickslip.observables.field import slab_of
+from stickslip.solution.fronts import fronts_of
+from stickslip.solution.interval import choose_interval
 from stickslip.solution.place import Place
-from stickslip.solution.solution import Solution
-from stickslip.solution.window import Window
-from stickslip.trajectory.tables import shocks_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,8 +25,6 @@ if TYPE_CHECKING:
 
 TIMES, PLACES = 900, 300
 """Numbers of cells of the images, in time and across the slab."""
-FAINT = 0.1
-"""A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
 
 
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
@@ -41,48 +37,13 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     body = slab_of(readings.problem)
     contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, PLACES + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
-    lines = [_bounces(time, end, body.two_way_time, body.reflection) for time in _origins(readings, start, end)]
+    lines = fronts_of(readings, start, end)
     points = max((len(line) for line in lines), default=0)
     across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(len(lines), points)
     contents["front_time"] = quantity(("front", "corner"), across, "time of a characteristic", "t", "s")
     corners = np.where(np.arange(points) % 2, body.thickness, 0.0)
     contents["front_x"] = quantity("corner", corners, "place of a characteristic", "x", "m")
     return xr.Dataset(contents, attrs=about(readings))
-
-
-def _origins(readings: Readings, start: float, end: float) -> Floats:
-    """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
-
-    One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
-    characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
-    """
-    history, round_trip = readings.history, slab_of(readings.problem).two_way_time
-    run = readings.solution if isinstance(readings, Window) else readings
-    assert isinstance(run, Solution)
-    events = run.events
-    begin = history.seconds(events.start_row.to_numpy(), events.start_offset.to_numpy(float))
-    shocks = shocks_table(history, start - round_trip, end).time.to_numpy(float)
-    times = np.sort(np.concatenate([shocks, begin, begin + events.duration.to_numpy(float)]))
-    times = times[(times >= start - round_trip) & (times <= end)]
-    kept: list[float] = []
-    for time in times:
-        phases = (time - np.array(kept)) / round_trip
-        if not (np.abs(phases - np.round(phases)) < 1e-6).any():
-            kept.append(float(time))
-    return np.array(kept if len(kept) <= MANY else [])
-
-
-def _bounces(time: float, end: float, round_trip: float, reflection: float) -> Floats:
-    """Return the times (s) at which a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
-
-    The last is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
-    """
-    count = 1 + int(np.ceil(2.0 * (end - time) / round_trip))
-    share = abs(reflection)
-    if share < 1.0:
-        trips = 0 if share == 0.0 else int(np.log(FAINT) / np.log(share))
-        count = min(count, 2 + 2 * trips)
-    return np.asarray(time + 0.5 * round_trip * np.arange(max(count, 2)))
 
 
 @styled

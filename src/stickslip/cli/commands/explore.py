@@ -1,0 +1,56 @@
+"""`stickslip explore`: open the explorer, a page on which the system answers while its numbers are moved."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from stickslip.cli.names import complete_scenario
+from stickslip.cli.options import SCENARIO, argument, option
+
+SERVER = "Server"
+"""Heading of the options of the server in the help."""
+FIRST = "fig6-slab"
+"""The scenario that is shown first if none is named."""
+ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
+ALLOW_ORIGIN = "Host (NAME or NAME:PORT) under which the page may be reached as well, as behind a proxy; may be repeated."
+PORT = "Port to listen on; 0 for any that is free. Not given: the first free one from 5018 on."
+NO_BROWSER = "Do not open a browser; the address is printed."
+
+
+def explore(
+    scenario: Annotated[str | None, argument(SCENARIO, complete_scenario)] = None,
+    *,
+    port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,
+    address: Annotated[str, option(ADDRESS, panel=SERVER)] = "127.0.0.1",
+    allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
+    sessions: Annotated[int, typer.Option(help="Largest number of pages open at once.", min=1, rich_help_panel=SERVER)] = 8,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help=NO_BROWSER, rich_help_panel=SERVER)] = False,
+) -> None:
+    r"""Open a page in the browser on which a scenario answers while its numbers are moved.
+
+    The page shows the law, the contact, the motion, the inside of the slab and
+    the energy, linked; a cursor moves through all of them. The address that is
+    printed holds a token, without which nothing is shown. Ctrl-C ends it.
+
+    \b
+      stickslip explore
+      stickslip explore fig6-slab
+      stickslip explore mine.toml --no-browser --port 5018
+
+    Needs the extra `explorer`: pip install "stickslip[explorer]".
+
+    Exit code: 0 ended by Ctrl-C, 2 unusable input.
+    """
+    from stickslip.cli.overrides import load
+    from stickslip.explorer.extra import check_extra
+
+    check_extra("explore")
+    loaded = load(scenario or FIRST)
+    from stickslip.explorer.model.setting import Setting
+    from stickslip.explorer.server.serve import Place
+    from stickslip.explorer.server.start import start
+
+    place = Place(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
+    start(Setting.of(loaded), place, browser=not no_browser, say=typer.echo)

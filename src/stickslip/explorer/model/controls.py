@@ -1,0 +1,282 @@
+"""The controls of a setting, worked out from what bodies, laws, loadings and runs declare about their numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import MISSING, dataclass, replace
+from typing import Any, Literal
+
+from stickslip.bodies import BODIES
+from stickslip.explorer.model.ranges import Range, range_of
+from stickslip.explorer.model.setting import Setting
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief
+from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.units import split_quantity, to_si
+from stickslip.friction import LAWS
+from stickslip.friction.contract import StateVariable
+from stickslip.loading import HISTORIES
+from stickslip.problem.selection_rule import SELECTION_RULES, names
+from stickslip.scenarios import library
+from stickslip.scenarios.entries import describe
+from stickslip.scenarios.schema import check_events, entries_in, kind_of
+from stickslip.scenarios.values import typed_number
+
+ControlKind = Literal["number", "whole", "choice", "text", "points"]
+CONSTANT = "constant"
+"""Kind of a pull rate that does not vary."""
+STARTS = ("excess", "load")
+"""How the load of the start is given, which takes the place of a kind: minus the static strength, or as it is."""
+RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
+"""Numbers that are seldom changed: a page may hide them at first."""
+TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
+EMPTY = {
+    "initial.state": "needed",
+    "loading.far_stress": "the initial load",
+    "run.creep_rtol": "automatic",
+    "run.shortest_event": "automatic",
+}
+"""What an empty field of a number stands for that has neither a default nor need be given."""
+PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry, Part) for entry, _ in fields_of(law).values()))
+"""Kinds of laws that may be a part of another law."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """One entry of a setting that can be changed.
+
+    Attributes
+    ----------
+    path : str
+        Its place in the document, for `Setting.value` and `Setting.with_value`.
+    label, meaning : str
+        Its name, and what it means with its allowed range.
+    kind : {"number", "whole", "choice", "text", "points"}
+        "whole" is a number of events or an exponent; "points" is a list of numbers.
+    value : float, str, tuple of float, or None
+        Its value in SI; None stands for `empty`.
+    unit, size : str, float
+        Unit in which a field shows the number ("" for a pure number), and its size in SI: shown = value / size.
+    slider : Range or None
+        Ends of the slider (SI), which do not follow it; None if it has no slider.
+    choices : tuple of str
+        What a choice allows.
+    empty : str
+        What an empty field stands for, such as "automatic"; "" if the entry is needed.
+    rare : bool
+        True for what is seldom changed.
+    """
+
+    path: str
+    label: str
+    meaning: str
+    kind: ControlKind
+    value: float | str | tuple[float, ...] | None
+    unit: str = ""
+    size: float = 1.0
+    slider: Range | None = None
+    choices: tuple[str, ...] = ()
+    empty: str = ""
+    rare: bool = False
+    declared: Field | None = None
+
+    @property
+    def shown(self) -> str:
+        """The value as its field shows it: a number in `unit`, a word, points with commas, or "" if it is empty."""
+        if self.value is None or isinstance(self.value, str):
+            return self.value or ""
+        if isinstance(self.value, tuple):
+            return ", ".join(f"{one / self.size:.12g}" for one in self.value)
+        if math.isinf(self.value) and isinstance(self.declared, Quantity):
+            return self.declared.word
+        return f"{self.value / self.size:.12g}"
+
+    def entry(self, value: float) -> float | str:
+        """Return what stands in the document for a number (SI) from the slider: in `unit`, as a person would write it."""
+        if self.kind == "whole":
+            return round(value)
+        return self._with_unit(float(f"{value / self.size:.12g}"))
+
+    def read(self, typed: str) -> Any:
+        """Return what stands in the document for a typed text; a number without a unit is one in `unit`.
+
+        None stands for an empty field. Raises InputError, which begins with the label, for what is not allowed.
+        """
+        text = typed.strip()
+        if not text and self.empty:
+            return None
+        if self.kind in ("choice", "text"):
+            return text
+        if self.kind == "points":
+            return [self._number(one) for one in text.replace(";", ",").split(",") if one.strip()]
+        if self.path == "run.events":
+            number = typed_number(text)
+            return check_events(int(number) if isinstance(number, float) and number.is_integer() else number, self.label, "number")
+        return self._number(text)
+
+    def _number(self, text: str) -> float | str:
+        declared = self.declared.item if isinstance(self.declared, Series) else self.declared
+        given = typed_number(text)
+        entry = self._with_unit(given) if isinstance(given, float) and math.isfinite(given) else given
+        if isinstance(declared, Quantity):
+            declared.check(self.label, "it", entry)
+        return entry
+
+    def _with_unit(self, number: float) -> float | str:
+        return f"{number!r} {self.unit}" if self.unit else number
+
+
+@dataclass(frozen=True)
+class Group:
+    """The controls of one table of the document, such as "friction" or "friction.slip".
+
+    `kind` is the kind of body, law, loading or start, "" for a table without one, and `kinds` those that can be chosen: see
+    `exchange.with_kind`.
+    """
+
+    table: str
+    title: str
+    kind: str
+    kinds: tuple[str, ...]
+    controls: tuple[Control, ...]
+
+
+def controls_of(setting: Setting) -> tuple[Group, ...]:
+    """Return the controls of a setting, table by table. Raises InputError if its document is not a scenario."""
+    return tuple(_Tables(setting).groups())
+
+
+class _Tables:
+    """The tables of a setting, beside those with which its scenario began."""
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting, self.problem = setting, setting.scenario().problem
+        began = Setting.bundled(setting.name) if setting.name in library.names() else setting
+        self.began: Callable[[str], Any] = began.value
+
+    def groups(self) -> Iterator[Group]:
+        body, law = self.problem.body, self.problem.friction
+        yield self.of("body", type(body), tuple(BODIES))
+        yield from self.of_law("friction", tuple(LAWS))
+        pull = self.setting.value("loading.pull_rate")
+        others = self.of("loading", type(body), ())
+        if isinstance(pull, Mapping):
+            kinds = (CONSTANT, *HISTORIES)
+            yield self.of("loading.pull_rate", HISTORIES[pull["kind"]], kinds, "Pull rate that varies")
+        else:
+            others = Group("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
+        if others.controls:
+            yield others
+        far = self.setting.value("loading.far_stress")
+        if isinstance(far, Mapping):
+            yield self.of("loading.far_stress", HISTORIES[far["kind"]], (), "Far stress that varies")
+        start = "load" if self.setting.value("initial.excess") is None else "excess"
+        yield replace(self.of("initial", type(body), (), state=law.state), kind=start, kinds=STARTS if law.sticks else ())
+        yield self.of_run()
+
+    def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[Group]:
+        content = self.setting.value(table)
+        kind = kind_of(table, content, self.setting.name)
+        yield self.of(table, kind, kinds, "" if table == "friction" else f"Friction: {table.partition('.')[2]}")
+        for name, (entry, _) in entries_in(table, kind).items():
+            if isinstance(entry, Part):
+                yield from self.of_law(f"{table}.{name}", PARTLESS)
+
+    def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", state: StateVariable | None = None) -> Group:
+        """Return the group of one table."""
+        controls: list[Control] = []
+        for name, (entry, default) in entries_in(table, kind, state).items():
+            if not self.applies(f"{table}.{name}"):
+                continue
+            if isinstance(entry, NamedNumbers):
+                given = self.setting.value(f"{table}.{name}") or {}
+                controls += [self.named(f"{table}.{name}.{one}", one) for one in given]
+            elif not isinstance(entry, Part):
+                controls.append(self.control(f"{table}.{name}", entry, default))
+        own = getattr(kind, "kind", "") if kinds or "." in table else ""
+        return Group(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
+
+    def of_run(self) -> Group:
+        """Return the group of the run: its numbers, the number of events, and the selection rule."""
+        numbers = self.of("run", type(self.problem.body), ())
+        rule = self.setting.value("run.selection") or SELECTION_RULES[0]
+        meaning = "which slip rate the contact takes where several solve the contact equation"
+        rules = Control("run.selection", "selection rule", meaning, "choice", rule, choices=names())
+        most = self.setting.value("run.events")
+        events = Control("run.events", "slip events", "the run ends after so many", "whole", most, empty="no limit", rare=True)
+        return Group("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:], events))
+
+    def applies(self, path: str) -> bool:
+        """Return False for an entry that this problem cannot have, and for a number in place of which there is a table."""
+        if path in ("loading.far_stress", "loading.far_stress_rate") and math.isinf(self.problem.body.driver_impedance):
+            return False
+        if path == "initial.state" and self.problem.friction.state is None:
+            return False
+        if path in ("initial.load", "initial.excess"):
+            return self.setting.value(path) is not None
+        return not isinstance(self.setting.value(path), Mapping) or "parameters" in path
+
+    def control(self, path: str, entry: Field, default: Any) -> Control:
+        """Return the control of one entry of the schema."""
+        label = path.rpartition(".")[2].replace("_", " ")
+        value = self.setting.value(path)
+        rare = path in RARE
+        if isinstance(entry, Choice):
+            return Control(path, label, entry.meaning, "choice", value or default, choices=entry.allowed, rare=rare, declared=entry)
+        if isinstance(entry, Text):
+            return Control(path, label, entry.meaning, "text", value or "", declared=entry)
+        if isinstance(entry, Series):
+            empty = "" if default is MISSING else "none"
+            unit, size = _unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
+            points = None if value is None else tuple(entry.item.check(label, "it", one) for one in value)
+            return Control(path, label, describe(entry), "points", points, unit, size, empty=empty, declared=entry)
+        assert isinstance(entry, Quantity)
+        return self.number(path, label, entry, default, rare)
+
+    def number(self, path: str, label: str, entry: Quantity, default: Any, rare: bool) -> Control:
+        """Return the control of a number."""
+        given = self.setting.value(path)
+        value = default if given is None and default is not MISSING else None if given is None else entry.check(label, "it", given)
+        unit, size = _unit_of(given, value, entry.unit)
+        empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
+        kind: ControlKind = "whole" if entry.whole else "number"
+        slider = self._slider(path, entry, value)
+        return Control(path, label, describe(entry), kind, value, unit, size, slider, empty=empty, rare=rare, declared=entry)
+
+    def _empty(self, path: str, default: Any, entry: Quantity) -> str:
+        if default is None:
+            return EMPTY.get(path, "none")
+        return entry.word if math.isinf(default) else f"{default:g}"
+
+    def named(self, path: str, name: str) -> Control:
+        """Return the control of a number of the user's formula, whose name and unit users choose."""
+        given = self.setting.value(path)
+        one = self.problem.parameters[path]
+        unit, size = _unit_of(given, one.value, one.unit)
+        slider = self._slider(path, one.declared, one.value)
+        return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
+
+    def _slider(self, path: str, entry: Quantity, value: float | None) -> Range | None:
+        anchor = self.began(path)
+        try:
+            began = value if anchor is None or isinstance(anchor, Mapping) else entry.check("", "", anchor)
+        except InputError:  # the scenario began with another kind of body or law, in which the name means something else
+            began = value
+        found = range_of(path, entry, began, self.problem)
+        return None if found is None else found.holding(value)
+
+
+def _unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
+    """Return the unit in which a number is shown, and its size in SI: that in which it was given, or a readable one."""
+    if si == "1":
+        return "", 1.0
+    parts = split_quantity(given) if isinstance(given, str) else None
+    if parts is None and value is not None and math.isfinite(value) and value != 0.0:
+        parts = split_quantity(brief(value, si))
+    if parts is None or " or " in si:
+        return si, 1.0
+    try:
+        return parts[1], to_si(1.0, parts[1], si)
+    except InputError:
+        return si, 1.0

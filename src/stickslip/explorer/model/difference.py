@@ -1,0 +1,108 @@
+"""The named difference of two runs: what was changed in the setting, and which numbers moved."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from typing import Any
+
+from stickslip.explorer.model.answer import Answer, KeyNumber
+from stickslip.explorer.model.leaves import leaves_of
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.words import short
+from stickslip.scenarios.values import show
+
+SAME = 1e-9
+"""Relative difference up to which two numbers count as equal."""
+TEXTS = ("title", "description")
+"""Entries that change no number."""
+MOST = 6
+"""Largest number of changes, and of moved numbers, that the text names."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """An entry of the document that differs: its path, and what it was and is, "" where there is none."""
+
+    path: str
+    before: str
+    after: str
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.before or 'nothing'} → {self.after or 'nothing'}"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A key number that differs, in both runs; NaN where a run has no such number."""
+
+    name: str
+    before: float
+    after: float
+    unit: str
+
+    @property
+    def share(self) -> float:
+        """The difference as a share of the number before; NaN if that is 0, or one of them is unknown."""
+        return (self.after - self.before) / abs(self.before) if self.before else math.nan
+
+    def __str__(self) -> str:
+        before, after = ("none" if math.isnan(value) else short(value, self.unit) for value in (self.before, self.after))
+        percent = f" ({100.0 * self.share:+.3g} %)" if math.isfinite(self.share) and abs(self.share) < 10.0 else ""
+        return f"{self.name}: {before} → {after}{percent}"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """All changes from one run to another, and all key numbers that moved."""
+
+    changes: tuple[Change, ...]
+    moved: tuple[Moved, ...]
+
+    @property
+    def text(self) -> str:
+        """One line that names them."""
+        if not self.changes:
+            return "the same setting"
+        named = "; ".join(str(one) for one in self.changes[:MOST]) + _more(len(self.changes))
+        numbers = "; ".join(str(one) for one in self.moved[:MOST]) + _more(len(self.moved))
+        return f"{named}. {'Moved: ' + numbers if self.moved else 'No number moved'}."
+
+
+def _more(count: int) -> str:
+    return f"; and {count - MOST} more" if count > MOST else ""
+
+
+def difference(before: tuple[Setting, Answer], after: tuple[Setting, Answer]) -> Difference:
+    """Return the named difference of two runs, each a setting and its answer."""
+    (old, old_answer), (new, new_answer) = before, after
+    return Difference(_changes(old, new), _moved(old_answer.numbers, new_answer.numbers))
+
+
+def _changes(old: Setting, new: Setting) -> tuple[Change, ...]:
+    """Return the changes; "1 s/m" and 1.0 are the same."""
+    was, now = (_in_si(one) for one in (old, new))
+    paths = [path for path in dict.fromkeys((*was, *now)) if path not in TEXTS and was.get(path) != now.get(path)]
+    return tuple(Change(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
+
+
+def _in_si(setting: Setting) -> dict[str, Any]:
+    return leaves_of(tomllib.loads(setting.scenario().to_toml()))
+
+
+def _shown(setting: Setting, path: str, in_si: dict[str, Any]) -> str:
+    """Return an entry as it stands in the document, or its value if it is a default."""
+    value = setting.value(path)
+    value = in_si.get(path) if value is None else value
+    return "" if value is None else value if isinstance(value, str) else f"{value:g}" if isinstance(value, float) else show(value)
+
+
+def _moved(old: tuple[KeyNumber, ...], new: tuple[KeyNumber, ...]) -> tuple[Moved, ...]:
+    now = {one.name: one for one in new}
+    both = [(one, now[one.name]) for one in old if one.name in now and one.unit == now[one.name].unit]
+    return tuple(Moved(one.name, one.value, other.value, one.unit) for one, other in both if not _equal(one.value, other.value))
+
+
+def _equal(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=SAME) or (math.isnan(one) and math.isnan(other))

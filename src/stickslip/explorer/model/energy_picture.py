@@ -1,0 +1,50 @@
+"""The parts of the energy of a run against time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.explorer.model.answer import EnergyPicture, Floats
+from stickslip.explorer.model.sampled_waves import SampledWaves
+from stickslip.explorer.model.shown import Shown
+from stickslip.observables.energy.balance import energies, heat
+
+TIMES = 160
+"""Number of times for a slab; for a block there are `BLOCK_TIMES`."""
+BLOCK_TIMES = 400
+PLACES = 240
+"""Number of places in the slab at which the product of its two waves is added up."""
+
+
+def energy_picture(shown: Shown, waves: SampledWaves | None) -> EnergyPicture:
+    """Return the parts of the energy; none where the waves in a slab are not known because the run leaped over creep."""
+    body = shown.readings.problem.body
+    time = np.linspace(shown.start, shown.end, TIMES if body.has_waves else BLOCK_TIMES)
+    if body.has_waves and waves is None:
+        return EnergyPicture(time + shown.begin, {}, body.energy_unit)
+    found = _of_block(shown, time) if waves is None else _of_slab(waves, time)
+    elastic = found["stored"] - found["kinetic"]
+    parts = {"elastic": elastic - elastic.min(), "kinetic": found["kinetic"]}
+    parts |= {name: found[name] - found[name][0] for name in ("heat", "radiated", "damped")}
+    drawn = {name: values for name, values in parts.items() if values.any()}
+    total = parts["elastic"][0] + parts["kinetic"][0] + found["work"] - found["work"][0] + parts["radiated"]
+    return EnergyPicture(time + shown.begin, drawn | {"total": total}, body.energy_unit)
+
+
+def _of_block(shown: Shown, time: Floats) -> dict[str, Floats]:
+    history = shown.readings.history
+    return energies(history, history.find(time, "right"))
+
+
+def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
+    """Return the energies of a slab: what is stored follows from work and heat, since nothing is lost."""
+    at = waves.history.find(time, "right")
+    warmed, work = heat(waves.history, at), waves.work(time)
+    return {
+        "work": work,
+        "heat": warmed,
+        "stored": (work - work[0]) - (warmed - warmed[0]),
+        "kinetic": waves.kinetic(time, PLACES) + 0.5 * waves.body.contact_mass * waves.history.rate(at) ** 2,
+        "radiated": waves.radiated(time),
+        "damped": np.zeros(len(time)),
+    }

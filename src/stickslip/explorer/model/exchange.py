@@ -1,0 +1,159 @@
+"""Exchange the kind of body, law, loading or start of a setting: what still fits stays, the rest is plausible."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import replace
+from typing import Any
+
+from stickslip.bodies import as_slab
+from stickslip.explorer.model.controls import CONSTANT
+from stickslip.explorer.model.runs import slab_of_figure
+from stickslip.explorer.model.setting import Setting
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity, fields_of
+from stickslip.friction import FrictionLaw
+from stickslip.loading import HISTORIES
+from stickslip.scenarios import library
+from stickslip.scenarios.entries import Source, key_of, to_table
+from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
+from stickslip.scenarios.templates import STARTERS
+
+
+def with_kind(setting: Setting, table: str, kind: str) -> Setting:
+    """Return a setting with another kind of body, law, loading or start.
+
+    Parameters
+    ----------
+    setting : Setting
+        A setting that makes a scenario.
+    table : str
+        The table of a `controls.Group`: "body", "friction", "friction.slip", "loading", "loading.pull_rate" or "initial".
+    kind : str
+        One of its kinds.
+
+    Returns
+    -------
+    Setting
+        A new setting. Numbers with the same name, unit and an allowed value stay; others are those with which the scenario began,
+        or plausible ones. A contact whose law or body is exchanged starts at its static strength, or close to steady sliding.
+
+    Raises
+    ------
+    InputError
+        For an unknown kind.
+    """
+    if table == "body":
+        return _with_body(setting, kind)
+    if table == "initial":
+        return _with_start(setting, kind)
+    if table in ("loading", "loading.pull_rate"):
+        return _with_pull(setting, kind)
+    law = _law_table(setting, table, kind)
+    changed = setting.with_value(table, law)
+    return _started(changed) if table == "friction" else _or_started(changed)
+
+
+def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
+    """Return the table of a law of another kind, with what still fits of the former one."""
+    source = Source(setting.name)
+    law = kind_of("friction", {"kind": kind}, setting.name)
+    made = {"kind": kind} | _began(setting, table, kind, _example(law))
+    former = setting.value(table)
+    had = entries_in("friction", kind_of("friction", former, setting.name))
+    for key, (entry, _) in entries_in("friction", law).items():
+        old = had.get(key, (None, None))[0]
+        if not isinstance(entry, Quantity) or not isinstance(old, Quantity) or old.unit != entry.unit or key not in former:
+            continue
+        kept = made | {key: former[key]}
+        try:
+            read_part("friction", kept, source)
+        except InputError:
+            continue
+        made = kept
+    return made
+
+
+def _example(law: type[FrictionLaw]) -> dict[str, Any]:
+    """Return the plausible values of a law by their keys in a scenario."""
+    return {key_of(name, entry): deepcopy(law.example[name]) for name, (entry, _) in fields_of(law).items() if name in law.example}
+
+
+def _began(setting: Setting, table: str, kind: str, otherwise: dict[str, Any]) -> dict[str, Any]:
+    """Return the table with which the bundled scenario began if it is of this kind, otherwise other values."""
+    if setting.name in library.names():
+        own = Setting.bundled(setting.name).value(table)
+        if isinstance(own, Mapping) and own.get("kind") == kind:
+            return deepcopy(dict(own))
+    return otherwise
+
+
+def _started(setting: Setting) -> Setting:
+    """Return a setting whose start suits its law: at the static strength, or for a law that never sticks as its author says."""
+    law = kind_of("friction", setting.value("friction"), setting.name)
+    assert issubclass(law, FrictionLaw)
+    initial = {key: value for key, value in setting.value("initial").items() if key == "slip"}
+    if setting.name in library.names():
+        began = Setting.bundled(setting.name)
+        same = all(began.value(f"{table}.kind") == setting.value(f"{table}.kind") for table in KINDS)
+        if same:
+            return setting.with_value("initial", dict(began.value("initial")))
+    if law.sticks:
+        return setting.with_value("initial", initial | {"excess": 0.0})
+    body = read_part("body", dict(setting.value("body")), Source(setting.name))
+    load = law.start["coefficient"] * body.normal_load
+    return setting.with_value("initial", initial | {"load": load, "state": law.start["state"]})
+
+
+def _or_started(setting: Setting) -> Setting:
+    """Return the setting as it is if it makes a scenario, otherwise with a start that suits its law."""
+    try:
+        setting.scenario()
+    except InputError:
+        return _started(setting)
+    return setting
+
+
+def _with_body(setting: Setting, kind: str) -> Setting:
+    """Return a setting with a body of another kind: a slab's equivalent block, or the slab beside which a block stands."""
+    kind_of("body", {"kind": kind}, setting.name)
+    if setting.value("body.kind") == kind:
+        return setting
+    if kind == "spring-block":
+        slab = replace(as_slab(setting.scenario().problem.body), driver_impedance=math.inf)
+        body = to_table(slab.equivalent_block())
+        loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith("far_stress")}
+        setting = setting.with_value("loading", loading)
+    else:
+        slab_name = slab_of_figure(setting.name) or STARTERS["slab"]
+        body = dict(tomllib.loads(library.text(slab_name))["body"])
+    made = {"kind": kind} | _began(setting, "body", kind, body)
+    run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}
+    return _started(setting.with_value("body", made).with_value("run", run))
+
+
+def _with_start(setting: Setting, kind: str) -> Setting:
+    """Return a setting that gives the same initial load in another way."""
+    if kind not in ("load", "excess"):
+        raise InputError(f"{setting.name}: [initial] takes load or excess, got {kind!r}")
+    problem = setting.scenario().problem
+    value, other = (problem.load, "excess") if kind == "load" else (problem.excess, "load")
+    return setting.with_value(f"initial.{other}", None).with_value(f"initial.{kind}", float(value))
+
+
+def _with_pull(setting: Setting, kind: str) -> Setting:
+    """Return a setting with a constant pull rate, or one that varies in another way."""
+    pull = setting.scenario().problem.pull_rate
+    first = pull if isinstance(pull, float) else pull.first
+    if kind == CONSTANT:
+        return setting.with_value("loading.pull_rate", first)
+    kind_of("loading", {"kind": kind}, setting.name)
+    plain = (
+        setting if not isinstance(setting.value("loading.far_stress"), Mapping) else setting.with_value("loading.far_stress", None)
+    )
+    return plain.with_value(
+        "loading.pull_rate", {"kind": kind} | _began(setting, "loading.pull_rate", kind, HISTORIES[kind].example)
+    )

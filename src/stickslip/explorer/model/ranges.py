@@ -1,0 +1,102 @@
+"""The ends of sliders: they follow from the declared range of a quantity, and from the value with which the scenario began."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from stickslip.foundation.quantities import LARGEST_WHOLE, Quantity
+from stickslip.problem.problem import Problem
+
+WIDE = 30.0
+"""A logarithmic slider reaches from the value over this factor to the value times it."""
+REACH = 3.0
+"""A linear slider that begins at 0 reaches to this many times the value."""
+SPECIAL_WIDE = {"loading.pull_rate": 1000.0, "run.duration": 10.0}
+"""Other factors of logarithmic sliders."""
+LARGE_COEFFICIENT = 0.2
+"""Pure numbers from here on are friction coefficients, whose sliders reach to `COEFFICIENTS` at least; others are small shares."""
+INVERSE_RATES = ("s/m", "m^-1 s")
+"""Units of numbers that may be 0, but whose size is to be seen on a logarithmic slider."""
+NEARLY = 1e-3
+"""A slider of a pure number that must be greater than 0 begins at this share of its end."""
+COEFFICIENTS = 1.5
+"""Smallest end of the slider of a friction coefficient."""
+
+
+class Range(NamedTuple):
+    """The ends of a slider (SI), and whether it is logarithmic."""
+
+    low: float
+    high: float
+    log: bool = False
+
+    def holding(self, value: float | None) -> Range:
+        """Return the range, widened to hold a value."""
+        if value is None or not math.isfinite(value) or (self.log and value <= 0.0):
+            return self
+        return Range(min(self.low, value), max(self.high, value), self.log)
+
+
+def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> Range | None:
+    """Return the range of a slider, or None if a slider makes no sense.
+
+    Parameters
+    ----------
+    path : str
+        Place of the number in the document, such as "body.density".
+    declared : Quantity
+        Its declaration.
+    anchor : float or None
+        The value (SI) with which the scenario began; the range does not follow the slider.
+    problem : Problem
+        The problem, for the sizes of loads.
+    """
+    if path in ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed") or anchor is None:
+        return None
+    if declared.whole:
+        return Range(1.0, float(LARGEST_WHOLE))
+    special = _special(path, anchor, problem)
+    if special is not None:
+        return special
+    if not math.isfinite(anchor):
+        return None
+    if declared.unit == "1":
+        high = max(COEFFICIENTS, 1.5 * anchor) if anchor >= LARGE_COEFFICIENT else REACH * anchor or LARGE_COEFFICIENT
+        return Range(0.0 if declared.above is None else NEARLY * high, high)
+    if anchor > 0.0 and (declared.at_least != 0.0 or declared.unit in INVERSE_RATES):
+        factor = SPECIAL_WIDE.get(path, WIDE)
+        return Range(anchor / factor, anchor * factor, log=True)
+    if anchor == 0.0:
+        return None
+    return Range(min(0.0, REACH * anchor), max(0.0, REACH * anchor))
+
+
+def _special(path: str, anchor: float, problem: Problem) -> Range | None:
+    """Return the range of a number that may be zero or infinite, and whose size follows from others of the problem."""
+    body = problem.body
+    size = problem.strength or 0.8 * problem.normal
+    if path == "initial.load":
+        return Range(min(0.0, 1.5 * anchor), max(1.3 * size, 1.2 * anchor))
+    if path == "initial.excess":
+        reach = 5.0 * abs(anchor) or 0.2 * size
+        return Range(-reach, reach)
+    if path == "initial.slip":
+        reach = max(2.0 * abs(anchor), slip_scale(problem))
+        return Range(-reach if anchor < 0.0 else 0.0, reach)
+    if path == "body.driver_impedance":
+        return Range(0.0, 5.0 * body.impedance)
+    if path == "body.contact_mass":
+        return Range(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
+    if path == "body.damping":
+        return Range(0.0, max(2.0 * body.impedance, REACH * anchor))
+    if path == "loading.pull_rate" and anchor <= 0.0:
+        return Range(REACH * anchor, -REACH * anchor) if anchor < 0.0 else Range(0.0, 1e-3 * problem.normal / body.impedance)
+    return None
+
+
+def slip_scale(problem: Problem) -> float:
+    """Return a slip (m) over which friction changes: the longest length among the numbers of the law, or 1 m if there is none."""
+    lengths = [one.value for one in problem.parameters.values() if one.name.startswith("friction.") and one.unit == "m"]
+    numbers = [one.value for one in problem.parameters.values() if one.unit in ("1/m", "m^-1") and one.value]
+    return max([*lengths, *(2.0 * math.pi / abs(number) for number in numbers)], default=1.0) or 1.0

@@ -1,0 +1,140 @@
+"""The two waves in a slab, sampled finely in time: from them the pictures of slab and energy are read off by interpolation.
+
+The exact field and energies of `stickslip.observables` take a millisecond for each time. A picture needs hundreds of times within
+some milliseconds, and no more digits than a screen shows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from stickslip.explorer.model.answer import Floats
+from stickslip.explorer.model.shown import Shown
+from stickslip.observables.field import slab_of
+from stickslip.observables.wave_interval import WaveInterval
+from stickslip.observables.waves import Radiation, Waves
+
+EVEN = 3000
+"""Number of evenly spaced samples."""
+INSIDE = 6
+"""Number of samples within each piece of the history, if there are not more than `MANY` pieces."""
+MANY = 600
+"""Number of pieces from which on only their ends are sampled besides."""
+OF_START = 500
+"""Number of samples of the load that the initial state brings."""
+NEARBY = 1e-9
+"""Distance of the sample before a front from the one after it, as a share of the two-way travel time."""
+
+
+@dataclass(frozen=True)
+class Wave:
+    """A wave (Pa, plus or minus the reference strength) at the contact against time (s)."""
+
+    time: Floats
+    value: Floats
+
+    def at(self, time: Floats) -> Floats:
+        """Return the wave at times."""
+        return np.interp(time, self.time, self.value)
+
+    @cached_property
+    def _sums(self) -> Floats:
+        return summed(self.time, self.value)
+
+    def total(self, time: Floats) -> Floats:
+        """Return the integral of the wave up to times, Pa s."""
+        return np.interp(time, self.time, self._sums)
+
+    @cached_property
+    def _squares(self) -> Floats:
+        return summed(self.time, self.value**2)
+
+    def squared(self, time: Floats) -> Floats:
+        """Return the integral of the square of the wave up to times, Pa^2 s."""
+        return np.interp(time, self.time, self._squares)
+
+
+def summed(time: Floats, value: Floats) -> Floats:
+    """Return the integral of values from the first time to each time, by the trapezoidal rule."""
+    return np.append(0.0, np.cumsum(0.5 * np.diff(time) * (value[1:] + value[:-1])))
+
+
+class SampledWaves:
+    """The waves of a slab in an interval of its run; times are those of `shown.readings`.
+
+    `leaving` is w = 2 Z v - beta plus the reference strength where it leaves the contact, `coming` is beta minus the reference
+    where it arrives there. Raises InputError if the waves are not known because the run leaped over creep.
+    """
+
+    def __init__(self, shown: Shown) -> None:
+        self.shown = shown
+        self.history, self.body = shown.readings.history, slab_of(shown.readings.problem)
+        self.waves, self.radiation = Waves(self.history, self.body), Radiation(self.history, self.body)
+        self.first, half = self.history.span[0], self.waves.half
+        self.leaving = self._leaving(max(shown.start - self.waves.round, self.first - half))
+        sent = self.leaving.time - self.first
+        back = self.waves.arriving(self.leaving.value, sent)
+        begin = np.linspace(0.0, half * (1.0 - NEARBY), OF_START)
+        known = self.leaving.time >= self.first - half
+        self.coming = Wave(
+            np.concatenate([self.first + begin, self.leaving.time[known] + self.waves.round]),
+            np.concatenate([self.waves.first_load(begin), back[known]]),
+        )
+        if shown.start - self.waves.round > self.first - half:
+            self.coming = Wave(self.leaving.time + self.waves.round, back)
+
+    def _leaving(self, begin: float) -> Wave:
+        interval, end = WaveInterval(self.waves, begin, self.shown.end), self.shown.end
+        slack = NEARBY * self.waves.round
+        edges = self.waves.inflow.edges(begin - self.first + self.waves.round, end - self.first + self.waves.round)
+        edges = edges + self.first - self.waves.round
+        breaks = np.unique(np.append(interval.start, self.first))
+        breaks = breaks[(breaks >= begin) & (breaks <= end)]
+        inside = np.diff(breaks) * np.linspace(0.0, 1.0, INSIDE + 2)[1:-1, None] + breaks[:-1]
+        within = np.ravel(inside) if len(breaks) <= MANY else breaks[:0]
+        right = np.concatenate([np.linspace(begin, end, EVEN), breaks, within, edges - slack, edges + slack])
+        time = np.concatenate([right, breaks - slack])
+        value = np.concatenate([interval.leaving(right, "right"), interval.leaving(breaks, "left")])
+        order = np.argsort(time, kind="stable")
+        return Wave(time[order], value[order])
+
+    def velocity(self, time: Floats, place: Floats) -> Floats:
+        """Return the velocity (m/s) at times and places (m from the contact) that broadcast."""
+        away = place / self.body.wave_speed
+        return (self.coming.at(time + away) + self.leaving.at(time - away)) / (2.0 * self.body.impedance)
+
+    def stress(self, time: Floats, place: Floats) -> Floats:
+        """Return the shear stress (Pa) at times and places (m from the contact) that broadcast."""
+        away = place / self.body.wave_speed
+        return self.waves.reference + 0.5 * (self.coming.at(time + away) - self.leaving.at(time - away))
+
+    def displacement(self, time: Floats, place: Floats, at_contact: Floats) -> Floats:
+        """Return the displacement (m) at times and places that broadcast, from that of the contact at these times."""
+        away = place / self.body.wave_speed
+        come = self.coming.total(time + away) - self.coming.total(time)
+        left = self.leaving.total(time) - self.leaving.total(time - away)
+        return at_contact + (2.0 * self.waves.reference * away + come - left) / (2.0 * self.body.impedance)
+
+    def kinetic(self, time: Floats, places: int) -> Floats:
+        """Return the kinetic energy in the slab (J/m^2) at times: the mean over `places` is only taken where both waves overlap."""
+        half = self.waves.half
+        away = half * (np.arange(places) + 0.5) / places
+        both = np.mean(self.coming.at(time[:, None] + away) * self.leaving.at(time[:, None] - away), axis=1)
+        come = self.coming.squared(time + half) - self.coming.squared(time)
+        left = self.leaving.squared(time) - self.leaving.squared(time - half)
+        return np.asarray((come + left + 2.0 * half * both) / (8.0 * self.body.impedance))
+
+    def work(self, time: Floats) -> Floats:
+        """Return the work of the driver up to times (J/m^2, up to a constant), net of what is radiated."""
+        return self._of_driver(self.waves, time)
+
+    def radiated(self, time: Floats) -> Floats:
+        """Return the energy radiated through the driver up to times (J/m^2, up to a constant)."""
+        return self._of_driver(self.radiation, time)
+
+    def _of_driver(self, waves: Waves, time: Floats) -> Floats:
+        power = waves.power(self.leaving.value, self.leaving.time - self.first)
+        return np.interp(time - waves.half, self.leaving.time, summed(self.leaving.time, power))

@@ -1,0 +1,95 @@
+"""Answer a scenario: run it and its companion, and work out all that the explorer shows of them."""
+
+from __future__ import annotations
+
+from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.explorer.model.answer import Answer, Motion
+from stickslip.explorer.model.contact_picture import contact_picture
+from stickslip.explorer.model.energy_picture import energy_picture
+from stickslip.explorer.model.events import Found
+from stickslip.explorer.model.law_picture import law_picture
+from stickslip.explorer.model.marks import marks_of
+from stickslip.explorer.model.motion import motion
+from stickslip.explorer.model.numbers import key_numbers
+from stickslip.explorer.model.runs import run, run_companion
+from stickslip.explorer.model.sampled_waves import SampledWaves
+from stickslip.explorer.model.sentence import sentence
+from stickslip.explorer.model.shown import Shown
+from stickslip.explorer.model.slab_picture import slab_picture
+from stickslip.explorer.model.stop import Told, silent
+from stickslip.foundation.errors import InputError
+from stickslip.scenarios.examine import warnings_of
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.solution import Solution
+
+
+def solve(scenario: Scenario, told: Told = silent) -> Answer:
+    """Run a scenario and return all that the explorer shows of it.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What to run.
+    told : callable
+        Called with a line on the progress of a long run, some ten times a second. If it raises `Stopped` the run ends there, and
+        the answer shows it up to there.
+
+    Returns
+    -------
+    Answer
+        The run, its companion, and all that is shown of them, in SI units.
+
+    Raises
+    ------
+    InputError
+        If the run cannot even start, in one line.
+    """
+    contact = uniqueness_of(scenario.problem)
+    solution = run(scenario, told)
+    companion = None if solution.status.name == "interrupted" else run_companion(scenario, told)
+    return answer_of(scenario, solution, companion, contact)
+
+
+def answer_of(scenario: Scenario, solution: Solution, companion: Solution | None, contact: Uniqueness) -> Answer:
+    """Return what is shown of finished runs."""
+    found, own, influence = Found.of(solution), motion(solution), solution.rule_influence
+    shown = Shown.of(solution)
+    waves = _waves(shown)
+    return Answer(
+        scenario=scenario,
+        solution=solution,
+        companion=companion,
+        regime=influence.regime,
+        sentence=sentence(found, contact, influence),
+        law=law_picture(solution, own),
+        contact=contact_picture(contact, own),
+        motions=(own, *_beside(companion)),
+        slab=None if waves is None else slab_picture(waves),
+        energy=energy_picture(shown, waves),
+        marks=marks_of(found, own),
+        numbers=key_numbers(found, contact, own),
+        notes=notes_of(scenario, solution, contact),
+    )
+
+
+def _waves(shown: Shown) -> SampledWaves | None:
+    """Return the waves in the slab; None for a block, and where they are not known because the run leaped over creep."""
+    if not shown.readings.problem.body.has_waves:
+        return None
+    try:
+        return SampledWaves(shown)
+    except InputError:
+        return None
+
+
+def _beside(companion: Solution | None) -> tuple[Motion, ...]:
+    if companion is None:
+        return ()
+    return (motion(companion, "slab" if companion.problem.body.has_waves else "equivalent block"),)
+
+
+def notes_of(scenario: Scenario, solution: Solution, contact: Uniqueness) -> tuple[str, ...]:
+    """Return warnings on a scenario and its run, one line each."""
+    ended = [] if solution.status.ok else [str(solution.status)]
+    of_run = (solution.creep_note, solution.lumping_note, solution.rounding_note)
+    return (*ended, *(note for note in of_run if note), *warnings_of(scenario, contact))

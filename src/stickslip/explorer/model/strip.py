@@ -1,0 +1,189 @@
+"""A strip: what a few hundred runs of one setting give while a single parameter moves through a range.
+
+The runs are those of a sweep. Where the compiled batch can do them, two hundred take a few hundredths of a second; scenarios that
+it cannot do are run one after the other, with a line on the progress.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import number
+from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.scenario import Scenario
+from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter
+from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
+from stickslip.sweeps.execution.chunk import Work, run_chunk
+
+Floats = NDArray[np.float64]
+Told = Callable[[str], None]
+
+MEMBERS = 200
+"""Number of runs in a strip: about one for each four pixels of a page."""
+SHOWN = ("pulses", "slip", "first_end", "peak_rate")
+"""The quantities of a strip that are drawn, by their names in a sweep; `first_end` is the time of the first arrest."""
+KEPT = (*SHOWN, "irregular")
+PORTION = 10
+"""Number of runs between two lines on the progress, where the batch cannot run them together."""
+
+
+@dataclass(frozen=True)
+class StripRange:
+    """The range that a strip covers: a parameter by its place in a scenario file, and its ends in SI.
+
+    With `log` the values are evenly spaced in the logarithm.
+    """
+
+    parameter: str
+    low: float
+    high: float
+    log: bool = False
+
+    def values(self, members: int = MEMBERS) -> Floats:
+        """Return the values of the parameter (SI), in ascending order. Raises InputError for ends that make no range."""
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise InputError(f"strip: {self.parameter} must go from a smaller to a larger number, got {self.low} to {self.high}")
+        if self.log and not self.low > 0.0:
+            raise InputError(f"strip: a logarithmic range of {self.parameter} must begin above 0, got {self.low}")
+        space: Callable[..., Floats] = np.geomspace if self.log else np.linspace
+        return space(self.low, self.high, members)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """The results of the runs of a strip, in the order of `values` (SI).
+
+    Attributes
+    ----------
+    parameter : str
+        The parameter that moves, such as "friction.alpha".
+    meaning, unit : str
+        What it is, in words, and its SI unit ("1" for a pure number).
+    values : array, shape (members,)
+        Its values.
+    here : float
+        Its value in the setting from which the strip was made; NaN if the setting has none.
+    log : bool
+        True if the values are evenly spaced in the logarithm.
+    results : dict of str to array, shape (members,)
+        The quantities `SHOWN`, and "irregular": 1 where several slip rates solve the contact equation. NaN for runs that failed.
+    units : dict of str to str
+        The SI unit of each result.
+    refused : dict of int to str
+        Why runs failed, in one line, by their number.
+    """
+
+    parameter: str
+    meaning: str
+    unit: str
+    values: Floats
+    here: float
+    log: bool
+    results: Mapping[str, Floats]
+    units: Mapping[str, str]
+    refused: Mapping[int, str]
+
+    def nearest(self, value: float) -> int:
+        """Return the number of the run whose parameter is nearest to a value (SI), on the strip's own scale."""
+        scaled: Any = np.log if self.log else np.asarray
+        if self.log and value <= 0.0:
+            return 0
+        return int(np.argmin(np.abs(scaled(self.values) - scaled(value))))
+
+
+def strip_of(scenario: Scenario, where: StripRange, told: Told = lambda text: None, members: int = MEMBERS) -> Strip:
+    """Run a scenario for many values of one parameter.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario as it is shown.
+    where : StripRange
+        The parameter and the range of its values.
+    told : callable
+        Called with a line on the progress while runs are made one after the other. What it raises ends the strip.
+    members : int
+        Number of runs.
+
+    Returns
+    -------
+    Strip
+        The results; a run whose value makes no valid scenario, or that does not come to its end, has NaN and a reason.
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter, if it is a word and no number, or if the range is none.
+    """
+    found = numeric(scenario, where.parameter)
+    values = where.values(members)
+    work = Work(scenario.to_toml(), (found,), quantities_named(KEPT))
+    results, refused = _run(work, found.name, values, told)
+    units = {name: QUANTITIES[name].unit_for(scenario.problem) for name in KEPT}
+    here = present(scenario, found)
+    return Strip(found.name, found.declared.meaning, found.unit, values, here, where.log, results, units, refused)
+
+
+def _run(work: Work, name: str, values: Floats, told: Told) -> tuple[dict[str, Floats], dict[int, str]]:
+    """Return the results of all members, and why some failed: together in the batch, or in portions one after the other."""
+    count = len(values)
+    portion = PORTION if work.why_one_by_one else count
+    results, refused = {one: np.full(count, np.nan) for one in KEPT}, dict[int, str]()
+    for start in range(0, count, portion):
+        if work.why_one_by_one:
+            told(f"strip: {start} of {count} runs")
+        some = slice(start, start + portion)
+        done = run_chunk(work, {name: values[some]}, threads=1)
+        for one, column in done.results.items():
+            results[one][some] = column
+        refused.update({start + i: reason for i, reason in done.reasons.items()})
+    return results, refused
+
+
+def present(scenario: Scenario, parameter: ParameterPath) -> float:
+    """Return the value (SI) that a parameter has in a scenario; NaN if it has none, as the load where the excess is given."""
+    value: Any = tomllib.loads(scenario.to_toml())
+    *tables, last = parameter.name.split(".")
+    key, _, index = last.partition("[")
+    for table in (*tables, key):
+        value = value.get(table) if isinstance(value, Mapping) else None
+    if index and isinstance(value, list):
+        value = value[int(index[:-1])]
+    return math.nan if value is None else float(parameter.read(value, "strip"))
+
+
+def usual_range(scenario: Scenario, name: str) -> StripRange:
+    """Return the range of a strip that nobody has chosen: from a fifth of the present value to five times it, logarithmic.
+
+    Around a value that is negative the range ends at zero, and around zero, or where no value is given, it is 0 to 1 in SI.
+    """
+    found = numeric(scenario, name)
+    here = present(scenario, found)
+    if here > 0.0 and math.isfinite(here):
+        return StripRange(found.name, here / 5.0, here * 5.0, log=True)
+    return StripRange(found.name, 2.0 * here, 0.0) if -math.inf < here < 0.0 else StripRange(found.name, 0.0, 1.0)
+
+
+def numeric(scenario: Scenario, name: str) -> ParameterPath:
+    """Return the parameter with this name, which must be one that varies continuously. Raises InputError."""
+    found = find_parameter(scenario, name, "strip")
+    if not isinstance(found.declared, Quantity) or found.declared.whole or found.name == "run.events":
+        what = "a whole number" if isinstance(found.declared, Quantity) else "a word"
+        raise InputError(f"strip: {found.name} is {what}; a strip needs a parameter that varies continuously")
+    return found
+
+
+def strip_text(strip: Strip) -> str:
+    """Return one line that says what a strip shows: the parameter, its range, and the number of runs."""
+    unit = "" if strip.unit == "1" else f" {strip.unit}"
+    ends = f"{number(float(strip.values[0]), 3)} to {number(float(strip.values[-1]), 3)}{unit}"
+    failed = f", {len(strip.refused)} failed" if strip.refused else ""
+    return f"{len(strip.values)} runs: {strip.meaning} from {ends}{failed}"

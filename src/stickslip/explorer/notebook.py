@@ -1,0 +1,52 @@
+"""The explorer in a notebook: `ss.explore(problem)`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from stickslip.explorer.extra import check_extra
+from stickslip.foundation.conversion import WithUnit
+from stickslip.problem.problem import Problem
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
+ROUND_TRIPS = 3.0
+"""Round trips of a slab, or periods of a block, that are shown of a problem to which no duration is given."""
+
+
+def explore(problem: Problem | Scenario | str | Path = "fig6-slab", duration: float | str | WithUnit | None = None) -> Any:
+    """Show a problem in a notebook, with controls for all of its numbers, as `stickslip explore` shows it in a browser.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        What to show first: a problem, a scenario, the name of a bundled scenario, or a scenario file.
+    duration : float or str, optional
+        Duration of the run: a number in s, or a text with a unit such as "480 years". By default that of the scenario; for a
+        problem three round trips of the waves in a slab, or three periods of a block.
+
+    Returns
+    -------
+    panel.viewable.Viewable
+        The explorer. As the last expression of a cell it is shown; its attribute `explorer` holds the setting and the answer.
+
+    Raises
+    ------
+    InputError
+        If the libraries of the extra `explorer` are missing, if the problem cannot be read, or if it cannot be written as a
+        scenario because its law is a function of Python.
+    """
+    check_extra("explore")
+    from stickslip.explorer.server.in_notebook import shown_in_notebook
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.scenarios.source import read_source
+
+    found = read_source("explore", problem)
+    if isinstance(found, Problem):
+        found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
+    elif duration is not None:
+        found = replace(found, duration=duration)
+    return shown_in_notebook(found)

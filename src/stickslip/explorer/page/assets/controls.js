@@ -1,0 +1,134 @@
+// The controls: a slider, a number field and a unit for each number, and a list for each choice. Native elements, for keyboard and readers.
+
+/** The number at a slider's position (0 to 1000), rounded to digits that a reader wants to see. */
+function numberAt(row, position) {
+  const share = position / 1000;
+  const value = row.log ? row.low * (row.high / row.low) ** share : row.low + share * (row.high - row.low);
+  return Number(value.toPrecision(4));
+}
+
+/** The slider's position of a number; outside its range the slider is at its end. */
+function positionOf(row, value) {
+  const share = row.log ? Math.log(value / row.low) / Math.log(row.high / row.low) : (value - row.low) / (row.high - row.low);
+  return Number.isFinite(share) ? 1000 * Math.min(Math.max(share, 0), 1) : 0;
+}
+
+class Controls {
+  constructor(root, send) {
+    this.root = root; this.send = send; this.rows = new Map(); this.drawn = "";
+    root.className = "controls";
+  }
+
+  /** Show groups of rows: they are made anew only if other rows are needed, so that the focus stays where it is. */
+  update(groups, faults) {
+    const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range }) => [path, kind, options, unit, !range])]));
+    if (form !== this.drawn) this.make(groups);
+    this.drawn = form;
+    for (const { rows } of groups) for (const row of rows) this.fill(row);
+    for (const [path, parts] of this.rows) this.blame(parts, faults[path] ?? "");
+  }
+
+  make(groups) {
+    const open = new Map([...this.root.querySelectorAll("details")].map((one) => [one.dataset.title, one.open]));
+    const focused = this.root.getRootNode().activeElement?.id;
+    this.rows.clear();
+    this.root.replaceChildren(...groups.map((group) => this.makeGroup(group, open.get(group.title) ?? group.open ?? true)));
+    if (focused) this.root.querySelector(`#${CSS.escape(focused)}`)?.focus();
+  }
+
+  makeGroup({ title, rows }, open) {
+    const group = document.createElement("details");
+    group.open = open; group.dataset.title = title;
+    const heading = document.createElement("summary");
+    heading.textContent = title;
+    group.append(heading, ...rows.map((row) => this.makeRow(row)));
+    return group;
+  }
+
+  makeRow(row) {
+    const line = document.createElement("div"), id = `control-${row.path.replace(/\W/g, "-")}`;
+    line.className = `row ${row.kind}`;
+    line.innerHTML = `<label for="${id}"></label><span class="entry"></span><p class="fault" id="${id}-fault" role="alert"></p>`;
+    line.querySelector("label").textContent = row.label;
+    if (row.help) line.title = row.help;
+    const parts = { row, line, fault: line.querySelector(".fault") }, entry = line.querySelector(".entry");
+    this.rows.set(row.path, parts);
+    if (row.kind === "choice") {
+      parts.field = document.createElement("select");
+      parts.field.addEventListener("change", () => this.send({ path: row.path, value: parts.field.value }));
+      entry.append(parts.field);
+      fillChoices(parts.field, row.options);
+    } else {
+      parts.field = document.createElement("input");
+      parts.field.type = "text"; parts.field.spellcheck = false; parts.field.autocomplete = "off";
+      if (row.kind === "number") parts.field.inputMode = "decimal";
+      parts.field.addEventListener("change", () => this.send({ path: row.path, text: parts.field.value }));
+      entry.append(parts.field);
+      if (row.unit) entry.append(Object.assign(document.createElement("span"), { className: "unit", textContent: row.unit }));
+      if (row.range) this.makeSlider(parts, id);
+    }
+    parts.field.id = id;
+    parts.field.setAttribute("aria-describedby", `${id}-fault`);
+    return line;
+  }
+
+  makeSlider(parts, id) {
+    const slider = document.createElement("input");
+    Object.assign(slider, { type: "range", min: 0, max: 1000, step: 1, id: `${id}-slider` });
+    slider.setAttribute("aria-label", `${parts.row.label}, slider`);
+    slider.addEventListener("input", () => {
+      const value = numberAt(parts.row.range, Number(slider.value));
+      parts.field.value = String(value);
+      slider.setAttribute("aria-valuetext", `${value} ${parts.row.unit}`);
+      this.later({ path: parts.row.path, value });
+    });
+    parts.slider = slider;
+    parts.line.insertBefore(slider, parts.fault);
+  }
+
+  /** Send the latest value of a slider that moves, at most one a frame. */
+  later(message) {
+    const waits = this.waiting;
+    this.waiting = message;
+    if (!waits) requestAnimationFrame(() => { const latest = this.waiting; this.waiting = null; this.send(latest); });
+  }
+
+  fill(row) {
+    const parts = this.rows.get(row.path), active = this.root.getRootNode().activeElement;
+    parts.row = row;
+    if (parts.slider && active !== parts.slider) parts.slider.value = positionOf(row.range, row.value);
+    if (parts.slider) parts.slider.setAttribute("aria-valuetext", `${row.text} ${row.unit}`);
+    if (active === parts.slider && parts.slider) return; // it is being moved: what it says is newer
+    if (active !== parts.field || parts.field.value !== row.text) parts.field.value = row.text;
+  }
+
+  blame(parts, fault) {
+    if (parts.fault.textContent !== fault) parts.fault.textContent = fault;
+    parts.field.setAttribute("aria-invalid", String(Boolean(fault)));
+  }
+}
+
+/** Options of a list; those with a group stand under its name. */
+function fillChoices(select, options) {
+  const groups = new Map();
+  for (const { value, label, group } of options) {
+    const option = Object.assign(document.createElement("option"), { value, textContent: label });
+    if (group && !groups.has(group)) {
+      groups.set(group, Object.assign(document.createElement("optgroup"), { label: group }));
+      select.append(groups.get(group));
+    }
+    (groups.get(group) ?? select).append(option);
+  }
+}
+
+/** Where Panel shows the controls: groups of rows and faults come from Python, and what is entered goes back. */
+export function render({ model }) {
+  const root = document.createElement("div");
+  const controls = new Controls(root, (message) => model.send_msg(message));
+  const update = () => controls.update(model.groups, model.faults);
+  model.on(["groups", "faults"], update);
+  update();
+  return root;
+}
+
+export { Controls };

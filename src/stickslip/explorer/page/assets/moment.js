@@ -1,0 +1,126 @@
+// What all panels show at the time of the cursor. Nothing here asks the server: sources are changed in the browser alone.
+
+/** The index of the last entry that is not later than t: the limit from the right at a shock. */
+function lastUpTo(times, t) {
+  let low = 0, high = times.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (times[middle] <= t) low = middle; else high = middle - 1;
+  }
+  return low;
+}
+
+/** The value of a column at time t, on straight lines between its points. */
+function valueAt(times, values, t) {
+  if (!times.length) return NaN;
+  const i = lastUpTo(times, t), j = Math.min(i + 1, times.length - 1);
+  if (t <= times[0] || times[j] === times[i]) return values[i];
+  const share = Math.min((t - times[i]) / (times[j] - times[i]), 1);
+  return values[i] + share * (values[j] - values[i]);
+}
+
+/** The models of a Bokeh document by name, changed without telling the server. */
+class Models {
+  constructor(bokeh) { this.bokeh = bokeh; this.found = new Map(); }
+
+  get(name) {
+    if (!this.found.has(name)) this.found.set(name, this.bokeh.get_model_by_name(name));
+    return this.found.get(name);
+  }
+
+  column(source, name) { return this.get(`source:${source}`)?.get_column(name) ?? []; }
+
+  put(source, data) { this.get(`source:${source}`)?.setv({ data }, { sync: false }); }
+
+  set(name, changes) { this.get(name)?.setv(changes, { sync: false }); }
+}
+
+const TIME_PLOTS = ["slip", "rate", "traction", "field", "energy"];
+const COLUMNS_DRAWN = 11, ROWS_DRAWN = 20;
+
+/** Bring the cursor of all panels to time t (in the unit shown); return the values there. */
+function showMoment(models, facts, t) {
+  for (const name of TIME_PLOTS) models.set(`cursor:${name}`, { location: t });
+  const times = models.column("motion", "time"), values = {};
+  for (const name of ["slip", "rate", "traction", "load", "drive"]) {
+    const column = models.column("motion", name);
+    if (column.length) values[name] = valueAt(times, column, t);
+  }
+  models.put("now", { time: [t], slip: [values.slip], rate: [values.rate], traction: [values.traction] });
+  showLaw(models, t);
+  showContact(models, facts, t);
+  if (facts.shape?.kind === "slab") showSlab(models, facts, t);
+  else if (facts.shape) showBlock(models, facts, values);
+  return values;
+}
+
+/** The friction coefficient that acts at time t; at rest it is what the load needs, and lies below the law's curve. */
+function showLaw(models, t) {
+  const times = models.column("visits", "time");
+  const [x, y] = ["x", "y"].map((name) => valueAt(times, models.column("visits", name), t));
+  models.put("now_law", { x: [x], y: [y] });
+}
+
+function showContact(models, facts, t) {
+  if (!facts.contact) return;
+  const times = models.column("path", "time");
+  const rate = valueAt(times, models.column("path", "rate"), t), load = valueAt(times, models.column("path", "load"), t);
+  models.put("now_contact", { rate: [rate], load: [load] });
+  if (Number.isFinite(load)) models.set("cursor:contact", { location: load });
+}
+
+/** The slab, sheared by the displacements at time t: lines that were straight across it, and particles coloured by velocity. */
+function showSlab(models, facts, t) {
+  const { scale, bar, width, height } = facts.shape;
+  const displacement = models.column("field", "displacement")[0], velocity = models.column("field", "velocity")[0];
+  if (!displacement) return;
+  const [rows, columns] = displacement.shape;
+  const start = models.column("field", "x")[0], span = models.column("field", "dw")[0];
+  const at = Math.min(Math.max((t - start) / span * columns - 0.5, 0), columns - 1);
+  const left = Math.floor(at), right = Math.min(left + 1, columns - 1), share = at - left;
+  const mean = (values, row) => values[row * columns + left] * (1 - share) + values[row * columns + right] * share;
+  const u = [], y = [];
+  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push((row + 0.5) / rows * height); }
+  const first = 0.06 * width, step = 0.58 * width / (COLUMNS_DRAWN - 1);
+  const lines = { x: [], y: [] }, particles = { x: [], y: [], velocity: [] };
+  for (let column = 0; column < COLUMNS_DRAWN; column++) {
+    const x = first + column * step;
+    lines.x.push(u.map((one) => x + one));
+    lines.y.push(y);
+    for (let one = 0; one < ROWS_DRAWN; one++) {
+      const row = Math.round((one + 0.5) / ROWS_DRAWN * rows - 0.5);
+      particles.x.push(x + u[row]);
+      particles.y.push(y[row]);
+      particles.velocity.push(mean(velocity, row));
+    }
+  }
+  models.put("lines", lines);
+  models.put("particles", particles);
+  models.put("body", { x: [], y: [] });
+  const end = first + (COLUMNS_DRAWN - 1) * step, top = u[rows - 1];
+  models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [1.06 * height, 1.06 * height]] });
+  models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [-0.02 * height] });
+}
+
+/** The block at time t, on the ground, and its spring up to the end that is pulled. */
+function showBlock(models, facts, values) {
+  const { scale, bar, width, height } = facts.shape;
+  const origin = models.column("motion", "slip")[0], drive = models.column("motion", "drive")[0];
+  const u = scale * (values.slip - origin), pulled = scale * ((values.drive ?? drive) - drive);
+  const [left, right, low, high] = [0.06 * width + u, 0.3 * width + u, 0.02 * height, 0.42 * height];
+  models.put("body", { x: [[left, right, right, left]], y: [[low, low, high, high]] });
+  const end = 0.92 * width + pulled, middle = (low + high) / 2, teeth = 9;
+  const spring = { x: [right, right + 0.3], y: [middle, middle] };
+  for (let one = 0; one <= teeth; one++) {
+    spring.x.push(right + 0.3 + (end - right - 0.6) * (one + 0.5) / (teeth + 1));
+    spring.y.push(middle + (one % 2 ? -1 : 1) * 0.07 * height);
+  }
+  spring.x.push(end - 0.3, end);
+  spring.y.push(middle, middle);
+  models.put("lines", { x: [spring.x], y: [spring.y] });
+  models.put("particles", { x: [], y: [], velocity: [] });
+  models.put("driver", { x: [[end, end], scaleBar(width, bar)], y: [[low, 0.5 * height], [1.06 * height, 1.06 * height]] });
+  models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [0] });
+}
+
+function scaleBar(width, bar) { return [0.98 * width - bar, 0.98 * width]; }

@@ -1,0 +1,216 @@
+// The time bar: play, pause, speed, a slider, and marks that can be clicked. It moves the cursor of all panels.
+
+const WHOLE = 12; // seconds in which a run is played at speed 1
+const GLYPHS = { start: "▸", pulse: "▲", arrest: "■", jump: "◆", fold: "○", echo: "│" };
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+
+const icon = (path) => `<svg viewBox="0 0 16 16" width="1em" height="1em" fill="currentColor" aria-hidden="true"><path d="${path}"/></svg>`;
+const PLAY = icon("M4 2.5v11l9-5.5z"), PAUSE = icon("M4 2.5h3v11H4zM9 2.5h3v11H9z"), TO_START = icon("M3 2.5h2v11H3zM13 2.5v11L5.5 8z");
+
+const BAR = `
+  <div class="bar" role="group" aria-label="Time">
+    <button class="start" type="button" aria-label="To the start" title="To the start (Home)">${TO_START}</button>
+    <button class="play" type="button" aria-label="Play" title="Play or pause (space)">${PLAY}</button>
+    <label class="speed" title="Speed of playing"><span class="hidden">Speed</span>
+      <select aria-label="Speed of playing">${SPEEDS.map((one) => `<option value="${one}"${one === 1 ? " selected" : ""}>${one} ×</option>`).join("")}</select>
+    </label>
+    <output class="clock" aria-live="off"></output>
+    <div class="track">
+      <div class="marks" role="toolbar" aria-label="Marks: pulses, arrest and jumps"></div>
+      <input class="time" type="range" min="0" max="1000" step="any" value="0" aria-label="Time of the cursor">
+    </div>
+    <output class="values" aria-live="off"></output>
+  </div>`;
+
+/** The time bar in an element, for the models of one Bokeh document. */
+class Player {
+  constructor(bokeh, root, look, moved = () => {}) {
+    this.models = new Models(bokeh);
+    this.bokeh = bokeh; this.look = look; this.moved = moved;
+    this.facts = {}; this.t = null; this.playing = false;
+    root.innerHTML = BAR;
+    const find = (name) => root.querySelector(name);
+    this.root = root; this.button = find(".play"); this.slider = find(".time"); this.clock = find(".clock");
+    this.values = find(".values"); this.marks = find(".marks"); this.speed = find("select");
+    this.button.addEventListener("click", () => this.toggle());
+    find(".start").addEventListener("click", () => this.go(this.start, true));
+    this.slider.addEventListener("input", () => { this.pause(); this.go(this.fromShare(this.slider.value / 1000)); });
+    this.slider.addEventListener("change", () => this.report());
+    this.slider.addEventListener("keydown", (event) => this.key(event, true));
+    this.holdPlots();
+    this.listenToPage();
+  }
+
+  get start() { return this.range?.start ?? 0; }
+  get end() { return this.range?.end ?? 1; }
+  get range() { return this.models.get("range:time"); }
+  fromShare(share) { return this.start + share * (this.end - this.start); }
+
+  /** Take the facts of a new answer; the cursor stays at its time as far as the run has it. */
+  update(facts) {
+    this.facts = facts;
+    this.showPanels();
+    this.showMarks();
+    this.go(this.t === null ? this.start : Math.min(Math.max(this.t, this.start), this.end));
+  }
+
+  /** Bring the cursor to a time in seconds. */
+  goSeconds(seconds) { if (this.facts.time) this.go(seconds / this.facts.time.size); }
+
+  go(t, report = false) {
+    this.t = Math.min(Math.max(t, this.start), this.end);
+    if (this.frame) { if (report) this.report(); return; }
+    this.frame = requestAnimationFrame(() => { this.frame = null; this.draw(); });
+    if (report) this.report();
+  }
+
+  draw() {
+    if (!this.facts.time || this.t === null) return;
+    const values = showMoment(this.models, this.facts, this.t);
+    const share = (this.t - this.start) / (this.end - this.start || 1);
+    this.slider.value = 1000 * share;
+    const { unit } = this.facts.time, digits = digitsFor(this.end - this.start);
+    this.clock.textContent = `t = ${this.t.toFixed(digits)} ${unit}`;
+    this.slider.setAttribute("aria-valuetext", `${this.t.toFixed(digits)} ${unit}`);
+    this.values.innerHTML = (this.facts.read ?? []).map(({ column, symbol, unit, offset }) =>
+      `<span style="--role: var(--${column})"><i>${offset ? "Δ" : ""}${symbol}</i> ${shortNumber(values[column])} ${unit}</span>`).join("");
+  }
+
+  report() { if (this.facts.time) this.moved(this.t * this.facts.time.size); }
+
+  toggle() { this.playing ? this.pause() : this.play(); }
+
+  play() {
+    if (this.t >= this.end) this.t = this.start;
+    this.playing = true;
+    this.showButton();
+    let before = performance.now();
+    const tick = (now) => {
+      if (!this.playing || !this.root.isConnected) return;
+      const t = this.t + (now - before) / 1000 * Number(this.speed.value) * (this.end - this.start) / WHOLE;
+      before = now;
+      this.t = Math.min(t, this.end);
+      this.draw();
+      if (t >= this.end) this.pause(); else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  pause() {
+    if (!this.playing) return;
+    this.playing = false;
+    this.showButton();
+    this.report();
+  }
+
+  showButton() {
+    this.button.innerHTML = this.playing ? PAUSE : PLAY;
+    this.button.setAttribute("aria-label", this.playing ? "Pause" : "Play");
+  }
+
+  showMarks() {
+    const marks = this.facts.marks ?? [], span = this.end - this.start || 1;
+    this.marks.replaceChildren(...marks.map((mark, i) => {
+      const button = document.createElement("button");
+      const text = mark.text;
+      button.type = "button"; button.className = mark.kind; button.textContent = GLYPHS[mark.kind] ?? "│";
+      button.title = text; button.setAttribute("aria-label", text); button.tabIndex = i ? -1 : 0;
+      button.style.setProperty("--share", (mark.time - this.start) / span);
+      button.addEventListener("click", () => { this.pause(); this.go(mark.time, true); });
+      return button;
+    }));
+    this.marks.onkeydown = (event) => this.walkMarks(event);
+  }
+
+  walkMarks(event) {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const all = [...this.marks.children], here = all.indexOf(event.target), next = all[here + step];
+    event.preventDefault(); event.stopPropagation();
+    if (next) { event.target.tabIndex = -1; next.tabIndex = 0; next.focus(); next.click(); }
+  }
+
+  /** Panels that have nothing to show give their place to others. */
+  showPanels() {
+    const hidden = new Set(this.facts.hidden ?? []);
+    for (const panel of document.querySelectorAll("[data-panel]")) panel.hidden = hidden.has(panel.dataset.panel);
+  }
+
+  /** Dragging or clicking in a panel with an axis of time moves the cursor. */
+  holdPlots() {
+    for (const name of TIME_PLOTS) {
+      const plot = this.models.get(`plot:${name}`);
+      for (const kind of ["tap", "panstart", "pan"]) plot?.on_event(kind, (event) => { this.pause(); this.go(event.x); });
+      plot?.on_event("panend", () => this.report());
+    }
+  }
+
+  key(event, onSlider = false) {
+    const step = (event.shiftKey ? 0.05 : 0.005) * (this.end - this.start);
+    const acts = {
+      ArrowRight: () => this.go(this.t + step, true), ArrowLeft: () => this.go(this.t - step, true),
+      Home: () => this.go(this.start, true), End: () => this.go(this.end, true), " ": () => this.toggle(),
+    };
+    const act = acts[event.key];
+    if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    if (onSlider) event.stopPropagation();
+    if (event.key !== " ") this.pause();
+    act();
+  }
+
+  /** Keys: space plays or pauses wherever it has no other use; the arrows move the cursor where the panels have the focus. */
+  listenToPage() {
+    this.onKey = (event) => {
+      if (!this.root.isConnected) { document.removeEventListener("keydown", this.onKey); return; }
+      const target = event.composedPath()[0];
+      const busy = target.closest?.("input, select, textarea, button, a, summary, [contenteditable]");
+      const inPanels = event.composedPath().some((one) => one.dataset && "plots" in one.dataset);
+      if (!busy && (inPanels || event.key === " ") && (inPanels || target === document.body)) this.key(event);
+    };
+    document.addEventListener("keydown", this.onKey);
+    const switchGround = document.querySelector("[data-switch=ground]");
+    this.paint();
+    if (switchGround && !switchGround.dataset.heard) {
+      switchGround.dataset.heard = "yes";
+      switchGround.addEventListener("click", () => {
+        chooseGround(document.documentElement.dataset.ground === "dark" ? "light" : "dark");
+        this.paint();
+      });
+    }
+    for (const query of ["(min-width: 1700px)", "(max-width: 760px)"]) matchMedia(query).addEventListener("change", () => this.paint());
+  }
+
+  paint() {
+    const ground = document.documentElement.dataset.ground ?? "light";
+    paintModels(this.bokeh, this.look, ground);
+    const button = document.querySelector("[data-switch=ground]");
+    button?.setAttribute("aria-pressed", String(ground === "dark"));
+  }
+}
+
+/** Digits after the point with which a time of a span can be told apart from its neighbours. */
+function digitsFor(span) { return Math.min(Math.max(3 - Math.floor(Math.log10(span || 1)), 0), 6); }
+
+/** A number in at most four digits, with a true minus. */
+function shortNumber(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : value.toFixed(size >= 100 ? 1 : size >= 10 ? 2 : 3);
+  return text.replace("-", "−");
+}
+
+/** Where Panel shows the bar: `model.facts` and `model.cursor` come from Python, and the cursor goes back when it rests. */
+export function render({ model, view, el }) {
+  const root = document.createElement("div");
+  root.className = "player";
+  const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
+  const update = () => player.update(model.facts);
+  model.on("facts", update);
+  model.on("cursor", () => player.goSeconds(model.cursor));
+  update();
+  if (model.cursor) player.goSeconds(model.cursor);
+  return root;
+}
+
+export { Player };

@@ -1,0 +1,80 @@
+"""The page: all its parts in their places. `build` is what the server shows to each browser."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel as pn
+
+from stickslip.explorer.page.components import PlayerBar, asset
+from stickslip.explorer.page.controls import Controls
+from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.heading import heading
+from stickslip.explorer.page.look import style_sheet
+from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.words import Words
+
+TITLES = {
+    "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
+    "traction": "Traction", "field": "Velocity in the slab", "energy": "Energy",
+}  # fmt: skip
+"""Titles of the panels before the first answer, and of those whose axes have texts of their own."""
+SLOTS = ("bar", "aside", "below", "above")
+"""Places for further parts: in the bar at the top, below the controls, below and above the panels."""
+
+
+class Panels:
+    """The linked panels and the time bar of one page: `plots` and `headings` by name, and `player`."""
+
+    def __init__(self, explorer: Explorer) -> None:
+        self._explorer, self.stage = explorer, Stage()
+        self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(self.stage).items()}
+        self.headings = {
+            name: pn.pane.HTML(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
+            for name in self.plots
+        }
+        self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
+        explorer.listen("answer", self.show)
+        explorer.listen("cursor", self._move)
+        self.show()
+
+    def show(self) -> None:
+        """Show the answer of the explorer, if it has one."""
+        if self._explorer.answer is None:
+            return
+        view = view_of(self._explorer.answer)
+        with pn.io.hold():
+            self.stage.show(view)
+            for name, pane in self.headings.items():
+                pane.object = heading(view.titles.get(name, TITLES[name]), view.keys.get(name, ()))
+            self.player.facts = view.facts
+
+    def _move(self) -> None:
+        self.player.cursor = self._explorer.cursor
+
+    def _moved(self, seconds: float) -> None:
+        self._explorer.cursor = seconds
+        self._explorer.tell("cursor")
+
+
+def build(explorer: Explorer, **parts: Any) -> Any:
+    """Return the page of an explorer, for a server.
+
+    Parameters
+    ----------
+    explorer : Explorer
+        The centre of the page.
+    **parts
+        Further parts by the name of their place, one of `SLOTS`.
+    """
+    panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
+    page = pn.Template(asset("page.html"))
+    page.add_variable("page_style", style_sheet() + asset("page.css"))
+    page.add_variable("app_title", "stickslip explorer")
+    for name, pane in panels.plots.items():
+        page.add_panel(name, pane)
+        page.add_panel(f"{name}_heading", panels.headings[name])
+    for name, part in {"player": panels.player, "words": words.view, "controls": controls.view, **parts}.items():
+        page.add_panel(name, part)
+    return page

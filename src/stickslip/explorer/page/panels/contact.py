@@ -1,0 +1,88 @@
+"""The panel of the contact equation: g(v) with the set K, its folds and jumps, the load line, and the run's path on it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import Arrow, NormalHead
+
+from stickslip.explorer.model.answer import Answer, ContactPicture
+from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+
+TEXT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"
+KINDS = {1: "stable", -1: "unstable", 0: "continuum"}
+KEYS = {
+    "stable": Key("stable", "stable"),
+    "unstable": Key("unstable", "unstable", "dash"),
+    "continuum": Key("continuum", "continuum"),
+}
+
+
+def data_of(answer: Answer, units: Units) -> View:
+    """Return the parts of the curve, folds, jumps and the path, in the units of slip rate and load."""
+    contact = answer.contact
+    empty: Columns = {"rate": [], "load": []}
+    sources = ("stick", *KINDS.values(), "folds", "path")
+    if contact is None:
+        hidden = {name: dict(empty) for name in sources} | {"jumps": {"x0": [], "y0": [], "x1": [], "y1": []}}
+        return View(columns=hidden, hidden={"contact"}, facts={"contact": None})
+    metre, pascal = units.rate[1], units.load[1]
+    columns: dict[str, Columns] = {kind: _part(contact, number, metre, pascal) for number, kind in KINDS.items()}
+    columns["stick"] = {"rate": [0.0, 0.0], "load": [0.0, contact.strength / pascal]}
+    folds, jumps = np.reshape(contact.folds, (-1, 2)), np.reshape(contact.jumps, (-1, 4))
+    columns["folds"] = {"rate": folds[:, 0] / metre, "load": folds[:, 1] / pascal}
+    ends = dict(zip(("x0", "y0", "x1", "y1"), (jumps / [metre, pascal, metre, pascal]).T, strict=True))
+    columns["jumps"] = ends
+    path = {"time": contact.path_time / units.time[1], "rate": contact.path_rate / metre, "load": contact.path_load / pascal}
+    columns["path"] = path
+    found = [kind for kind in KINDS.values() if np.isfinite(columns[kind]["load"]).any()]
+    keys = [Key("stick", "stick"), *(KEYS[kind] for kind in found), Key("path", "path")]
+    keys += [Key("fold", "ink", "point")] if len(folds) else []
+    keys += [Key("jump", "muted", "dot")] if len(jumps) else []
+    name = "force" if units.load[0].endswith("N") else "load"
+    return View(
+        columns=columns,
+        limits={
+            "contact_rate": limits(contact.rate / metre, path["rate"], 0.0),
+            "contact_load": limits(contact.load / pascal, path["load"], columns["stick"]["load"][1]),
+        },
+        labels={
+            "axis:contact_rate@contact": axis_label("slip rate", "v", units.rate[0]),
+            "axis:contact_load@contact": axis_label(name, "β", units.load[0]),
+        },
+        keys={"contact": (*keys, Key("load now", "cursor", "dash"))},
+        facts={"contact": {}},
+    )
+
+
+def _part(contact: ContactPicture, number: int, metre: float, pascal: float) -> Columns:
+    """Return the points of one kind, with NaN elsewhere; unstable parts and continua reach to their neighbours."""
+    chosen = contact.stability == number
+    if number != 1 and chosen.any():
+        chosen = chosen | np.append(chosen[1:], False) | np.append(False, chosen[:-1])
+    return {"rate": contact.rate / metre, "load": np.where(chosen, contact.load / pascal, np.nan)}
+
+
+def plot(stage: Stage) -> Any:
+    """Return the plot of the contact equation."""
+    drawn = stage.plot("contact", "contact_rate", "contact_load", TEXT)
+    paint(drawn.line("rate", "load", source=stage.source("stick", "rate", "load"), line_width=4.5).glyph, line_color="stick")
+    for kind in KINDS.values():
+        dash = "dashed" if kind == "unstable" else "solid"
+        line = drawn.line("rate", "load", source=stage.source(kind, "rate", "load"), line_width=3, line_dash=dash)
+        paint(line.glyph, line_color=kind)
+    path = stage.source("path", "time", "rate", "load")
+    paint(drawn.line("rate", "load", source=path, line_width=2.2).glyph, line_color="path")
+    head = paint(NormalHead(size=7, line_alpha=0.0), fill_color="muted")
+    jumps = stage.source("jumps", "x0", "y0", "x1", "y1")
+    ends = {"x_start": "x0", "y_start": "y0", "x_end": "x1", "y_end": "y1"}
+    drawn.add_layout(paint(Arrow(end=head, source=jumps, line_dash="dotted", line_width=1.5, **ends), line_color="muted"))
+    folds = drawn.scatter("rate", "load", source=stage.source("folds", "rate", "load"), size=7)
+    paint(folds.glyph, fill_color="card", line_color="ink")
+    stage.cursor("contact", "width")
+    dot = drawn.scatter("rate", "load", source=stage.source("now_contact", "rate", "load"), size=9, level="overlay")
+    paint(dot.glyph, fill_color="cursor", line_color="card")
+    return drawn

@@ -1,0 +1,69 @@
+"""The panel of the friction law: the friction coefficient against slip or slip rate, and what the run visits of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import CustomJSTickFormatter, LinearAxis
+
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.stage import Stage, dress
+from stickslip.explorer.page.view import Key, Units, View, axis_label, limits
+from stickslip.figures.style import unit_of
+
+TEXT = "Friction law: friction coefficient against slip or slip rate"
+POWER = """
+const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+return "10" + [...String(Math.round(tick))].map((one) => (one === "-" ? "⁻" : raised[Number(one)])).join("")
+"""
+"""Text of a tick of a logarithmic axis: the axis itself is linear in the power of ten, so that it can change from run to run."""
+
+
+def data_of(answer: Answer, units: Units) -> View:
+    """Return the curve, the visited part of it as a band, and the texts of the axes."""
+    law = answer.law
+    name, symbol, unit = ("slip", "u", units.slip) if law.along == "slip" else ("slip rate", "v", units.rate)
+    if not np.abs(law.x).max() < 1e4 * unit[1]:  # the curve can reach much further than the run
+        unit = unit_of("m" if law.along == "slip" else "m/s", law.x)
+    if law.log:
+        unit = ("m" if law.along == "slip" else "m/s", 1.0)
+
+    def place(values: Any) -> Any:
+        shown = np.asarray(values, float) / unit[1]
+        return np.log10(np.maximum(np.abs(shown), 1e-300)) if law.log else shown
+
+    x, (low, high) = place(law.x), place(law.visited)
+    least, most = float(np.nanmin(x)), float(np.nanmax(x))
+    inside = (x >= low) & (x <= high)
+    ends = [np.interp(end, x, law.coefficient) for end in (low, high)]
+    visited = np.concatenate([[low], x[inside], [high]]), np.concatenate([ends[:1], law.coefficient[inside], ends[1:]])
+    label = axis_label(name, symbol, unit[0])
+    main = answer.motions[0]
+    along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
+    visits = {"time": main.time / units.time[1], "x": np.clip(place(along), least, most)}
+    visits["y"] = main.traction / answer.scenario.problem.body.normal_load
+    return View(
+        columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "visits": visits},
+        limits={"law_x": (least, most), "law_y": limits(law.coefficient)},
+        labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction coefficient μ"},
+        keys={"law": (Key("law", "grey"), Key("visited by the run", "law"), Key("now", "cursor", "point"))},
+        hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
+    )
+
+
+def plot(stage: Stage) -> Any:
+    """Return the plot of the friction law."""
+    drawn = stage.plot("law", "law_x", "law_y", TEXT)
+    powers = LinearAxis(formatter=CustomJSTickFormatter(code=POWER), visible=False)
+    powers.ticker.min_interval = 1.0
+    dress(powers)
+    drawn.add_layout(powers, "below")
+    stage.note("axis:law_powers", powers)
+    paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="grey")
+    paint(drawn.line("x", "y", source=stage.source("visited", "x", "y"), line_width=3.2, line_cap="round").glyph, line_color="law")
+    stage.source("visits", "time", "x", "y")
+    dot = drawn.scatter("x", "y", source=stage.source("now_law", "x", "y"), size=9, level="overlay")
+    paint(dot.glyph, fill_color="cursor", line_color="card")
+    return drawn

@@ -1,0 +1,64 @@
+"""The panel of the body at the time of the cursor: the slab's particles and lines, sheared, or the block on its spring.
+
+The browser calculates the points from the sources "field" and "motion" (assets/stage.js), because they move with the cursor.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.view import Key, Units, View, axis_label, round_step
+
+TEXT = "Shape of the body at the time of the cursor: displacements, drawn many times larger"
+WIDTH = 10.0
+"""Width of the picture, in its own units."""
+REACH = 0.3
+"""Largest displacement, as a share of the width."""
+
+
+def data_of(answer: Answer, units: Units) -> View:
+    """Return how much displacements are enlarged, and the length of the bar that shows their scale."""
+    slab, slip = answer.slab, answer.motions[0].slip
+    shown = np.asarray(slab.displacement if slab is not None else slip - slip[0]) / units.slip[1]
+    largest = float(np.abs(shown).max()) or 1.0
+    scale, bar = REACH * WIDTH / largest, round_step(largest)
+    keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else [Key("block", "slip", "area")]
+    height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
+    return View(
+        limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.1 * height)},
+        labels={"axis:shape_y@shape": axis_label("distance from contact", "x", units.place[0])},
+        keys={"shape": (*keys, Key(f"bar: {bar:g} {units.slip[0]}", "ink", "line"))},
+        hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
+        facts={
+            "shape": {
+                "kind": "slab" if slab is not None else "block",
+                "scale": scale, "bar": bar * scale, "width": WIDTH, "height": height,
+            }
+        },
+    )  # fmt: skip
+
+
+def plot(stage: Stage) -> Any:
+    """Return the plot of the body's shape."""
+    drawn = stage.plot("shape", "shape_x", "shape_y", TEXT)
+    drawn.grid.visible = False
+    ground = stage.source("ground", "x0", "x1", "y0", "y1")
+    paint(
+        drawn.quad(left="x0", right="x1", bottom="y0", top="y1", source=ground, line_width=0, level="overlay").glyph,
+        fill_color="ground",
+    )
+    body = drawn.patches("x", "y", source=stage.source("body", "x", "y"), fill_alpha=0.12, level="overlay")
+    paint(body.glyph, fill_color="slip", line_color="slip")
+    lines = drawn.multi_line("x", "y", source=stage.source("lines", "x", "y"), line_width=1, level="overlay")
+    paint(lines.glyph, line_color="grey")
+    driver = drawn.multi_line("x", "y", source=stage.source("driver", "x", "y"), line_width=3, level="overlay")
+    paint(driver.glyph, line_color="ink")
+    dots = drawn.scatter("x", "y", source=stage.source("particles", "x", "y", "velocity"), size=5, level="overlay")
+    dots.glyph.fill_color = {"field": "velocity", "transform": stage.signed}
+    paint(dots.glyph, line_color="grey")
+    return drawn

@@ -1,0 +1,124 @@
+"""What the panels show of one answer, as plain numbers and texts: made in Python, shown by Python or by a page without it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Columns = dict[str, Any]
+LineStyle = Literal["line", "dash", "dot", "area", "point", "scale"]
+
+
+class Key(NamedTuple):
+    """One entry of a panel's legend: its text, the role of its colour, and how it is drawn."""
+
+    text: str
+    role: str
+    style: LineStyle = "line"
+
+
+@dataclass
+class View:
+    """All that changes on the page from one answer to the next, in the units shown.
+
+    Attributes
+    ----------
+    columns : dict
+        The columns of each source of data, by its name.
+    limits : dict
+        The ends of each axis that is not found from the data, by the name of its range.
+    labels : dict
+        The text of each axis, by its name.
+    titles : dict
+        The title of each panel, by the panel's name; it names quantity and unit where the vertical axis has no text of its own.
+    keys : dict
+        The legend of each panel, by the panel's name.
+    hidden : set of str
+        Names of panels and of renderers and axes that have nothing to show.
+    fastest : float
+        The velocity at both ends of the colour scale; 0 if there is no image.
+    facts : dict
+        What the browser needs to move the cursor: units, marks, and how the body is drawn.
+    """
+
+    columns: dict[str, Columns] = field(default_factory=dict)
+    limits: dict[str, tuple[float, float]] = field(default_factory=dict)
+    labels: dict[str, str] = field(default_factory=dict)
+    titles: dict[str, str] = field(default_factory=dict)
+    keys: dict[str, tuple[Key, ...]] = field(default_factory=dict)
+    hidden: set[str] = field(default_factory=set)
+    fastest: float = 0.0
+    facts: dict[str, Any] = field(default_factory=dict)
+
+    def add(self, other: View) -> None:
+        """Take over what another view holds."""
+        self.columns |= other.columns
+        self.limits |= other.limits
+        self.labels |= other.labels
+        self.titles |= other.titles
+        self.keys |= other.keys
+        self.hidden |= other.hidden
+        self.fastest = self.fastest or other.fastest
+        self.facts |= other.facts
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of an answer, chosen once for all panels that show the same quantity: name and size in SI."""
+
+    time: tuple[str, float]
+    slip: tuple[str, float]
+    rate: tuple[str, float]
+    stress: tuple[str, float]
+    """That of traction and load against time."""
+    offset: float
+    """What is taken off traction and load against time, because they hardly change (Pa or N); 0 usually."""
+    load: tuple[str, float]
+    """That of the load on the contact's curve."""
+    place: tuple[str, float]
+
+
+def axis_label(name: str, symbol: str, unit: str) -> str:
+    """Return the text of an axis, such as "slip rate v (m/s)"."""
+    text = f"{name} {symbol}".strip()
+    return text if unit in ("", "1") else f"{text} ({unit})"
+
+
+def limits(*values: Any, floor: float | None = None, share: float = 0.04) -> tuple[float, float]:
+    """Return round limits around finite values, so that an axis keeps them while a number changes a little.
+
+    `floor` is a lower limit that is kept if no value lies below it. `share` of the range is added on both sides at least.
+    """
+    together = np.concatenate([np.ravel(np.asarray(one, float)) for one in values]) if values else np.zeros(0)
+    together = together[np.isfinite(together)]
+    low, high = (float(together.min()), float(together.max())) if together.size else (0.0, 1.0)
+    if floor is not None and low >= floor:
+        low = floor
+    if high - low <= 1e-12 * max(abs(low), abs(high)):
+        middle = max(abs(high), 1e-300)
+        low, high = low - 0.5 * middle, high + 0.5 * middle
+    step = round_step((high - low) / 10.0)
+    margin = share * (high - low)
+    bottom = low if floor is not None and low == floor else step * math.floor((low - margin) / step)
+    return bottom, step * math.ceil((high + margin) / step)
+
+
+def round_step(size: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is at most `size`."""
+    power = 10.0 ** math.floor(math.log10(size))
+    return next(one * power for one in (5.0, 2.0, 1.0) if one * power <= size * (1 + 1e-9))
+
+
+def single(values: Any) -> NDArray[np.float32]:
+    """Return values in single precision: enough for a picture, and half as much to send."""
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def plain(found: Mapping[str, Any]) -> dict[str, Any]:
+    """Return columns as lists, with NaN as None, for JSON."""
+    return {name: [None if x != x else x for x in np.asarray(values, float).tolist()] for name, values in found.items()}

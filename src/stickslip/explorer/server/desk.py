@@ -1,0 +1,170 @@
+"""Do the work of one page beside it, in a thread of its own, so that neither this page nor another one has to wait."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal
+
+from stickslip.explorer.model.stop import Stopped, Told
+from stickslip.foundation.errors import InputError
+
+Call = Callable[[], None]
+
+PATIENCE = 0.3
+"""Work that takes less than this (s) is finished and shown even if a newer request waits: pictures follow while a slider moves."""
+LOOK_AGAIN = 0.2
+"""Time (s) after which a desk that waits for its page looks whether the page is still open."""
+STOPPED_EARLY = "stopped before there was anything to show"
+
+
+class Dropped(BaseException):
+    """Raised inside work that nobody waits for any more."""
+
+
+@dataclass(eq=False)
+class _Task:
+    """One piece of work, and what the page does with its result."""
+
+    work: Callable[[Told], Any]
+    done: Callable[[Any], None]
+    failed: Callable[[Exception], None]
+    begun: float = 0.0
+    fate: Literal["goes on", "stop", "drop"] = "goes on"
+
+
+class ThreadDesk:
+    """The `Desk` of a page: one piece of work at a time; of the requests that come meanwhile only the latest is kept.
+
+    Work learns of its end from the function `told` that it is given, and calls about ten times a second. It raises `Stopped`, which
+    ends a run with what it has calculated so far, after `stop`; and `Dropped` if the page is closed, or if the work has taken
+    longer than PATIENCE and a newer request waits.
+
+    Parameters
+    ----------
+    deliver : callable
+        Function that has a function without arguments called on the page's own thread; any thread may call it.
+
+    Attributes
+    ----------
+    report : callable
+        Function that is called on the page with lines on the progress of the work.
+    """
+
+    def __init__(self, deliver: Callable[[Call], object]) -> None:
+        self.report: Told = lambda text: None
+        self._deliver = deliver
+        self._changed = threading.Condition()
+        self._present: _Task | None = None
+        self._next: _Task | None = None
+        self._news: str | None = None
+        self._thread: threading.Thread | None = None
+        self._closed = False
+
+    def ask(self, work: Callable[[Told], Any], done: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:
+        """Have `work` done in place of any that waits; then call `done` with its result, or `failed`, on the page."""
+        with self._changed:
+            if self._closed:
+                return
+            self._next = _Task(work, done, failed)
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name="explorer-desk", daemon=True)
+                self._thread.start()
+            self._changed.notify()
+
+    def stop(self) -> None:
+        """Stop the work that is under way; what it has calculated so far is its result."""
+        with self._changed:
+            if self._present is not None:
+                self._present.fate = "stop"
+
+    def close(self) -> None:
+        """End all work, because the page is gone, and forget what it would have been done for."""
+        with self._changed:
+            self._closed, self._next = True, None
+            if self._present is not None:
+                self._present.fate = "drop"
+            self.report = lambda text: None
+            self._changed.notify()
+
+    def say(self, text: str) -> None:
+        """Have a line reported on the page, from any thread; of several that wait only the latest is kept."""
+        with self._changed:
+            waits, self._news = self._news is not None, text
+        if not waits:
+            self._on_page(self._tell_news)
+
+    @property
+    def is_at_work(self) -> bool:
+        """True while work is under way or waits."""
+        with self._changed:
+            return self._present is not None or self._next is not None
+
+    def _work(self) -> None:
+        while self._take_next():
+            self._carry_out()
+
+    def _take_next(self) -> bool:
+        """Wait for the next task and make it the present one. Returns False if the page has been closed."""
+        with self._changed:
+            self._present = None
+            self._changed.wait_for(lambda: self._closed or self._next is not None)
+            if self._closed:
+                return False
+            self._present, self._next = self._next, None
+            return True
+
+    def _carry_out(self) -> None:
+        """Do the present task, and wait until the page has shown its result: a page that is slow is not flooded with results."""
+        task = self._present
+        assert task is not None
+        task.begun = time.monotonic()
+        try:
+            outcome: Call = partial(task.done, task.work(partial(self._told, task)))
+        except Dropped:
+            return
+        except Stopped:
+            outcome = partial(task.failed, InputError(STOPPED_EARLY))
+        except InputError as error:
+            outcome = partial(task.failed, error.with_traceback(None))
+        except Exception as error:
+            outcome = partial(task.failed, unforeseen(error))
+        shown = threading.Event()
+        self._on_page(partial(self._show, outcome, shown))
+        while not shown.wait(LOOK_AGAIN) and not self._closed:
+            pass
+
+    def _show(self, outcome: Call, shown: threading.Event) -> None:
+        try:
+            if not self._closed:
+                outcome()
+        finally:
+            shown.set()
+
+    def _told(self, task: _Task, text: str) -> None:
+        if task.fate == "drop" or (self._next is not None and time.monotonic() - task.begun > PATIENCE):
+            raise Dropped
+        if task.fate == "stop":
+            raise Stopped
+        self.say(text)
+
+    def _tell_news(self) -> None:
+        with self._changed:
+            text, self._news = self._news, None
+        if text is not None:
+            self.report(text)
+
+    def _on_page(self, call: Call) -> None:
+        if not self._closed:
+            self._deliver(call)
+
+
+def unforeseen(error: Exception) -> InputError:
+    """Write the traceback of an error that is no user's mistake to the terminal, and return one line on it for the page."""
+    logging.getLogger(__name__).error("the explorer could not do this:", exc_info=error)
+    line = " ".join(str(error).split())[:200]
+    return InputError(f"this cannot be shown, through a fault of the program ({type(error).__name__}{f': {line}' if line else ''})")

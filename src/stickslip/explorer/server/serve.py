@@ -1,0 +1,202 @@
+"""The server of the explorer: it opens one page, with its own explorer and desk, for each browser tab."""
+
+from __future__ import annotations
+
+import errno
+import signal
+import socket
+import sys
+import webbrowser
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from os import environ
+from typing import Any
+from urllib.parse import quote
+from weakref import ref
+
+import panel as pn
+from tornado.ioloop import IOLoop, PeriodicCallback
+
+from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.server.access import LOOPBACK, Access
+from stickslip.explorer.server.desk import Call, ThreadDesk, unforeseen
+from stickslip.explorer.server.sessions import LOOK_EVERY_MS, NEVER_SEEN_MS, Sessions
+from stickslip.explorer.server.warm import Warming
+from stickslip.foundation.errors import InputError
+
+FIRST_PORT = 5018
+"""The port that is tried first; the next free one is taken."""
+PORTS = 50
+"""Number of ports that are tried."""
+LARGEST_MESSAGE = 4_000_000
+"""Size (bytes) of the largest message from a browser: an upload of 1 MB with all that surrounds it."""
+LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}
+"""Bounds of what a browser may send outside the websocket: there is nothing to send but an address, which can hold a long link."""
+EVERYWHERE = ("0.0.0.0", "::", "")
+"""Addresses by which a server listens on all networks of the computer."""
+
+MakeExplorer = Callable[[ThreadDesk], Explorer]
+Build = Callable[[Explorer], Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a server listens, and for whom.
+
+    Attributes
+    ----------
+    address : str
+        Address of the network interface to listen on; the default can be reached from this computer only.
+    port : int or None
+        Port to listen on; 0 for any free one, None for the first free one from FIRST_PORT on.
+    origins : tuple of str
+        Hosts (`name` or `name:port`) under which the page may be reached, beside the address itself.
+    sessions : int
+        Largest number of pages that may be open at the same time.
+    """
+
+    address: str = LOOPBACK[0]
+    port: int | None = None
+    origins: tuple[str, ...] = ()
+    sessions: int = 8
+
+    @property
+    def is_loopback(self) -> bool:
+        """True if the server can be reached from this computer only."""
+        return self.address in ("127.0.0.1", "localhost", "::1")
+
+
+class ExplorerServer:
+    """A server that is bound to its port, and answers once its event loop runs.
+
+    Parameters
+    ----------
+    place : Place
+        Where it listens.
+    make : callable
+        Function that makes the explorer of a new page, given its desk.
+    build : callable
+        Function that builds the page of an explorer.
+    """
+
+    def __init__(self, place: Place, make: MakeExplorer, build: Build) -> None:
+        self.place, self._make, self._build = place, make, build
+        self.warming = Warming()
+        self.sessions = Sessions(place.sessions)
+        names = frozenset((*LOOPBACK, place.address)) if place.is_loopback else None
+        self.access = Access(names, frozenset(one.lower() for one in place.origins), self.sessions.refusal)
+        self._desks: set[ThreadDesk] = set()
+        self._bokeh = self._bound()
+        application = self._bokeh._tornado
+        application._websocket_origins = {
+            "*"
+        }  # `Access` compares each origin with the address that was asked for, which is stricter
+        self.access.guard(application)
+        self.sessions.contexts = application.applications.values()
+        self._looking = PeriodicCallback(self.sessions.look, LOOK_EVERY_MS)
+
+    @property
+    def port(self) -> int:
+        """The port on which the server listens."""
+        return int(self._bokeh.port)
+
+    @property
+    def url(self) -> str:
+        """The address of the page, with the token."""
+        host = socket.gethostname() if self.place.address in EVERYWHERE else self.place.address
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/?token={quote(self.access.token)}"
+
+    def start(self) -> None:
+        """Begin to answer, and to warm the compiler."""
+        self._bokeh.start()
+        self._looking.start()
+        self.warming.begin()
+
+    def run(self) -> None:
+        """Answer until Ctrl-C or the signal SIGTERM."""
+        loop: IOLoop = self._bokeh.io_loop
+
+        def leave(*_: Any) -> None:
+            signal.signal(signal.SIGINT, signal.default_int_handler)  # a second Ctrl-C does not wait
+            loop.add_callback_from_signal(loop.stop)
+
+        signal.signal(signal.SIGINT, leave)
+        signal.signal(signal.SIGTERM, leave)
+        self.start()
+        loop.start()
+        self.stop()
+
+    def stop(self) -> None:
+        """End all work and close the port."""
+        for desk in list(self._desks):
+            desk.close()
+        self._looking.stop()
+        self._bokeh.stop(wait=False)
+
+    def _bound(self) -> Any:
+        """Return a Bokeh server on the port that was asked for, or on the first one that is free. Raises InputError."""
+        first = FIRST_PORT if self.place.port is None else self.place.port
+        for port in range(first, first + (PORTS if self.place.port is None else 1)):
+            try:
+                return self._listening(port)
+            except OSError as error:
+                if error.errno != errno.EADDRINUSE:
+                    raise InputError(f"explore: cannot listen on {self.place.address} port {port}: {error.strerror}") from None
+        if self.place.port is None:
+            raise InputError(f"explore: ports {first} to {first + PORTS - 1} are all taken: choose one with --port, or 0 for any")
+        raise InputError(f"explore: port {first} is taken: choose another one with --port, or 0 for any that is free")
+
+    def _listening(self, port: int) -> Any:
+        handler = signal.getsignal(signal.SIGINT)
+        server = pn.io.server.get_server(
+            {"/": self._page},
+            port=port,
+            address=self.place.address,
+            title="stickslip explorer",
+            location=False,
+            sign_sessions=True,
+            secret_key=self.access.token.encode(),
+            include_cookies=[],
+            include_headers=["User-Agent"],
+            unused_session_lifetime_milliseconds=NEVER_SEEN_MS,
+            check_unused_sessions_milliseconds=LOOK_EVERY_MS,
+            websocket_max_message_size=LARGEST_MESSAGE,
+            http_server_kwargs=dict(LARGEST_REQUEST),
+        )
+        if handler is not None and signal.getsignal(signal.SIGINT) is not handler:
+            signal.signal(signal.SIGINT, handler)  # Panel sets its own
+        return server
+
+    def _page(self) -> Any:
+        """Return the page of a new tab, whose work ends with it."""
+        document = pn.state.curdoc
+        desk = ThreadDesk(partial(deliver_to, ref(document)))
+        explorer = self._make(desk)
+        desk.report = explorer.told
+        self._desks.add(desk)
+        untell = self.warming.tell(desk.say)
+
+        def gone(_: Any) -> None:
+            untell()
+            desk.close()
+            self._desks.discard(desk)
+
+        pn.state.on_session_destroyed(gone)
+        pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
+        page = self._build(explorer)
+        explorer.change(explorer.setting)
+        return page
+
+
+def deliver_to(document: Callable[[], Any], call: Call) -> None:
+    """Have a function called on the thread of a document, if that is still there; any thread may ask for it."""
+    found = document()
+    if found is not None:
+        found.add_next_tick_callback(call)
+
+
+def open_browser(url: str) -> bool:
+    """Open an address in the user's browser. Returns False if there is none that has a window."""
+    windows = sys.platform in ("win32", "darwin") or any(name in environ for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"))
+    return windows and webbrowser.open(url)

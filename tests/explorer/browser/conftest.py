@@ -1,0 +1,49 @@
+"""One browser for the tests of a process, one server for those of a module, and pages that fail when they do something wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from tests.explorer.browser.harness import NO_BROWSER, Served, Watched, launch, serve
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    """The browser; tests are skipped, with a sentence that says why, where there is none."""
+    sync_api = pytest.importorskip("playwright.sync_api")
+    with sync_api.sync_playwright() as playwright:
+        browser = launch(playwright)
+        if browser is None:
+            pytest.skip(NO_BROWSER)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory, chromium: Any) -> Iterator[Served]:
+    """A server of the explorer, which the end of the module stops with Ctrl-C."""
+    served = serve(folder=tmp_path_factory.mktemp("served"))
+    yield served
+    assert served.end() == 0
+
+
+@pytest.fixture
+def visit(chromium: Any) -> Iterator[Callable[..., Watched]]:
+    """A function that opens a page in a window of its own, and closes it; what the page did wrong fails the test."""
+    opened: list[Watched] = []
+
+    def open_page(url: str, origin: str, size: tuple[int, int] = (1280, 800), **context: Any) -> Watched:
+        window = chromium.new_context(viewport={"width": size[0], "height": size[1]}, accept_downloads=True, **context)
+        watched = Watched(window.new_page(), origin)
+        opened.append(watched)
+        watched.page.set_default_timeout(20_000)
+        watched.page.goto(url)
+        return watched
+
+    yield open_page
+    for watched in opened:
+        watched.page.context.close()
+    assert [fault for watched in opened for fault in watched.faults] == []

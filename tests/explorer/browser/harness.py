@@ -1,0 +1,98 @@
+"""What the browser tests share: finding a browser, a server in a process of its own, and pages that may do nothing wrong."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+NO_BROWSER = (
+    "no chromium was found: tests/explorer/install_browser.sh installs one; until then the explorer is not tested in a browser"
+)
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+"""Commands under which a browser may be installed, as in install_browser.sh."""
+URL = re.compile(r"https?://\S+")
+START = 120.0
+"""How long (s) a server may take to say where it is: on an empty cache it compiles first."""
+
+
+def installed() -> str | None:
+    """Return the path of an installed browser, or None."""
+    return next((found for found in map(shutil.which, NAMES) if found), None)
+
+
+def launch(playwright: Any) -> Any:
+    """Return a browser, an installed one or else that of playwright; None if there is neither."""
+    path = installed() or playwright.chromium.executable_path
+    if not Path(path).exists():
+        return None
+    return playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-dev-shm-usage"])
+
+
+@dataclass
+class Watched:
+    """A page of the browser, with everything that it should not have done: errors, and requests to other places."""
+
+    page: Any
+    origin: str
+    faults: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.page.on("console", self._console)
+        self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
+        self.page.on("request", self._request)
+
+    def _console(self, message: Any) -> None:
+        if message.type in ("error", "warning"):
+            self.faults.append(f"{message.type}: {message.text}")
+
+    def _request(self, request: Any) -> None:
+        found = urlsplit(request.url)
+        local = found.scheme in ("data", "blob") or f"{found.scheme}://{found.netloc}" == self.origin
+        if not local and f"ws://{found.netloc}" != self.origin.replace("http", "ws"):
+            self.faults.append(f"request to {request.url[:200]}")
+
+
+@dataclass
+class Served:
+    """A server of the explorer in a process of its own, and the address that it has said."""
+
+    process: subprocess.Popen[str]
+    url: str
+
+    @property
+    def origin(self) -> str:
+        """Scheme, host and port."""
+        found = urlsplit(self.url)
+        return f"{found.scheme}://{found.netloc}"
+
+    def end(self) -> int:
+        """End the server as Ctrl-C does, and return its exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(30)
+
+
+def serve(*arguments: str, folder: Path) -> Served:
+    """Start `stickslip explore` and wait until it has said its address."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "stickslip", "explore", "--no-browser", "--port", "0", *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert process.stdout is not None
+    said: list[str] = []
+    for line in process.stdout:
+        said.append(line)
+        if found := URL.search(line):
+            return Served(process, found[0])
+    raise AssertionError(f"the server ended before it said its address: {''.join(said)}")

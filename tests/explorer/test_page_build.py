@@ -1,0 +1,76 @@
+"""The page and its centre: parts in their places, entries that go to the setting, and faults that leave the picture alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import solve
+from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.page import Panels, build
+from stickslip.explorer.page.words import Words
+
+
+class AtOnce:
+    """A desk that does its work at once."""
+
+    def ask(self, work: Callable[..., Any], done: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:
+        try:
+            found = work(lambda text: None)
+        except Exception as error:
+            failed(error)
+        else:
+            done(found)
+
+    def stop(self) -> None:
+        pass
+
+
+@pytest.fixture
+def explorer() -> Explorer:
+    setting = Setting.bundled("fig5-slab-reconstructed")
+    made = Explorer(setting, AtOnce(), solve)
+    made.change(setting)
+    return made
+
+
+def test_the_page_has_all_its_parts(explorer: Explorer) -> None:
+    document = build(explorer)._init_doc()
+    roots = {root.name for root in document.roots} | {root.tags[0] for root in document.roots if root.tags}
+    assert {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy", "player", "words", "controls"} <= roots
+
+
+def test_a_new_answer_is_shown_in_place(explorer: Explorer) -> None:
+    panels = Panels(explorer)
+    source, before = panels.stage.source("motion"), panels.stage.source("motion").data["slip"][-1]
+    explorer.change(explorer.setting.with_value("friction.amplitude", 0.4))
+    assert panels.stage.source("motion") is source
+    assert source.data["slip"][-1] != before
+
+
+def test_a_fault_leaves_the_last_picture(explorer: Explorer) -> None:
+    panels, words = Panels(explorer), Words(explorer)
+    before = panels.stage.source("motion").data["slip"].copy()
+    explorer.change(explorer.setting.with_value("friction.amplitude", "much"))
+    assert (panels.stage.source("motion").data["slip"] == before).all()
+    assert "[friction] amplitude" in words.view.object
+    explorer.change(explorer.setting.with_value("friction.amplitude", 0.4))
+    assert "amplitude" not in words.view.object
+
+
+def test_words_are_escaped(explorer: Explorer) -> None:
+    words = Words(explorer)
+    explorer.refuse("<script>alert(1)</script>")
+    assert "<script>" not in words.view.object
+
+
+def test_the_cursor_of_the_browser_is_told(explorer: Explorer) -> None:
+    panels, heard = Panels(explorer), []
+    explorer.listen("cursor", lambda: heard.append(explorer.cursor))
+    panels.player._handle_msg({"cursor": 2.5})
+    panels.player._handle_msg({"cursor": "soon"})
+    panels.player._handle_msg("nonsense")
+    assert heard == [2.5]

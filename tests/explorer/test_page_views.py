@@ -1,0 +1,103 @@
+"""What the page shows of an answer: columns that belong together, axes that hold their data, units that fit."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import solve
+from stickslip.explorer.page.heading import heading
+from stickslip.explorer.page.panels import view_of
+from stickslip.explorer.page.view import Key, View, limits, round_step
+
+NAMES = ("fig5-slab-reconstructed", "fig6-slab", "fig6-block-reconstructed", "rate-and-state-slab")
+
+
+@cache
+def answer(name: str) -> Answer:
+    return solve(Setting.bundled(name).scenario())
+
+
+@pytest.fixture(params=NAMES)
+def shown(request: pytest.FixtureRequest) -> tuple[Answer, View]:
+    return answer(request.param), view_of(answer(request.param))
+
+
+def test_columns_of_a_source_have_one_length(shown: tuple[Answer, View]) -> None:
+    for name, columns in shown[1].columns.items():
+        assert len({len(column) for column in columns.values()}) == 1, name
+
+
+def test_axes_hold_their_data(shown: tuple[Answer, View]) -> None:
+    view = shown[1]
+    for axis, source, column in (
+        *((name, body, name) for name in ("slip", "rate", "traction") for body in ("motion", "companion")),
+        ("time", "motion", "time"),
+        ("law_y", "law", "y"),
+        ("law_x", "visits", "x"),
+        ("contact_rate", "path", "rate"),
+        ("contact_load", "path", "load"),
+        ("energy", "energy", "total"),
+    ):
+        values = np.asarray(view.columns[source][column], float)
+        values = values[np.isfinite(values)]
+        if values.size:
+            low, high = view.limits[axis]
+            assert low <= values.min(), axis
+            assert values.max() <= high, axis
+
+
+def test_values_times_units_are_those_of_the_answer(shown: tuple[Answer, View]) -> None:
+    found, view = shown
+    size = view.facts["time"]["size"]
+    np.testing.assert_allclose(view.columns["motion"]["time"] * size, found.motions[0].time, rtol=1e-14)
+    assert [mark["time"] * size for mark in view.facts["marks"]] == pytest.approx([mark.time for mark in found.marks])
+
+
+def test_parts_of_the_energy_are_stacked_up_to_their_sum(shown: tuple[Answer, View]) -> None:
+    found, view = shown
+    parts = sum(
+        found.energy.parts[name] for name in ("elastic", "kinetic", "radiated", "damped", "heat") if name in found.energy.parts
+    )
+    drawn = view.columns["energy"]["heat"]
+    np.testing.assert_allclose(drawn * np.max(parts), parts * np.max(drawn), rtol=1e-12)
+
+
+def test_a_slab_is_an_image_and_a_block_has_none() -> None:
+    slab, block = view_of(answer("fig6-slab")), view_of(answer("fig6-block-reconstructed"))
+    assert slab.columns["field"]["velocity"][0].dtype == np.float32
+    assert slab.fastest == pytest.approx(float(np.abs(slab.columns["field"]["velocity"][0]).max()))
+    assert "field" in block.hidden
+    assert block.facts["shape"]["kind"] == "block"
+
+
+@pytest.mark.parametrize("low", [0.0, -3.0, 1e-9, 5e6])
+@pytest.mark.parametrize("span", [1e-12, 0.3, 7.7, 4e8])
+def test_limits_are_round_and_hold_their_values(low: float, span: float) -> None:
+    bottom, top = limits([low, low + span])
+    assert bottom <= low
+    assert top >= low + span
+    assert top - bottom <= 1.5 * span or span < 1e-8 * abs(low)
+
+
+def test_limits_stay_while_a_value_changes_a_little() -> None:
+    assert limits([0.0, 7.12]) == limits([0.0, 7.15])
+
+
+@pytest.mark.parametrize("values", [[], [np.nan], [0.0, 0.0], [5.0]])
+def test_limits_of_hardly_anything_are_an_interval(values: list[float]) -> None:
+    low, high = limits(values)
+    assert low < high
+
+
+@pytest.mark.parametrize(("size", "step"), [(1.0, 1.0), (4.99, 2.0), (5.0, 5.0), (0.0123, 0.01), (2e9, 2e9)])
+def test_steps_are_one_two_or_five(size: float, step: float) -> None:
+    assert round_step(size) == pytest.approx(step, rel=1e-12)
+
+
+def test_headings_are_escaped() -> None:
+    assert "<b>" not in heading("<b>", [Key("<b>", "slip")])
