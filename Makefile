@@ -5,7 +5,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: paper test browser lint bench lock clean
+.PHONY: paper test browser lint bench site lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
@@ -27,6 +27,12 @@ bench: $(VENV)/.installed-test
 	$(PIP) install -e ".[bench]"
 	$(BIN)/python -m benchmarks.speed
 
+# Pages, gallery and reference as a site that can be read offline: docs/_build/html/index.html. Warnings are errors, and every link
+# within the site is checked.
+site: $(VENV)/.installed-site
+	$(BIN)/python -m sphinx -b html -q --fail-on-warning --keep-going docs docs/_build/html
+	$(BIN)/python docs/site/check_site.py docs/_build/html
+
 # Pinned installs, checked against hashes; the package itself last, without looking for anything newer. Python makes bytecode of
 # a module when it is first imported: to make it of all modules now would take longer than the rest of the installation.
 $(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
@@ -36,6 +42,10 @@ $(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
 
 $(VENV)/.installed-test: requirements/test.txt $(VENV)/.installed
 	$(PIP) install --no-compile --requirement requirements/test.txt
+	touch $@
+
+$(VENV)/.installed-site: requirements/site.txt $(VENV)/.installed
+	$(PIP) install --no-compile --requirement requirements/site.txt
 	touch $@
 
 $(BIN)/python:
@@ -49,4 +59,4 @@ lock:
 	done
 
 clean:
-	rm -rf $(VENV) paper build dist
+	rm -rf $(VENV) paper build dist docs/_build docs/gallery

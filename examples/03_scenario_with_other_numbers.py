@@ -26,9 +26,9 @@ for ratio in (float("inf"), 4.0, 1.0, 0.25):
     reflection = 2 / (1 + ratio) - 1
     print(f"reflection {reflection:+.2f}: {len(run.shocks)} jumps of the slip rate, {run.slip(25.0):7.2f} m of slip in 25 s")
 
+axes.set(xlabel="time (s)", ylabel="slip rate (m/s)", title="Fig. 6 of the paper behind four drivers")
+axes.legend(title="driver", loc="upper left")
+
 # %%
 # With reflection 0 nothing returns, and the slab slips on at the rate of the start. A driver that is softer than the slab
 # returns the wave with its sign unchanged: the slab accelerates with every round trip.
-
-axes.set(xlabel="time (s)", ylabel="slip rate (m/s)", title="Fig. 6 of the paper behind four drivers")
-axes.legend(title="driver", loc="upper left")

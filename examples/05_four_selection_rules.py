@@ -15,7 +15,6 @@ from matplotlib import pyplot
 import stickslip as ss
 
 slab = ss.scenarios["fig6-slab"].problem
-figure, axes = pyplot.subplots(figsize=(6.4, 3.4), layout="constrained")
 waits = {}
 for rule in ("perfect-delay", "minimal", "maxwell", "maximal"):
     run = ss.simulate(replace(slab, selection=rule), "480 years")
@@ -26,6 +25,7 @@ for rule in ("perfect-delay", "minimal", "maxwell", "maximal"):
 # Perfect delay and the minimal rule let the contact rest up to the static strength; Maxwell's rule of equal areas and the
 # maximal rule give up rest earlier, because a faster solution exists already.
 
+figure, axes = pyplot.subplots(figsize=(6.4, 3.4), layout="constrained")
 axes.barh(list(waits), list(waits.values()), color=["C0", "C0", "C1", "C2"])
 axes.invert_yaxis()
 axes.set(xlabel="years of rest between the first two events", title="The same equations, the same constants, four rules")

@@ -32,12 +32,12 @@ for distance in ("1 um", "3 um", "9 um"):
     slip = np.linspace(0.0, run.slip(run.duration), 200)
     right.plot(1e6 * slip, law.coefficient(slip), label=f"distance = {distance}")
 
+left.set(xlabel="time (ms)", ylabel="slip rate (m/s)", title="the slab")
+right.set(xlabel="slip (um)", ylabel="friction coefficient at rest", title="the law")
+right.legend()
+
 # %%
 # The function is called once, with symbols; the formula that it records is compiled like those of the built-in laws.
 
 print(law.expression)
 print(ss.uniqueness(problem).summary)
-
-left.set(xlabel="time (ms)", ylabel="slip rate (m/s)", title="the slab")
-right.set(xlabel="slip (um)", ylabel="friction coefficient at rest", title="the law")
-right.legend()

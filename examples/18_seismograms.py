@@ -27,6 +27,8 @@ for place in stations:
     arrival = times[np.argmax(velocity > 1e-3)]
     print(f"{place / 1e3:.0f} km: first arrival {arrival:.2f} s, expected {place / slab.wave_speed:.2f} s")
 
+axes.set(xlabel="time (s)", ylabel="distance from the contact (km)", title="Particle velocity at three stations")
+
 # %%
 # An export for other programs is one call: on-fault time series as in the SCEC/USGS rupture benchmarks, or miniSEED and SAC with
 # ``run.to_seismogram("run.mseed", 100.0)``, which needs ``pip install "stickslip[seismology]"``.
@@ -35,5 +37,3 @@ with tempfile.TemporaryDirectory() as folder:
     path = run.to_scec(Path(folder) / "fig5.txt", sampling_rate=100.0)
     lines = path.read_text().splitlines()
 print("\n".join(line for line in lines if not line.startswith("#"))[:140])
-
-axes.set(xlabel="time (s)", ylabel="distance from the contact (km)", title="Particle velocity at three stations")

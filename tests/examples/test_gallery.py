@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import runpy
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib import pyplot
+from matplotlib.figure import Figure
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
 TRIP = 2 * 10e3 / 3500
@@ -184,15 +184,27 @@ def name_of(path: Path) -> str:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=name_of)
 def test_example_computes_what_its_check_says_and_draws_a_figure(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        names = runpy.run_path(str(path), run_name="__main__")
-        for number in pyplot.get_fignums():
-            pyplot.figure(number).canvas.draw()
-    assert pyplot.get_fignums(), "an example has a picture in the gallery"
+    names, figures = run_by_blocks(path)
+    assert figures, "an example has a picture in the gallery"
+    assert not any(figure.stale for figure in figures), "the gallery takes a figure at the end of the block that makes it"
     assert list(Path().iterdir()) == [], "an example leaves no files"
     assert capsys.readouterr().out, "an example says something"
     CHECKS[name_of(path)](names)
+
+
+def run_by_blocks(path: Path) -> tuple[Names, list[Figure]]:
+    """Run the blocks between lines `# %%` as the gallery does: at the end of each it draws the figures, and closes them."""
+    names: Names = {"__name__": "__main__"}
+    figures = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for block in path.read_text(encoding="utf-8").split("\n# %%\n"):
+            exec(compile(block, path.name, "exec"), names)
+            for number in pyplot.get_fignums():
+                figures.append(pyplot.figure(number))
+                figures[-1].canvas.draw()
+            pyplot.close("all")
+    return names, figures
 
 
 def test_every_check_belongs_to_an_example() -> None:
