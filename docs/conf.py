@@ -5,6 +5,7 @@ from docstrings (site/api), and the table of contents (index.rst, site/*.rst). N
 formulas become MathML, which browsers draw themselves.
 """
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -86,13 +87,23 @@ html_css_files = ["site.css"]
 project_copyright = "the authors of stickslip, MIT licence"
 
 
-def escape_bars(*event: Any) -> None:
-    """Let |v| in a docstring be a magnitude, where reStructuredText would look for a substitution."""
-    lines = event[-1]
-    lines[:] = [line.replace("|", r"\|") for line in lines]
+def mend_docstring(*event: Any) -> None:
+    """Let a docstring of plain text be one of reStructuredText, before napoleon reads it.
+
+    |v| is a magnitude, not a substitution; and what stands before a colon in the first line of an attribute is not its type.
+    """
+    what, lines = event[1], event[-1]
+    lines[:] = [""] * (what in ("attribute", "property")) + [line.replace("|", r"\|") for line in lines]
+
+
+def link_to_gallery(*event: Any) -> None:
+    """Let links to scripts of examples/ lead to their pages in the gallery."""
+    source = event[-1]
+    source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/gallery/\1.rst)", source[0])
 
 
 def setup(app: Any) -> None:
     """Register what the extensions lack."""
-    app.connect("autodoc-process-docstring", escape_bars)
+    app.connect("autodoc-process-docstring", mend_docstring, priority=400)
+    app.connect("source-read", link_to_gallery)
     app.add_lexer("mermaid", TextLexer)  # a diagram that forges draw; here its text, because drawing takes a script

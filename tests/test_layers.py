@@ -57,8 +57,8 @@ ROOMS = {
     "explorer": (("extra", "model"), ("page",), ("server",), ("notebook",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (
-        ("output", "names", "overrides", "mistyped"),
-        ("long_run", "options", "help", "stored"),
+        ("output", "names", "overrides", "mistyped", "installation"),
+        ("long_run", "options", "help", "stored", "self_test"),
         ("commands",),
         ("app",),
         ("main",),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 import re
+import runpy
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -39,7 +41,9 @@ def test_every_public_name_is_in_the_reference() -> None:
     for package in ("figures", "friction", "loading", "studies"):
         names |= {f"stickslip.{package}.{name}" for name in getattr(ss, package).__all__}
     names |= {"stickslip.selection.register", "stickslip.selection.SelectionTable"}
-    assert [name for name in sorted(names) if not re.search(rf"^\.\. \S+:: {re.escape(name)}$", reference, re.MULTILINE)] == []
+    assert [
+        name for name in sorted(names) if not re.search(rf"^\.\. \S+:: {re.escape(name)}(\(\))?$", reference, re.MULTILINE)
+    ] == []
 
 
 @pytest.fixture(scope="module")
@@ -61,3 +65,31 @@ def test_every_promise_names_a_test() -> None:
     promises = [line for line in lines if line.startswith("| ") and not line.startswith(("| promise", "| ---"))]
     assert len(promises) > 20
     assert [line for line in promises if not NAMED_TEST.search(line)] == []
+
+
+@pytest.fixture(scope="module")
+def check_site() -> Any:
+    return runpy.run_path(str(DOCS / "site" / "check_site.py"))["main"]
+
+
+@pytest.mark.parametrize(
+    ("body", "fault"),
+    [
+        ('<a href="b.html#there">b</a> <a href="https://example.org">elsewhere</a> <h1 id="x"></h1><a href="#x"></a>', ""),
+        ('<a href="c.html">c</a>', "a.html: c.html is missing"),
+        ('<a href="b.html#nowhere">b</a>', "a.html: b.html#nowhere has no such anchor"),
+        ('<img src="https://example.org/a.png">', "a.html: loads https://example.org/a.png from another host"),
+        ('<script src="//example.org/a.js"></script>', "a.html: loads //example.org/a.js from another host"),
+        ('<link rel="stylesheet" href="https://example.org/a.css">', "a.html: loads https://example.org/a.css from another host"),
+        ('<link rel="stylesheet" href="a.css">', "a.css: loads something from another host"),
+    ],
+)
+def test_faults_of_a_built_site_are_found(
+    body: str, fault: str, check_site: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.html").write_text(body, encoding="utf-8")
+    (tmp_path / "b.html").write_text('<p id="there">', encoding="utf-8")
+    if 'href="a.css"' in body:
+        (tmp_path / "a.css").write_text('@import "https://example.org/b.css";', encoding="utf-8")
+    assert check_site(tmp_path) == bool(fault)
+    assert fault in capsys.readouterr().out.splitlines() or not fault

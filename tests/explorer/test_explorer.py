@@ -69,7 +69,7 @@ def test_a_step_of_the_tour_brings_its_strip_at_once_and_its_cursor_with_the_ans
     assert (explorer.tour, explorer.strip, explorer.cursor) == (3, strip, 0.0)
     desk.do_next()
     assert explorer.cursor == 4.5
-    assert told == ["tour", "strip", "setting", "answer", "cursor"]
+    assert told == ["tour", "setting", "strip", "answer", "cursor"]
     explorer.show_step(0, None, None, 0.0)
     assert (explorer.tour, explorer.strip, desk.tasks) == (0, strip, [])
 

@@ -176,8 +176,7 @@ def test_inertia_leaves_no_set_to_draw(body: ss.SpringBlock | ss.ElasticSlab) ->
 
 def test_the_map_of_regimes_marks_the_problem() -> None:
     found = regime_map(SLAB_PROBLEM, Axis("alpha", 0.01, 10.0, 6, log=True), Axis("normal_stress", 1e7, 5e8, 5))
-    dataset = regimes.data(SLAB_PROBLEM, found)
-    figure = regimes.draw(dataset)
+    figure = regimes.draw(SLAB_PROBLEM, found)
     assert labels(figure) == [r"weakening parameter $\alpha$ (s/m)", "normal stress $S$ on the contact (MPa)"]
     assert lines_of(figure)["the scenario"].tolist() == [[1.0, 100.0]]
     (curve,) = figure.axes[0].collections[1:]

@@ -11,6 +11,7 @@ from typer.core import TyperGroup
 from stickslip.cli.commands.analogy import analogy
 from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
+from stickslip.cli.commands.doctor import doctor
 from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.explore import explore
 from stickslip.cli.commands.export import export
@@ -42,6 +43,7 @@ GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "Measured friction": (fit,),
     "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise),
     "The source paper": (paper,),
+    "This installation": (doctor,),
 }
 """The functions of all commands, by the heading under which the help shows them."""
 COMMANDS = {command.__name__: command for commands in GROUPS.values() for command in commands}
@@ -66,8 +68,8 @@ class Commands(TyperGroup):
         return _built(cmd_name) if cmd_name in COMMANDS else None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Return the command that is meant. Raises InputError for an unknown one."""
-        if args[0] not in COMMANDS and not args[0].startswith("-"):
+        """Return the command that is meant. Raises InputError for an unknown one, but not while the shell completes words."""
+        if args[0] not in COMMANDS and not args[0].startswith("-") and not ctx.resilient_parsing:
             raise InputError(_unknown(args[0]))
         return super().resolve_command(ctx, args)
 

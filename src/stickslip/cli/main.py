@@ -30,7 +30,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 class _Heard:
-    """A text stream that falls silent when nobody reads it any more, as after `| head`; the work goes on to its end."""
+    """A text stream that falls silent when nobody reads it any more, as after `| head`; the work goes on to its end.
+
+    A character that the stream has no code for is written as an escape, as Python does on standard error.
+    """
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -39,6 +42,8 @@ class _Heard:
         """Write a text."""
         try:
             return int(self._stream.write(text))
+        except UnicodeEncodeError as error:
+            return int(self._stream.write(text.encode(error.encoding, "backslashreplace").decode(error.encoding)))
         except BrokenPipeError:
             self._fall_silent()
             return len(text)

@@ -136,11 +136,18 @@ def complete_axis(context: Context, incomplete: str) -> list[str]:
 
 
 def _parameters(context: Context) -> list[str]:
+    """Return the keys of the numbers in the scenario on the command line; none if there is no scenario that can be read.
+
+    While the value of an option is typed, typer leaves the words that are no options in `args`, and the scenario is the first.
+    """
     from stickslip.foundation.errors import InputError
     from stickslip.scenarios.scenario import load_scenario
     from stickslip.sweeps.design.parameter_paths import parameter_paths
 
+    scenario = context.params.get("scenario") or next(iter(context.args), None)
+    if scenario is None:
+        return []
     try:
-        return [one.name for one in parameter_paths(load_scenario(context.params["scenario"]))]
-    except (InputError, KeyError, TypeError):
+        return [one.name for one in parameter_paths(load_scenario(scenario))]
+    except InputError:
         return []

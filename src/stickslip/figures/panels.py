@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import string
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import zip_longest
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFormatter
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import PALE, label, shown
+from stickslip.figures.style import PALE, Numbers, label, shown
 from stickslip.problem.problem import Problem
 from stickslip.solution.place import Place
 
@@ -92,18 +91,18 @@ def count_ticks(axes: Axes, count: int = 4) -> None:
     axes.yaxis.set_major_locator(MaxNLocator(count, integer=True))
 
 
-def parameter_variables(problem: Problem, **axes: Axis) -> dict[str, xr.Variable]:
+def parameter_numbers(problem: Problem, **axes: Axis) -> dict[str, Numbers]:
     """Return the coordinates `x` and `y` of a map over two parameters of a problem."""
     found = {}
     for name, axis in axes.items():
         one = problem.parameters[axis.parameter]
         text = parameter_name(one.name, one.declared.meaning)
-        found[name] = xr.Variable(name, axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
+        found[name] = Numbers(axis.values, {"long_name": text, "units": one.unit or "1", "log": int(axis.log)})
     return found
 
 
-def draw_parameters(axes: Axes, dataset: xr.Dataset) -> None:
-    """Set labels and scales of a map over the two parameters `x` and `y`."""
+def draw_parameters(axes: Axes, dataset: Mapping[Any, Any]) -> None:
+    """Set labels and scales of a map over the two parameters `x` and `y` of a dataset or of `parameter_numbers`."""
     axes.set(xlabel=label(dataset["x"]), ylabel=label(dataset["y"]))
     for name in ("x", "y"):
         set_scale(axes, name, bool(dataset[name].attrs["log"]))
@@ -111,7 +110,7 @@ def draw_parameters(axes: Axes, dataset: xr.Dataset) -> None:
             set_log_ticks(axes, name)
 
 
-def draw_map(axes: Axes, dataset: xr.Dataset, values: Any, **colours: Any) -> Any:
+def draw_map(axes: Axes, dataset: Mapping[Any, Any], values: Any, **colours: Any) -> Any:
     """Draw values over the two parameters `x` and `y` as an image, pale where they are not finite, and return the image."""
     axes.set_facecolor(PALE)
     masked = np.ma.masked_invalid(values)

@@ -26,17 +26,18 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Sequence
 from functools import wraps
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 
 import matplotlib as mpl
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from stickslip.foundation.constants import YEAR
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from stickslip.solution.evaluation import Readings
 
 P = ParamSpec("P")
@@ -138,8 +139,17 @@ def image(figure: Figure, kind: str, dpi: float | None = None) -> bytes:
     return stream.getvalue()
 
 
+class Numbers(NamedTuple):
+    """Numbers with their attributes, to be drawn like a variable of xarray, but without its import."""
+
+    values: Floats
+    attrs: dict[str, Any]
+
+
 def quantity(dims: str | Sequence[str], values: Any, name: str, symbol: str, units: str) -> xr.Variable:
     """Return a variable of a figure's dataset that carries its name, its symbol (mathtext without dollar signs) and its SI unit."""
+    import xarray as xr  # takes as long as drawing: figures that have `Numbers` do without it
+
     return xr.Variable(dims, values, {"long_name": name, "symbol": symbol, "units": units})
 
 
@@ -181,12 +191,12 @@ def unit_of(units: str, *values: Any, log: bool = False) -> tuple[str, float]:
     return found or (choice[-1][1], choice[-1][0])
 
 
-def unit_shown(*variables: xr.DataArray) -> tuple[str, float]:
+def unit_shown(*variables: xr.DataArray | Numbers) -> tuple[str, float]:
     """Return the unit (name, size in SI units) in which variables that share an axis are drawn."""
     return unit_of(variables[0].attrs["units"], *(variable.values for variable in variables))
 
 
-def shown(variable: xr.DataArray, unit: tuple[str, float] | None = None) -> Floats:
+def shown(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = None) -> Floats:
     """Return the values in the unit (name, size) given, or in the one that suits them."""
     return np.asarray(variable.values, dtype=float) / (unit or unit_shown(variable))[1]
 
@@ -197,7 +207,7 @@ def axis_text(name: str, symbol: str, unit: str) -> str:
     return text if unit == "1" else f"{text} ({unit})"
 
 
-def label(variable: xr.DataArray, unit: tuple[str, float] | None = None) -> str:
+def label(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = None) -> str:
     """Return the axis label of a variable, in the unit (name, size) given, or in the one that suits its values."""
     return axis_text(variable.attrs["long_name"], variable.attrs.get("symbol", ""), (unit or unit_shown(variable))[0])
 

@@ -78,4 +78,4 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:
         found = regime_map(loaded.problem, x, y, lambda done, count: report(f"{done} of {count} points"))
-    return partial(regimes.draw, regimes.data(loaded.problem, found, loaded.heading))
+    return partial(regimes.draw, loaded.problem, found, loaded.heading)

@@ -37,12 +37,15 @@ from stickslip.engine.codegen.private_folder import private_folder
 from stickslip.engine.codegen.sources import remembered_key
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError
 
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
 
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
+elif numba.config.DISABLE_JIT:
+    raise InputError("NUMBA_DISABLE_JIT is set, and the engine needs the compiler: unset it, or set STICKSLIP_UNCOMPILED=1, too")
 
 
 @cache
@@ -194,7 +197,10 @@ class SealedCache(FunctionCache):
         try:
             super().save_overload(signature, data)
         except OSError as error:
-            tell(f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again")
+            tell(
+                f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
+                "STICKSLIP_CACHE_DIR names another folder"
+            )
 
 
 SLOW = {

@@ -9,19 +9,20 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from copy import deepcopy
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import number
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter
+from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter, parameter_paths
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import Work, run_chunk
+from stickslip.sweeps.execution.chunk import EXCLUDE_EACH_OTHER, Work, run_chunk
 
 Floats = NDArray[np.float64]
 Told = Callable[[str], None]
@@ -175,15 +176,36 @@ def usual_range(scenario: Scenario, name: str) -> StripRange:
 def numeric(scenario: Scenario, name: str) -> ParameterPath:
     """Return the parameter with this name, which must be one that varies continuously. Raises InputError."""
     found = find_parameter(scenario, name, "strip")
-    if not isinstance(found.declared, Quantity) or found.declared.whole or found.name == "run.events":
+    if not is_continuous(found):
         what = "a whole number" if isinstance(found.declared, Quantity) else "a word"
         raise InputError(f"strip: {found.name} is {what}; a strip needs a parameter that varies continuously")
     return found
 
 
 def strip_text(strip: Strip) -> str:
-    """Return one line that says what a strip shows: the parameter, its range, and the number of runs."""
-    unit = "" if strip.unit == "1" else f" {strip.unit}"
-    ends = f"{number(float(strip.values[0]), 3)} to {number(float(strip.values[-1]), 3)}{unit}"
-    failed = f", {len(strip.refused)} failed" if strip.refused else ""
-    return f"{len(strip.values)} runs: {strip.meaning} from {ends}{failed}"
+    """Return one line on a strip: what its parameter means, and how many runs failed."""
+    return strip.meaning + (f"; {len(strip.refused)} runs failed: {next(iter(strip.refused.values()))}" if strip.refused else "")
+
+
+def is_continuous(parameter: ParameterPath) -> bool:
+    """Return True if a parameter is a number, and not a whole one."""
+    return isinstance(parameter.declared, Quantity) and not parameter.declared.whole and parameter.name != "run.events"
+
+
+def setting_at(setting: Setting, name: str, value: float) -> Setting:
+    """Return a setting with another value (SI) of the parameter of a strip. Raises InputError if there is no such parameter."""
+    scenario = setting.scenario()
+    found = numeric(scenario, name)
+    document = deepcopy(dict(setting.document))
+    document["initial"].pop(EXCLUDE_EACH_OTHER.get(found.name), None)
+    try:
+        found.put(document, value)
+    except KeyError:  # what a document leaves out, or keeps in a file of its own, its full text holds
+        document = tomllib.loads(scenario.to_toml())
+        found.put(document, value)
+    return replace(setting, document=document)
+
+
+def choices(scenario: Scenario) -> list[str]:
+    """Return the parameters of a scenario through which a strip can go."""
+    return [one.name for one in parameter_paths(scenario) if is_continuous(one)]

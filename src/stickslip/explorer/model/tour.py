@@ -27,7 +27,7 @@ class Step:
     text : str
         What is seen and why, in 40 to 80 words.
     look : str
-        What to look at, in one sentence.
+        What to look at, in one sentence that follows "Look at".
     question : str
         Something to try.
     panel : str
@@ -68,7 +68,7 @@ TOUR = (
         "block has mass: its slip rate rises smoothly to 3.511 m/s and returns to zero at 2.226 s, after 2.061 m. The "
         "slab's contact has no mass. Its slip rate jumps to 4.102 m/s at once, and it slips until 5.714 s, when its own "
         "wave returns from the driver.",
-        "Compare the two lines of slip rate: one is a hump, the other a step with two corners.",
+        "the two lines of slip rate: one is a hump, the other a step with two corners.",
         "The paper prints a spring ten times as stiff, 3.43e14 N/m. Does the block still slip?",
         "rate",
         1.84,
@@ -81,7 +81,7 @@ TOUR = (
         " beyond a maximum, where friction falls with slip. Friction falls faster than the slab unloads, so the slip "
         "accelerates. It is fastest, 10.2 m/s, at 1.568 s, in the trough of friction. The waves that the slab sends out "
         "limit the slip rate. Beside the next maximum the slip fades.",
-        "Follow the run along the law: it starts beside a maximum and ends near the next one.",
+        "the run along the law: it starts beside a maximum and ends near the next one.",
         "Move the start closer to the maximum, which is at 0.3142 m. When does the pulse come?",
         "law",
         1.568,
@@ -95,7 +95,7 @@ TOUR = (
         "maximum of friction to the next, 0.1257 m. Beside a maximum the contact almost stands still, until friction "
         "falls again. Three pulses come, at 0.154, 2.257 and 4.359 s. At 5.714 s the echo arrives and stops everything, "
         "after 0.376 m.",
-        "Look at slip: a staircase with three steps, which the echo cuts off.",
+        "slip: a staircase with three steps, which the echo cuts off.",
         "A thicker slab gets its echo later. Why does its slip grow in steps?",
         "slip",
         2.257,
@@ -108,7 +108,7 @@ TOUR = (
         "v. What balances the load is the sum of both, g(v). With alpha = 0.1 s/m that sum rises everywhere: each load "
         "has one slip rate. The load goes up from 60 to 85.5 MPa and down again, and the contact returns the way it came,"
         " without any jump.",
-        "Look at g(v): the path of the run goes up along the curve and down along the same curve.",
+        "g(v): the path of the run goes up along the curve and down along the same curve.",
         "Make alpha larger. From where on does the run leave the curve and jump?",
         "contact",
         2.857,
@@ -122,7 +122,7 @@ TOUR = (
         "curve turns is a fold. Loads between 64.47 and 80 MPa now have three slip rates: at 70 MPa the contact may be "
         "stuck, or slip at 0.377 or at 2.704 m/s. Friction alone does not say which. The middle one, on the falling part,"
         " is unstable.",
-        "Look at g(v): the load line of the cursor, at 70 MPa, crosses the curve three times.",
+        "g(v): the load line of the cursor, at 70 MPa, crosses the curve three times.",
         "Make alpha smaller. Where does the falling part vanish?",
         "contact",
         4.6476,
@@ -135,7 +135,7 @@ TOUR = (
         "zero to which the contact could go. It jumps to the only other solution, v = S (static - dynamic) / Z - 1 / "
         "alpha = 4.102 m/s, and the traction drops to 39.8 MPa. It keeps this rate until the echo stops it at 5.714 s, "
         "after 23.44 m of slip.",
-        "Look at slip rate: two vertical lines, and a constant between them.",
+        "slip rate: two vertical lines, and a constant between them.",
         "Change the normal stress. Why does the rate of slip follow a straight line?",
         "rate",
         2.857,
@@ -148,7 +148,7 @@ TOUR = (
         "s/m. Here alpha is a millionth of a s/m above it. The jump is still there, but tiny: to 2.603e-05 m/s at first, "
         "and 0.1408 mm/s at the end. Below alpha_c nothing jumps at all. A jump thus begins from nothing, as a phase "
         "transition does.",
-        "Look at the strip: the peak rate leaves zero at alpha_c, and then grows.",
+        "the strip: the peak rate leaves zero at alpha_c, and then grows.",
         "Where is alpha_c if the normal stress is twice as large?",
         "rate",
         2.857,
@@ -160,7 +160,7 @@ TOUR = (
         "The load rises and falls once. The rule of perfect delay says that the contact stays as it is for as long as it "
         "can. So it sticks up to 80 MPa and jumps to slip at 2.243 s. On the way back it slips down to 64.47 MPa, the "
         "lower fold, and jumps to rest at 5.213 s. Up and down are different ways: a loop, as in the paper's Figure 4.",
-        "Look at g(v): the path makes a loop with two jumps, each at a fold.",
+        "g(v): the path makes a loop with two jumps, each at a fold.",
         "Choose the rule 'maxwell'. At which loads does the contact jump now?",
         "contact",
         5.213,

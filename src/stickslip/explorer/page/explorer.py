@@ -39,8 +39,12 @@ class Explorer:
         What was wrong with the last entry, in one line; "" if nothing was.
     progress : str
         One line on work that is under way; "" if there is none.
+    shown : tuple of (Setting, Answer), or None
+        The answer that is shown, with its own setting: that of the controls may be newer.
     pinned : tuple of (Setting, Answer), or None
         The run with which the shown one is compared.
+    files : Desk
+        Where files are written: work there does not drop the work on an answer.
     cursor : float
         The time (s) at which all panels show the cursor.
     tour : int
@@ -49,15 +53,18 @@ class Explorer:
         The parameter through which a strip goes, and its range; None if no strip is shown.
     """
 
-    def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer]) -> None:
-        self.setting, self.answer, self.pinned = setting, None, None
+    def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer], files: Desk | None = None) -> None:
+        self.setting, self.answer, self.shown, self.pinned = setting, None, None, None
         self.fault, self.progress, self.cursor = "", "", 0.0
         self.tour, self.strip = 0, None
         self._asked = self._shown = 0
         self._desk, self._calculate = desk, answer
+        self.files = files or desk
         self._listeners: dict[News, list[Callable[[], None]]] = {}
+        self._once: list[Callable[[], None]] = []
 
     answer: Answer | None
+    shown: tuple[Setting, Answer] | None
     pinned: tuple[Setting, Answer] | None
     strip: StripRange | None
 
@@ -84,7 +91,13 @@ class Explorer:
         self.tell("setting")
         self._asked += 1
         number = self._asked
-        self._desk.ask(lambda told: self._calculate(scenario, told), lambda answer: self._show(answer, number, cursor), self._fail)
+        self._desk.ask(
+            lambda told: self._calculate(scenario, told), lambda answer: self._show((setting, answer), number, cursor), self._fail
+        )
+
+    def once_answered(self, call: Callable[[], None]) -> None:
+        """Have `call` called once, after the next answer is shown."""
+        self._once.append(call)
 
     def beside(self, work: Callable[[Callable[[str], None]], Any], done: Callable[[Any], None]) -> None:
         """Have something more worked out about the run that is shown, such as a strip; the next change of the setting drops it.
@@ -99,8 +112,8 @@ class Explorer:
         self.tour = step
         self.tell("tour")
         if setting is not None:
-            self.show_strip(strip)
             self.change(setting, cursor)
+            self.show_strip(strip)
 
     def show_strip(self, strip: StripRange | None) -> None:
         """Show a strip, or none."""
@@ -123,17 +136,20 @@ class Explorer:
 
     def pin(self) -> None:
         """Keep the run that is shown, to compare the next ones with it; or let go of the one that is kept."""
-        self.pinned = None if self.pinned or self.answer is None else (self.setting, self.answer)
+        self.pinned = None if self.pinned else self.shown
         self.tell("pin")
 
-    def _show(self, answer: Answer, number: int, cursor: float | None) -> None:
-        self.answer, self.fault, self.progress, self._shown = answer, "", "", number
+    def _show(self, shown: tuple[Setting, Answer], number: int, cursor: float | None) -> None:
+        self.shown, self.answer, self.fault, self.progress, self._shown = shown, shown[1], "", "", number
         if cursor is not None:
             self.cursor = cursor
         for news in ("fault", "progress", "answer"):
             self.tell(news)
         if cursor is not None:
             self.tell("cursor")
+        waiting, self._once = self._once, []
+        for call in waiting:
+            call()
 
     def _fail(self, error: Exception) -> None:
         self.progress = ""

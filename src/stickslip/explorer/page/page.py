@@ -12,7 +12,11 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.pin import PinnedRun
 from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.strip import StripView
+from stickslip.explorer.page.tools import Tools
+from stickslip.explorer.page.tour import Tour
 from stickslip.explorer.page.words import Words
 
 TITLES = {
@@ -28,7 +32,7 @@ class Panels:
     """The linked panels and the time bar of one page: `plots` and `headings` by name, and `player`."""
 
     def __init__(self, explorer: Explorer) -> None:
-        self._explorer, self.stage = explorer, Stage()
+        self._explorer, self.stage, self._hears = explorer, Stage(), False
         self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(self.stage).items()}
         self.headings = {
             name: pn.pane.HTML(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
@@ -51,11 +55,15 @@ class Panels:
             self.player.facts = view.facts
 
     def _move(self) -> None:
-        self.player.cursor = self._explorer.cursor
+        if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile
+            self.player.cursor = {"seconds": self._explorer.cursor, "number": self.player.cursor.get("number", 0) + 1}
 
     def _moved(self, seconds: float) -> None:
-        self._explorer.cursor = seconds
-        self._explorer.tell("cursor")
+        self._explorer.cursor, self._hears = seconds, True
+        try:
+            self._explorer.tell("cursor")
+        finally:
+            self._hears = False
 
 
 def build(explorer: Explorer, **parts: Any) -> Any:
@@ -69,12 +77,17 @@ def build(explorer: Explorer, **parts: Any) -> Any:
         Further parts by the name of their place, one of `SLOTS`.
     """
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
+    parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
+    tour, strip = Tour(explorer), StripView(explorer)
     page = pn.Template(asset("page.html"))
     page.add_variable("page_style", style_sheet() + asset("page.css"))
     page.add_variable("app_title", "stickslip explorer")
+    page.add_variable("parts", sorted(parts))
     for name, pane in panels.plots.items():
         page.add_panel(name, pane)
         page.add_panel(f"{name}_heading", panels.headings[name])
-    for name, part in {"player": panels.player, "words": words.view, "controls": controls.view, **parts}.items():
+    own = {"player": panels.player, "words": words.view, "controls": controls.view}
+    own |= {"tour": tour.card, "tour_button": tour.button, "strip": strip.view}
+    for name, part in {**own, **parts}.items():
         page.add_panel(name, part)
     return page

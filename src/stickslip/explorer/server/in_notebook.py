@@ -18,8 +18,9 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     from stickslip.explorer.page.page import build
 
     pn.extension()
-    desk = ThreadDesk(asyncio.get_event_loop().call_soon_threadsafe)
-    explorer = explorer_of(Setting.of(scenario), desk)
+    deliver = asyncio.get_event_loop().call_soon_threadsafe
+    desk = ThreadDesk(deliver)
+    explorer = explorer_of(Setting.of(scenario), desk, ThreadDesk(deliver))
     desk.report = explorer.told
     page = build(explorer)
     page.explorer = explorer

@@ -7,7 +7,7 @@ import signal
 import socket
 import sys
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from os import environ
@@ -19,6 +19,7 @@ import panel as pn
 from tornado.ioloop import IOLoop, PeriodicCallback
 
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.link_in_url import begin
 from stickslip.explorer.server.access import LOOPBACK, Access
 from stickslip.explorer.server.desk import Call, ThreadDesk, unforeseen
 from stickslip.explorer.server.sessions import LOOK_EVERY_MS, NEVER_SEEN_MS, Sessions
@@ -36,7 +37,7 @@ LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buf
 EVERYWHERE = ("0.0.0.0", "::", "")
 """Addresses by which a server listens on all networks of the computer."""
 
-MakeExplorer = Callable[[ThreadDesk], Explorer]
+MakeExplorer = Callable[[ThreadDesk, ThreadDesk], Explorer]
 Build = Callable[[Explorer], Any]
 
 
@@ -75,7 +76,7 @@ class ExplorerServer:
     place : Place
         Where it listens.
     make : callable
-        Function that makes the explorer of a new page, given its desk.
+        Function that makes the explorer of a new page, given its desk, and that on which files are written.
     build : callable
         Function that builds the page of an explorer.
     """
@@ -170,23 +171,29 @@ class ExplorerServer:
 
     def _page(self) -> Any:
         """Return the page of a new tab, whose work ends with it."""
-        document = pn.state.curdoc
-        desk = ThreadDesk(partial(deliver_to, ref(document)))
-        explorer = self._make(desk)
+        deliver = partial(deliver_to, ref(pn.state.curdoc))
+        desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
+        explorer = self._make(desk, files)
         desk.report = explorer.told
-        self._desks.add(desk)
+        self._desks |= {desk, files}
         untell = self.warming.tell(desk.say)
 
         def gone(_: Any) -> None:
             untell()
-            desk.close()
-            self._desks.discard(desk)
+            for one in (desk, files):
+                one.close()
+                self._desks.discard(one)
 
         pn.state.on_session_destroyed(gone)
         pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
         page = self._build(explorer)
-        explorer.change(explorer.setting)
+        begin(explorer, arguments_of(pn.state.session_args))
         return page
+
+
+def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
+    """Return the parameters of an address as texts, the last one of those with the same name."""
+    return {name: values[-1].decode("utf-8", "replace") for name, values in given.items() if values}
 
 
 def deliver_to(document: Callable[[], Any], call: Call) -> None:

@@ -47,8 +47,8 @@ def start(setting: Setting, place: Place, *, browser: bool, say: Callable[[str],
     server.run()
 
 
-def explorer_of(setting: Setting, desk: ThreadDesk) -> Explorer:
+def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk) -> Explorer:
     """Return the explorer of a new page."""
     from stickslip.explorer.model.solve import solve  # imports the compiler, which takes a second
 
-    return Explorer(setting, desk, solve)
+    return Explorer(setting, desk, solve, files)

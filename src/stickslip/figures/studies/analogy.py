@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
-from stickslip.figures.panels import draw_map, draw_parameters, letter_panels, panels, parameter_variables, set_title
+from stickslip.figures.panels import draw_map, draw_parameters, letter_panels, panels, parameter_numbers, set_title
 from stickslip.figures.style import INK, PALE, TWO, shown, styled
 from stickslip.solution.place import Place
 from stickslip.studies.analogy import QUANTITIES, Analogy
@@ -45,7 +45,8 @@ def data(found: Analogy) -> xr.Dataset:
     for one in QUANTITIES:
         about = {"long_name": f"{one.replace('_', ' ')}, slab / block", "units": "1"}
         contents[f"{one}_ratio"] = xr.Variable(dims, found.ratio(one), about)
-    coordinates = parameter_variables(found.problem, x=found.x, y=found.y)
+    axes = parameter_numbers(found.problem, x=found.x, y=found.y)
+    coordinates = {name: xr.Variable(name, one.values, one.attrs) for name, one in axes.items()}
     return xr.Dataset(
         contents, coords=coordinates, attrs={"title": "First slip event: slab against equivalent block", "within": found.within}
     )

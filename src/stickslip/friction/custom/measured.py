@@ -145,6 +145,15 @@ def read_table(source: Any) -> tuple[Along, Floats, Floats]:
         table = Table(columns, points.name, np.arange(len(points)), "point")
     else:
         table = _table_in(source)
+    return _joined(table)
+
+
+def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
+    """Return the points in the text of a CSV file, called `name` in messages, as `read_table` does."""
+    return _joined(_from_text(text, name))
+
+
+def _joined(table: Table) -> tuple[Along, Floats, Floats]:
     found = [name for name in ALONG if name in table.columns]
     if len(found) != 1:
         raise InputError(f'{table.place}: slip and slip_rate are both there: a table takes one, Points.read(...).along("slip")')
@@ -177,6 +186,10 @@ def _from_file(path: Path) -> Table:
         raise InputError(f"{name}: cannot be read: {error.strerror}") from None
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
+    return _from_text(text, name)
+
+
+def _from_text(text: str, name: str) -> Table:
     number, header = header_of(text, name)
     return _complete(read_text(text, (*ALONG, "friction"), name, MOST_POINTS), f"{name}, line {number}", header)
 

@@ -1,0 +1,45 @@
+"""`stickslip doctor`: look at the installation, and compare a few answers with closed forms."""
+
+from __future__ import annotations
+
+import typer
+
+
+def doctor() -> None:
+    r"""Check this installation: versions, threads, cache, extras, and a self-test against closed forms.
+
+    The self-test takes about a second; on its first run the engine is compiled,
+    which takes some 10 s, once. An extra that is not installed is no fault.
+
+    \b
+      stickslip doctor
+      stickslip doctor > installation.txt    a file for a report
+
+    Each fault is one line on standard error, with its cure.
+
+    Exit code: 0 all is well, 1 something is broken.
+    """
+    from stickslip.cli.installation import Finding, engine, installation
+    from stickslip.cli.output.show import console, say
+    from stickslip.cli.output.tables import print_words
+    from stickslip.cli.self_test import self_test
+    from stickslip.foundation.errors import InputError
+
+    found: list[Finding] = []
+    try:
+        for part in (installation, engine, self_test):
+            for one in part():
+                found.append(one)  # noqa: PERF402  # what was found before an error is shown, too
+            if any(one.value == "missing" for one in found):
+                break
+    except InputError as error:
+        found.append(Finding("engine", "cannot run", str(error)))
+    except ImportError as error:
+        found.append(Finding("engine", "cannot be imported", f"{error}: pip install --force-reinstall stickslip"))
+    screen = console()
+    print_words(screen, ("", ""), [(one.name, one.value) for one in found])
+    faults = [one.fault for one in found if one.fault]
+    for fault in faults:
+        typer.echo(f"stickslip: doctor: {fault}", err=True)
+    say(screen, "" if faults else "\nAll is well.")
+    raise typer.Exit(1 if faults else 0)

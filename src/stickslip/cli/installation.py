@@ -1,0 +1,144 @@
+"""Look at an installation: its libraries, the processor, the cache of compiled code, the terminal, and the extras."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import os
+import platform
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import redirect_stderr
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from stickslip import __version__
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
+
+DEVELOPERS = ("test", "bench")
+"""Extras that people need who change the package; users do not."""
+PROBE = bytes(65_536)
+"""What is written into the cache on trial, so that a full disk shows."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One row of `stickslip doctor`.
+
+    Parameters
+    ----------
+    name, value : str
+        What was looked at, and what it is.
+    fault : str
+        What is wrong and how to cure it, in one line; empty if all is well.
+    """
+
+    name: str
+    value: str
+    fault: str = ""
+
+
+def installation() -> Iterator[Finding]:
+    """Yield what is found about this installation, apart from the answers of the engine."""
+    yield Finding("stickslip", f"{__version__} in {Path(__file__).parents[1]}")
+    yield Finding("python", f"{platform.python_version()} on {platform.system()} {platform.machine()}")
+    yield Finding("threads", f"{os.cpu_count() or 1} for sweeps and batches")
+    yield terminal()
+    yield from extras()
+    yield from libraries()
+
+
+def libraries() -> Iterator[Finding]:
+    """Yield one row with the versions of all required libraries, and one with a fault for each that is missing or unsuitable."""
+    found, wrong = [], []
+    for one in _requirements():
+        version = _version(one)
+        found.append(f"{one.name} {version or 'missing'}")
+        if version is None:
+            wrong.append(Finding(one.name, "missing", f"{one.name} is not installed: pip install '{one.name}{one.specifier}'"))
+        elif not one.specifier.contains(version, prereleases=True):
+            fault = f"{one.name} {version} does not suit: pip install '{one.name}{one.specifier}'"
+            wrong.append(Finding(one.name, version, fault))
+    yield Finding("libraries", ", ".join(found))
+    yield from wrong
+
+
+def extras() -> Iterator[Finding]:
+    """Yield a row for each extra that users may install: the versions of its libraries, or how to install them."""
+    for extra in metadata.metadata("stickslip").get_all("Provides-Extra") or ():
+        if extra in DEVELOPERS:
+            continue
+        wanted = _requirements(extra)
+        versions = [_version(one) for one in wanted]
+        there = all(version and one.specifier.contains(version) for one, version in zip(wanted, versions, strict=True))
+        shown = ", ".join(f"{one.name} {version}" for one, version in zip(wanted, versions, strict=True))
+        yield Finding(f"[{extra}]", shown if there else f"not installed: pip install 'stickslip[{extra}]'")
+
+
+def _requirements(extra: str = "") -> list[Requirement]:
+    """Return what the package requires here: always, or in addition for an extra."""
+    from packaging.requirements import Requirement
+
+    every = map(Requirement, metadata.requires("stickslip") or ())
+    return [one for one in every if ("extra" in str(one.marker)) == bool(extra) and _applies(one, extra)]
+
+
+def _applies(one: Requirement, extra: str) -> bool:
+    return one.marker is None or one.marker.evaluate({"extra": extra})
+
+
+def _version(one: Requirement) -> str | None:
+    try:
+        return metadata.version(one.name)
+    except metadata.PackageNotFoundError:
+        return None
+
+
+def terminal() -> Finding:
+    """Return the encoding of the terminal; any but UTF-8 is a fault, because titles and units may not be readable in it."""
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    if codecs.lookup(encoding).name == "utf-8":
+        return Finding("terminal", "UTF-8")
+    return Finding("terminal", encoding, f"the terminal shows {encoding}, not UTF-8: set PYTHONUTF8=1, or LC_ALL=C.UTF-8")
+
+
+def engine() -> Iterator[Finding]:
+    """Yield the compiler with the processor for which it compiles, and the cache of compiled code. Imports the compiler."""
+    with redirect_stderr(io.StringIO()):  # a cache that cannot be used is reported below, with the cure
+        from stickslip.engine.codegen import cache
+    from llvmlite import __version__ as version
+    from llvmlite.binding import get_host_cpu_name
+
+    from stickslip.engine.codegen.uncompiled import UNCOMPILED
+
+    shown = f"llvmlite {version} for {get_host_cpu_name()}"
+    slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
+    yield Finding("compiler", "not used" if UNCOMPILED else shown, slow if UNCOMPILED else "")
+    yield compiled_code(cache.cache_root(), f"compiled-{cache.SOURCES}")
+
+
+def compiled_code(root: Path, name: str) -> Finding:
+    """Return how much compiled code is kept in a folder of the cache; a folder that cannot be written is a fault."""
+    from stickslip.engine.codegen.private_folder import private_folder
+
+    try:
+        folder = private_folder(root / name)
+        with tempfile.TemporaryFile(dir=folder) as trial:
+            trial.write(PROBE)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        cure = "set STICKSLIP_CACHE_DIR to a folder that you own"
+        return Finding("cache", f"none in {root}", f"compiled code cannot be kept in {root} ({reason}): {cure}")
+    old = sum(_size(one) for one in folder.parent.glob("compiled-*") if one != folder)
+    rest = f", and {old / 1e6:.1f} MB of other versions, which may be removed" if old else ""
+    return Finding("cache", f"{folder}, {_size(folder) / 1e6:.1f} MB{rest}")
+
+
+def _size(folder: Path) -> int:
+    """Return the size of all files in a folder, in bytes."""
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())

@@ -1,0 +1,213 @@
+"""The strip on the page: 200 runs of one parameter below the panels, where a click goes to the run at that place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import panel as pn
+import param
+from panel.custom import JSComponent
+
+from stickslip.explorer.model.strip import (
+    SHOWN,
+    Strip,
+    StripRange,
+    choices,
+    numeric,
+    present,
+    setting_at,
+    strip_of,
+    strip_text,
+    usual_range,
+)
+from stickslip.explorer.page.components import asset
+from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.heading import heading
+from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.view import Key, View, axis_label, limits
+from stickslip.figures.style import SPELLED, unit_of
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.values import read_typed
+
+NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
+HEIGHT = 132
+"""Height (px) of the plots with their headings."""
+COLOURS = {"pulses": "ink", "slip": "slip", "first_end": "traction", "peak_rate": "rate"}
+TICK = "return facts.data.log[0] ? String(Number((10 ** tick).toPrecision(3))) : String(Number(tick.toPrecision(6)))"
+"""Text of a tick of the parameter's axis, which is linear in the power of ten for a logarithmic strip."""
+
+
+def plots(stage: Stage) -> dict[str, Any]:
+    """Return the plots of a strip by quantity, without data."""
+    return {name: _plot(stage, name) for name in SHOWN}
+
+
+def _plot(stage: Stage, name: str) -> Any:
+    from bokeh.models import CustomJSTickFormatter, Span
+
+    drawn = stage.plot(f"strip_{name}", "strip_x", f"strip_{name}_y", f"Strip: {NAMES[name]} of 200 runs against a parameter")
+    bands = stage.source("strip_bands", "x0", "x1")
+    paint(drawn.vstrip(x0="x0", x1="x1", source=bands, line_width=0, fill_alpha=0.1).glyph, fill_color="unstable")
+    facts = stage.source("strip_facts", "log")
+    drawn.xaxis.formatter = CustomJSTickFormatter(args={"facts": facts}, code=TICK)
+    source = stage.source("strip", "x", *SHOWN)
+    paint(drawn.scatter("x", name, source=source, size=3.5, line_width=0).glyph, fill_color=COLOURS[name])
+    line = Span(location=0.0, dimension="height", level="overlay", line_width=1.2)
+    drawn.add_layout(paint(stage.note(f"here:strip_{name}", line), line_color="cursor"))
+    return drawn
+
+
+def view_of_strip(strip: Strip) -> View:
+    """Return what the plots show of a strip."""
+    unit, size = unit_of(strip.unit, strip.values, log=strip.log)
+    x = place_of(strip, strip.values, size)
+    view = View(columns={"strip": {"x": x}, "strip_facts": {"log": [strip.log]}}, limits={"strip_x": (float(x[0]), float(x[-1]))})
+    for name in SHOWN:
+        shown, scale = unit_of(strip.units[name], strip.results[name])
+        values = view.columns["strip"][name] = strip.results[name] / scale
+        view.limits[f"strip_{name}_y"] = limits(values, 0.0, floor=0.0)
+        view.titles[f"strip_{name}"] = axis_label(NAMES[name], "", SPELLED.get(shown, shown))
+    view.keys[f"strip_{SHOWN[0]}"] = (Key("irregular", "unstable", "area"),) if strip.results["irregular"].any() else ()
+    view.labels = {f"axis:strip_x@strip_{name}": axis_label(strip.parameter, "", unit) for name in SHOWN}
+    view.columns["strip_bands"] = dict(zip(("x0", "x1"), _bands(x, strip.results["irregular"]), strict=True))
+    view.facts["strip"] = {"size": size, "log": strip.log}
+    return view
+
+
+def place_of(strip: Strip, values: Any, size: float) -> Any:
+    """Return where values (SI) of the parameter lie on the axis of a strip."""
+    shown = np.asarray(values, float) / size
+    return np.log10(np.maximum(shown, 1e-300)) if strip.log else shown
+
+
+def _bands(x: Any, irregular: Any) -> tuple[list[float], list[float]]:
+    """Return where the intervals begin and end in which the contact is irregular."""
+    inside = np.concatenate([[False], irregular == 1.0, [False]])
+    edges = np.flatnonzero(inside[1:] != inside[:-1])
+    middles = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
+    return middles[edges[::2]].tolist(), middles[edges[1::2]].tolist()
+
+
+class StripBar(JSComponent):  # type: ignore[misc] # panel has no types
+    """The bar above the plots: parameter and range."""
+
+    state = param.Dict(default={"choices": []}, doc="Choices of parameters, the chosen range, and what is said of the strip.")
+
+    _esm = asset("strip.js")
+
+    def __init__(self, chosen: Callable[[dict[str, Any]], None], **params: Any) -> None:
+        self._chosen = chosen
+        super().__init__(stylesheets=[asset("strip.css")], **params)
+
+    def _handle_msg(self, data: Any) -> None:
+        if isinstance(data, dict) and isinstance(data.get("parameter"), str):
+            self._chosen(data)
+
+
+class StripView:
+    """The strip of one page. `view` is placed below the panels."""
+
+    def __init__(self, explorer: Explorer) -> None:
+        self._explorer, self._stage = explorer, Stage()
+        self.strip: Strip | None = None
+        self._made_of: tuple[StripRange, Any] | None = None
+        self.bar = StripBar(self._choose, sizing_mode="stretch_width", margin=0)
+        found = plots(self._stage)
+        for plot in found.values():
+            plot.on_event("tap", self._tapped)
+        css = [asset("heading.css")]
+        self._headings = {name: pn.pane.HTML(sizing_mode="stretch_width", margin=0, stylesheets=css) for name in found}
+        panes = [
+            pn.Column(self._headings[name], pn.pane.Bokeh(plot, sizing_mode="stretch_both", margin=0), margin=0, height=HEIGHT)
+            for name, plot in found.items()
+        ]
+        self.plots = pn.GridBox(*panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False)
+        self.view = pn.Column(self.bar, self.plots, sizing_mode="stretch_width", margin=0, css_classes=["strip"])
+        explorer.listen("answer", self._ask)
+        explorer.listen("strip", self._ask)
+        self._tell()
+
+    def _choose(self, data: dict[str, Any]) -> None:
+        """Take what was entered in the bar, which may be anything."""
+        explorer, name = self._explorer, str(data["parameter"])
+        try:
+            if not name:
+                explorer.show_strip(None)
+            elif "low" not in data:
+                explorer.show_strip(usual_range(explorer.setting.scenario(), name))
+            else:
+                explorer.show_strip(self._entered(name, data))
+        except InputError as error:
+            self._tell(str(error))
+
+    def _entered(self, name: str, data: dict[str, Any]) -> StripRange:
+        """Return the range that was typed. Raises InputError if it is none."""
+        found = numeric(self._explorer.setting.scenario(), name)
+        assert isinstance(found.declared, Quantity)
+        low, high = (read_typed(str(data.get(end))[:100], found.declared, "strip", found.name) for end in ("low", "high"))
+        chosen = StripRange(found.name, low, high, log=data.get("log") is True)
+        chosen.values(2)
+        return chosen
+
+    def _ask(self) -> None:
+        """Have the strip worked out, unless it is the one that is shown: then only its mark moves."""
+        explorer, where = self._explorer, self._explorer.strip
+        if where is None or explorer.answer is None:
+            self.strip = self._made_of = None
+            self.plots.visible = False
+            self._tell()
+            return
+        try:
+            made_of = (where, setting_at(explorer.setting, where.parameter, where.high).document)
+        except InputError:  # another body or law, which has no such parameter
+            explorer.show_strip(None)
+            return
+        if made_of == self._made_of:
+            self._mark()
+            return
+        scenario = explorer.answer.scenario
+        explorer.beside(lambda told: strip_of(scenario, where, told), lambda strip: self._show(strip, made_of))
+
+    def _show(self, strip: Strip, made_of: tuple[StripRange, Any]) -> None:
+        self.strip, self._made_of = strip, made_of
+        with pn.io.hold():
+            view = view_of_strip(strip)
+            self._stage.show(view)
+            for name, pane in self._headings.items():
+                pane.object = heading(view.titles[f"strip_{name}"], view.keys.get(f"strip_{name}", ()))
+            self._mark()
+            self.plots.visible = True
+            self._tell(strip_text(strip))
+        self._explorer.told("")
+
+    def _mark(self) -> None:
+        """Mark the present value of the parameter."""
+        assert self.strip is not None
+        _, size = unit_of(self.strip.unit, self.strip.values, log=self.strip.log)
+        scenario = self._explorer.setting.scenario()
+        here = float(place_of(self.strip, present(scenario, numeric(scenario, self.strip.parameter)), size))
+        for name in SHOWN:
+            self._stage.named[f"here:strip_{name}"].location = here
+
+    def _tapped(self, event: Any) -> None:
+        """Go to the run at the place of a click."""
+        if self.strip is None or event.x is None:
+            return
+        _, size = unit_of(self.strip.unit, self.strip.values, log=self.strip.log)
+        value = 10.0**event.x * size if self.strip.log else event.x * size
+        explorer = self._explorer
+        nearest = float(self.strip.values[self.strip.nearest(value)])
+        explorer.change(setting_at(explorer.setting, self.strip.parameter, nearest))
+
+    def _tell(self, said: str = "") -> None:
+        """Show in the bar what may be chosen, what is, and a line on it."""
+        scenario, where = self._explorer.setting.scenario(), self._explorer.strip
+        chosen = None
+        if where is not None:
+            ends = {"low": f"{where.low:.6g}", "high": f"{where.high:.6g}"}
+            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": numeric(scenario, where.parameter).unit}
+        self.bar.state = {"choices": choices(scenario), "chosen": chosen, "said": said}

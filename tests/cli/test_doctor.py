@@ -1,0 +1,173 @@
+"""`stickslip doctor` finds each fault that an installation can have, and says in one line how to cure it."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from stickslip.cli import installation, self_test
+from stickslip.cli.main import main
+from stickslip.cli.self_test import Trial, judged
+from stickslip.scenarios.templates import template
+from tests.cli.conftest import Outcome
+
+Command = Callable[..., Outcome]
+
+
+def versions(monkeypatch: pytest.MonkeyPatch, **replaced: str | None) -> None:
+    """Let some libraries have other versions, or none."""
+    version = metadata.version
+
+    def find(name: str) -> str:
+        found = replaced.get(name, "") if name in replaced else version(name)
+        if found is None:
+            raise metadata.PackageNotFoundError(name)
+        return found
+
+    monkeypatch.setattr(metadata, "version", find)
+
+
+def without_trials(monkeypatch: pytest.MonkeyPatch, *trials: Callable[[], Trial]) -> None:
+    monkeypatch.setattr(self_test, "TRIALS", trials)
+
+
+def fault(found: Outcome) -> str:
+    """Return the one fault that was said, without its beginning."""
+    assert found.code == 1
+    assert "All is well" not in found.out
+    (line,) = found.err.splitlines()
+    return line.removeprefix("stickslip: doctor: ")
+
+
+def test_a_sound_installation_is_well(command: Command) -> None:
+    found = command("doctor")
+    assert (found.code, found.err) == (0, "")
+    assert "slip rate of a slab 4.102040816 m/s, closed form 4.102040816 m/s" in found.out
+    for name in ("numba", "numpy", "llvmlite"):
+        assert f"{name} {metadata.version(name)}" in found.out
+    assert found.out.endswith("\nAll is well.\n")
+
+
+def test_an_extra_that_is_missing_is_told_and_no_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    versions(monkeypatch, pyarrow=None)
+    without_trials(monkeypatch)
+    found = command("doctor")
+    assert found.code == 0
+    assert "pip install 'stickslip[parquet]'" in found.out
+    versions(monkeypatch, pyarrow="99.0")
+    assert "pyarrow 99.0" in command("doctor").out
+
+
+@pytest.mark.parametrize(("version", "said"), [(None, "numba is not installed"), ("0.1", "numba 0.1 does not suit")])
+def test_a_library_that_is_missing_or_too_old_is_a_fault(
+    command: Command, monkeypatch: pytest.MonkeyPatch, version: str | None, said: str
+) -> None:
+    versions(monkeypatch, numba=version)
+    without_trials(monkeypatch)
+    found = command("doctor")
+    assert fault(found).startswith(f"{said}: pip install 'numba")
+    assert ("self-test" in found.out) == (version is not None)
+
+
+def test_a_package_without_metadata_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(name: str) -> None:
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "requires", none)
+    found = command("doctor")
+    assert fault(found) == "No package metadata was found for stickslip: pip install --force-reinstall stickslip"
+    assert "terminal" in found.out
+
+
+def file_in_place(folder: Path) -> Path:
+    (folder / "file").touch()
+    return folder / "file"
+
+
+def open_to_all(folder: Path) -> Path:
+    (folder / "open").mkdir()
+    (folder / "open").chmod(0o777)
+    return folder / "open"
+
+
+@pytest.mark.parametrize(("made", "said"), [(file_in_place, "File exists"), (open_to_all, "other users can write into")])
+def test_a_cache_that_cannot_be_used_is_a_fault(
+    command: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, made: Callable[[Path], Path], said: str
+) -> None:
+    monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(made(tmp_path)))
+    without_trials(monkeypatch)
+    text = fault(command("doctor"))
+    assert said in text
+    assert text.endswith("set STICKSLIP_CACHE_DIR to a folder that you own")
+
+
+def test_a_full_disk_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("only Linux has a disk that is always full")
+    with Path("/dev/full").open("wb", buffering=0) as full:
+        monkeypatch.setattr("tempfile.TemporaryFile", lambda dir: full)
+        assert "(No space left on device)" in installation.compiled_code(tmp_path, "compiled-1").fault
+
+
+def test_code_of_other_versions_is_counted(tmp_path: Path) -> None:
+    for name in ("compiled-1", "compiled-2"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "code").write_bytes(bytes(3_000_000))
+    shown = installation.compiled_code(tmp_path, "compiled-1")
+    assert shown.fault == ""
+    assert "3.0 MB, and 3.0 MB of other versions, which may be removed" in shown.value
+
+
+def test_a_terminal_that_is_not_utf_8_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    for encoding, is_fault in (("utf8", False), ("latin-1", True), ("ascii", True)):
+        monkeypatch.setattr("sys.stdout", io.TextIOWrapper(io.BytesIO(), encoding=encoding))
+        assert ("set PYTHONUTF8=1" in installation.terminal().fault) == is_fault
+
+
+def test_a_title_that_the_terminal_cannot_show_is_written_with_escapes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mine.toml").write_text(template("slab").replace('title = ""', 'title = "ä and α"'), encoding="utf-8")
+    shown = io.TextIOWrapper(io.BytesIO(), encoding="latin-1")
+    monkeypatch.setattr("sys.stdout", shown)
+    with pytest.raises(SystemExit, match="0"):
+        main(["run", str(tmp_path / "mine.toml")])
+    assert shown.buffer.getvalue().decode("latin-1").startswith("ä and \\u03b1\n")  # type: ignore[attr-defined]
+
+
+def test_an_answer_off_the_closed_form_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert judged(Trial("slip", 1.0 + 0.9e-9, 1.0, "m")).fault == ""
+    without_trials(monkeypatch, lambda: Trial("slip", 1.0 + 1.1e-9, 1.0, "m"))
+    assert fault(command("doctor")).startswith("slip 1.000000001 m, closed form 1 m: remove the cache")
+    assert judged(Trial("slip", float("nan"), 1.0, "m")).fault != ""
+
+
+def test_a_run_that_cannot_be_made_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken() -> Trial:
+        raise OSError("libLLVM.so:\ncannot be opened")
+
+    without_trials(monkeypatch, broken)
+    text = fault(command("doctor"))
+    assert text == "the engine cannot run (OSError: libLLVM.so: cannot be opened): pip install --force-reinstall stickslip"
+
+
+def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stickslip.engine.codegen.uncompiled.UNCOMPILED", True)
+    without_trials(monkeypatch)
+    assert fault(command("doctor")).endswith("unset it")
+
+
+def test_a_compiler_that_is_switched_off_is_one_line_for_every_command() -> None:
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    code = "import sys; from stickslip.cli.main import main; main(sys.argv[1:])"
+    for arguments, status, begins in (["doctor"], 1, "stickslip: doctor: "), (["run", "fig6-slab"], 2, "stickslip: "):
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments], env=environment, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr.count("\n")) == (status, 1)
+        assert done.stderr.startswith(f"{begins}NUMBA_DISABLE_JIT is set")
