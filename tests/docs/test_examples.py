@@ -93,7 +93,7 @@ def lines(text: str) -> list[str]:
     return [line.rstrip() for line in text.rstrip().splitlines()]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=page_name)
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"], ids=page_name)
 def test_every_link_has_its_target(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for target in LINK.findall(text):
