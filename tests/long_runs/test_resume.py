@@ -91,7 +91,7 @@ def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Pa
     for share in np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
         ss.simulate(problem, share * duration).to_netcdf(path)
         assert differences(ss.resume(path, duration), whole) == [], f"from {share} of the way"
-        assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
+    assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
 
 
 def test_the_comparison_shows_a_state_that_is_not_restored(tmp_path: Path) -> None:

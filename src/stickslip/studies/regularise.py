@@ -178,9 +178,9 @@ class Regularisation(RunsCompared):
         Returns
         -------
         pandas.DataFrame
-            Columns: size (s); the parameter of the kind of regularisation; for each rule mean_, largest_ and end_, the slip
-            difference (m) from its exact solution, and order_, between neighbouring sizes; change, the mean difference (m) from the
-            size before; delay_ of each jump (s); pieces of history; seconds of computing time; status.
+            Columns: size (s); the parameter of the kind of regularisation; for each rule ``mean_``, ``largest_`` and ``end_``,
+            the slip difference (m) from its exact solution, and ``order_``, between neighbouring sizes; change, the mean difference
+            (m) from the size before; ``delay_`` of each jump (s); pieces of history; seconds of computing time; status.
         """
         kind = kind_of(self.by)
         columns: dict[str, object] = {"size": self.sizes}

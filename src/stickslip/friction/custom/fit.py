@@ -121,8 +121,9 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     points : Points, str, Path, DataFrame or mapping
         The points; `Points.read` says what is understood.
     law : str, FrictionLaw or class
-        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by + or *, one of a law of slip and one of a law
-        of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no hint.
+        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by "+" or "*", one of a law of slip and one of
+        a law of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no
+        hint.
     start : mapping, optional
         Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
     fixed : mapping, optional
