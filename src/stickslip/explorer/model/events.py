@@ -11,14 +11,13 @@ from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.solution.interval import last_large_event
 from stickslip.solution.solution import Solution
 
-
 MOST_EVENTS = 500
-"""Number of slip events up to which pulses are looked for: each takes a millisecond, and marks of single pulses would not be seen."""
+"""Number of slip events up to which pulses are looked for: each takes a millisecond, and single ones of more would not be seen."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was found in a run: tables of slip events, of shocks and, if the events are few, of pulses, as the solution gives them."""
+    """What was found in a run, as the solution gives it: slip events, shocks and, if there are few events, their pulses."""
 
     solution: Solution
     events: pd.DataFrame
