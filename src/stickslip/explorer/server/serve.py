@@ -140,6 +140,7 @@ class ExplorerServer:
         first = FIRST_PORT if self.place.port is None else self.place.port
         for port in range(first, first + (PORTS if self.place.port is None else 1)):
             try:
+                check_free(self.place.address, port)
                 return self._listening(port)
             except OSError as error:
                 if error.errno != errno.EADDRINUSE:
@@ -189,6 +190,12 @@ class ExplorerServer:
         page = self._build(explorer)
         begin(explorer, arguments_of(pn.state.session_args))
         return page
+
+
+def check_free(address: str, port: int) -> None:
+    """Raise OSError if nothing can listen there. Tornado would find out too, but leave sockets open."""
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    socket.create_server((address, port), family=family).close()
 
 
 def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
