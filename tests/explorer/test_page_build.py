@@ -56,15 +56,18 @@ def test_a_fault_leaves_the_last_picture(explorer: Explorer) -> None:
     before = panels.stage.source("motion").data["slip"].copy()
     explorer.change(explorer.setting.with_value("friction.amplitude", "much"))
     assert (panels.stage.source("motion").data["slip"] == before).all()
-    assert "[friction] amplitude" in words.view.object
+    assert "amplitude" in words.view.texts["fault"]
     explorer.change(explorer.setting.with_value("friction.amplitude", 0.4))
-    assert "amplitude" not in words.view.object
+    assert words.view.texts["fault"] == ""
 
 
-def test_words_are_escaped(explorer: Explorer) -> None:
-    words = Words(explorer)
-    explorer.refuse("<script>alert(1)</script>")
-    assert "<script>" not in words.view.object
+def test_a_run_can_be_stopped_from_the_page(explorer: Explorer, monkeypatch: pytest.MonkeyPatch) -> None:
+    stopped: list[bool] = []
+    monkeypatch.setattr(explorer, "stop", lambda: stopped.append(True))
+    view = Words(explorer).view
+    view._handle_msg("nonsense")
+    view._handle_msg("stop")
+    assert stopped == [True]
 
 
 def test_the_cursor_of_the_browser_is_told(explorer: Explorer) -> None:
@@ -74,3 +77,15 @@ def test_the_cursor_of_the_browser_is_told(explorer: Explorer) -> None:
     panels.player._handle_msg({"cursor": "soon"})
     panels.player._handle_msg("nonsense")
     assert heard == [2.5]
+
+
+def test_a_move_of_the_browser_is_not_sent_back(explorer: Explorer) -> None:
+    panels = Panels(explorer)
+    panels.player._handle_msg({"cursor": 2.5})
+    assert panels.player.cursor["seconds"] == 0.0
+    for seconds in (4.0, 4.0):
+        before = dict(panels.player.cursor)
+        explorer.cursor = seconds
+        explorer.tell("cursor")
+        assert panels.player.cursor["seconds"] == seconds
+        assert panels.player.cursor != before

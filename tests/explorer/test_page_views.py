@@ -38,7 +38,7 @@ def test_axes_hold_their_data(shown: tuple[Answer, View]) -> None:
         *((name, body, name) for name in ("slip", "rate", "traction") for body in ("motion", "companion")),
         ("time", "motion", "time"),
         ("law_y", "law", "y"),
-        ("law_x", "visits", "x"),
+        ("law_x", "motion", "law_x"),
         ("contact_rate", "path", "rate"),
         ("contact_load", "path", "load"),
         ("energy", "energy", "total"),

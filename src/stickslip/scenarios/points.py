@@ -31,12 +31,19 @@ def read_points(name: str, folder: Path | None, columns: Mapping[str, str], wher
     columns are ignored; headings may carry units (`foundation.columns`). Raises InputError with a message of one line that names
     the file and the line.
     """
-    *others, value = columns
     try:
         text = _text(name, folder)
     except InputError as error:
         raise InputError(f"{where} {show(name)}: {error}") from None
-    file = f"{where}: {show(name)}"
+    return points_in(text, columns, f"{where}: {show(name)}")
+
+
+def points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
+    """Return the numbers (SI) in CSV text by the field to which they belong, as `read_points` does.
+
+    `file` is the name of the text in messages.
+    """
+    *others, value = columns
     number, header = header_of(text, file)
     table = read_text(text, tuple(columns), file, LARGEST_SERIES)
     place, found = f"{file}, line {number}", [column for column in others if column in table.columns]

@@ -241,7 +241,7 @@ class _Tables:
         unit, size = _unit_of(given, value, entry.unit)
         empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
         kind: ControlKind = "whole" if entry.whole else "number"
-        slider = self._slider(path, entry, value)
+        slider = self._slider(path, entry, value, default)
         return Control(path, label, describe(entry), kind, value, unit, size, slider, empty=empty, rare=rare, declared=entry)
 
     def _empty(self, path: str, default: Any, entry: Quantity) -> str:
@@ -254,14 +254,15 @@ class _Tables:
         given = self.setting.value(path)
         one = self.problem.parameters[path]
         unit, size = _unit_of(given, one.value, one.unit)
-        slider = self._slider(path, one.declared, one.value)
+        slider = self._slider(path, one.declared, one.value, MISSING)
         return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
 
-    def _slider(self, path: str, entry: Quantity, value: float | None) -> Range | None:
+    def _slider(self, path: str, entry: Quantity, value: float | None, default: Any) -> Range | None:
+        """Return the range of a slider, which follows from the value with which the scenario began and not from the present one."""
         anchor = self.began(path)
         try:
-            began = value if anchor is None or isinstance(anchor, Mapping) else entry.check("", "", anchor)
-        except InputError:  # the scenario began with another kind of body or law, in which the name means something else
+            began = entry.check("", "", anchor) if anchor is not None else value if default in (MISSING, None) else default
+        except InputError:  # the scenario began with another kind of body, law or loading, in which the name means something else
             began = value
         found = range_of(path, entry, began, self.problem)
         return None if found is None else found.holding(value)

@@ -66,7 +66,8 @@ def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
     had = entries_in("friction", kind_of("friction", former, setting.name))
     for key, (entry, _) in entries_in("friction", law).items():
         old = had.get(key, (None, None))[0]
-        if not isinstance(entry, Quantity) or not isinstance(old, Quantity) or old.unit != entry.unit or key not in former:
+        fits = isinstance(entry, Quantity) and isinstance(old, Quantity) and old.unit == entry.unit
+        if not fits or key not in former or key not in made:  # what is optional in the new law means something else there
             continue
         kept = made | {key: former[key]}
         try:

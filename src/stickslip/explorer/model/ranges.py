@@ -32,10 +32,12 @@ class Range(NamedTuple):
     log: bool = False
 
     def holding(self, value: float | None) -> Range:
-        """Return the range, widened to hold a value."""
-        if value is None or not math.isfinite(value) or (self.log and value <= 0.0):
-            return self
-        return Range(min(self.low, value), max(self.high, value), self.log)
+        """Return the range with ends of two digits, widened to hold a value."""
+        low, high = (float(f"{end:.2g}") for end in (self.low, self.high))
+        if value is not None and math.isfinite(value) and (value > 0.0 or not self.log):
+            low = low if value > low or math.isclose(value, low) else value
+            high = high if value < high or math.isclose(value, high) else value
+        return Range(low, high, self.log)
 
 
 def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> Range | None:

@@ -34,7 +34,9 @@ class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
 
     facts = param.Dict(default={}, doc="What the browser must know of the answer: `View.facts`.")
     look = param.Dict(default={}, doc="Colours and colour scales.")
-    cursor = param.Number(default=0.0, doc="Time (s) to which Python moves the cursor.")
+    cursor = param.Dict(
+        default={"seconds": 0.0}, doc="Time (s) to which Python moves the cursor, and a number that differs each time."
+    )
 
     _esm = player_script()
 

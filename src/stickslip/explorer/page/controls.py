@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import math
 import re
-from contextlib import suppress
 from typing import Any
 
+from stickslip.explorer.model.controls import Control, Group, controls_of
+from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.scenario_list import offered
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.components import ControlRows
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.figures.names import GREEK, symbol
+from stickslip.figures.style import SPELLED
+from stickslip.foundation.errors import InputError
 
 FAULT = re.compile(r"\[(?P<table>[\w.]+)\] (?P<key>\w+)")
 """Where a message says which entry is wrong, as in "[friction] alpha must be at least 0"."""
+SYMBOL = re.compile(r"\$\\?(?P<letter>\w+?)(_\{(?P<index>\w+)\})?\$")
+"""A symbol in mathtext, such as "$\\mu_{S}$"."""
+SCENARIO, KIND = "scenario", "kind:"
+"""The path of the list of scenarios, and what the paths of lists of kinds begin with, before their table."""
+STARTS = {"excess": "excess over the static strength", "load": "load"}
+"""Names of the ways to give the load of the start."""
+Row = dict[str, Any]
 
 
 class Controls:
     """All controls of one page. `view` is what is placed on it."""
 
     def __init__(self, explorer: Explorer) -> None:
-        self._explorer = explorer
+        self._explorer, self._entered = explorer, ""
         self.view = ControlRows(self._enter, sizing_mode="stretch_width")
         explorer.listen("setting", self._show)
         explorer.listen("fault", self._blame)
@@ -28,40 +41,100 @@ class Controls:
         self.view.groups = groups_of(self._explorer.setting)
 
     def _blame(self) -> None:
-        fault = self._explorer.fault
-        found = FAULT.search(fault)
-        self.view.faults = {f"{found['table']}.{found['key']}": fault} if found else {}
+        """Show the fault at the row that it names, or else at the row in which something was entered last."""
+        fault, found = self._explorer.fault, FAULT.search(self._explorer.fault)
+        path = f"{found['table']}.{found['key']}" if found else self._entered
+        self.view.faults = {path: fault} if fault else {}
 
     def _enter(self, entered: dict[str, Any]) -> None:
-        setting, path = self._explorer.setting, str(entered.get("path"))
-        value = entered.get("value", entered.get("text"))
-        if isinstance(value, str):
-            with suppress(ValueError):
-                value = float(value)
-        self._explorer.change(setting.with_value(path, value))
+        self._entered = str(entered.get("path"))
+        try:
+            setting = changed(self._explorer.setting, entered)
+        except InputError as error:
+            self._explorer.refuse(str(error))
+            return
+        self._explorer.change(setting)
+
+
+def changed(setting: Setting, entered: dict[str, Any]) -> Setting:
+    """Return a setting with what was entered in one row: a number of its slider, the text of its field, or a choice.
+
+    Raises InputError, in one line, for an entry that cannot be read.
+    """
+    path, value = str(entered.get("path")), entered.get("value", entered.get("text"))
+    if path == SCENARIO:
+        return Setting.bundled(str(value))
+    if path.startswith(KIND):
+        return with_kind(setting, path.removeprefix(KIND), str(value))
+    control = next((one for group in controls_of(setting) for one in group.controls if one.path == path), None)
+    if control is None:
+        raise InputError(f"{path} is not an entry of this scenario")
+    if isinstance(value, int | float) and math.isfinite(value):
+        return setting.with_value(path, control.entry(value * control.size))
+    return setting.with_value(path, control.read(str(value)))
 
 
 def groups_of(setting: Setting) -> list[dict[str, Any]]:
-    """Return groups of rows for the entries of a setting."""
-    groups = []
-    for table in ("body", "friction", "loading", "initial", "run"):
-        rows = []
-        for key, value in (setting.value(table) or {}).items():
-            row = {
-                "path": f"{table}.{key}",
-                "label": key,
-                "kind": "text",
-                "text": str(value),
-                "value": 0.0,
-                "unit": "",
-                "range": None,
-            }
-            if isinstance(value, int | float) and value:
-                row |= {
-                    "kind": "number",
-                    "value": value,
-                    "range": {"low": min(0.0, 3 * value), "high": max(0.0, 3 * value), "log": False},
-                }
-            rows.append(row)
-        groups.append({"title": table, "rows": rows})
-    return groups
+    """Return groups of rows for a setting, as the script of the controls takes them: first the choice of the scenario."""
+    return [_scenarios(setting), *({"title": group.title, "rows": rows_of(group)} for group in controls_of(setting))]
+
+
+def _scenarios(setting: Setting) -> dict[str, Any]:
+    options = [{"value": one.name, "label": one.title, "group": one.section} for one in offered()]
+    if setting.name not in {one["value"] for one in options}:
+        options.insert(0, {"value": setting.name, "label": setting.name, "group": ""})
+    row = {"path": SCENARIO, "label": "scenario", "kind": "choice", "options": options, "text": setting.name}
+    return {"title": "Scenario", "rows": [_whole(row)]}
+
+
+def rows_of(group: Group) -> list[Row]:
+    """Return the rows of one table: its kind, if it can be chosen, and its entries."""
+    rows = []
+    if group.kinds:
+        options = [{"value": kind, "label": STARTS.get(kind, kind.replace("-", " "))} for kind in group.kinds]
+        rows.append(_whole({"path": KIND + group.table, "label": "kind", "kind": "choice", "options": options, "text": group.kind}))
+    return [*rows, *(_row(control) for control in group.controls)]
+
+
+def _row(control: Control) -> Row:
+    letter, index = symbol_of(control)
+    row: Row = {
+        "path": control.path, "kind": control.kind, "text": control.shown, "rare": control.rare, "help": control.meaning,
+        "label": "" if control.label in GREEK else control.label, "letter": letter, "index": index, "empty": control.empty,
+        "options": [{"value": choice, "label": choice.replace("-", " ")} for choice in control.choices],
+        "unit": spelled(control.unit),
+    }  # fmt: skip
+    if control.slider is not None and not isinstance(control.value, str | tuple):
+        value = control.value if control.value is not None and math.isfinite(control.value) else control.slider.high
+        low, high, log = control.slider
+        ends = {"low": float(low) / control.size, "high": float(high) / control.size, "log": log, "whole": control.kind == "whole"}
+        row |= {"value": float(value) / control.size, "range": ends}
+    return _whole(row)
+
+
+def _whole(row: Row) -> Row:
+    """Return a row with every key that the script reads."""
+    empty = {
+        "unit": "",
+        "help": "",
+        "letter": "",
+        "index": "",
+        "empty": "",
+        "rare": False,
+        "value": 0.0,
+        "range": None,
+        "options": [],
+    }
+    return empty | row
+
+
+def symbol_of(control: Control) -> tuple[str, str]:
+    """Return the symbol of an entry and its index, such as "μ" and "S"; both "" if its meaning has none."""
+    found = SYMBOL.fullmatch(symbol(control.path, control.declared.meaning if control.declared else ""))
+    return (GREEK.get(found["letter"], found["letter"]), found["index"] or "") if found else ("", "")
+
+
+def spelled(unit: str) -> str:
+    """Return a unit as readers expect to see it."""
+    unit = SPELLED.get(unit, unit)
+    return re.sub(r"\bu(?=[mNPs])", "µ", unit).replace("/ m", "1/m") if unit.startswith(("u", "/")) else unit

@@ -17,7 +17,7 @@ LIGHT = {
     "stick": INK, "stable": BLUE, "unstable": VERMILLION, "continuum": PURPLE, "path": ORANGE, "law": PURPLE,
     "elastic": BLUE, "kinetic": GREEN, "radiated": SKY, "damped": PURPLE, "heat": VERMILLION,
     "ink": INK, "muted": "#5A626C", "faint": "#C9CED5", "grid": "#E9ECF0", "card": "#FFFFFF", "ground": PALE, "grey": GREY,
-    "cursor": INK, "front": "#00000080", "pin": GREY,
+    "cursor": INK, "front": "#00000050", "pin": GREY,
 }  # fmt: skip
 """Colours by role on a light ground: those of `stickslip.figures.style`."""
 DARK = LIGHT | {
@@ -25,7 +25,7 @@ DARK = LIGHT | {
     "stick": "#E8EAED", "stable": "#4BA3E3", "unstable": "#FF8640", "continuum": "#E39BC6", "path": "#F2B53A", "law": "#E39BC6",
     "elastic": "#4BA3E3", "kinetic": "#2FC79B", "radiated": "#9AD5F5", "damped": "#E39BC6", "heat": "#FF8640",
     "ink": "#E8EAED", "muted": "#A3ACB8", "faint": "#454D58", "grid": "#272D36", "card": "#171B21",
-    "ground": "#39414B", "grey": "#8B95A1", "cursor": "#FFFFFF", "front": "#FFFFFF80", "pin": "#8B95A1",
+    "ground": "#39414B", "grey": "#8B95A1", "cursor": "#FFFFFF", "front": "#FFFFFF60", "pin": "#8B95A1",
 }  # fmt: skip
 """The same on a dark ground: lighter, so that lines keep a contrast of at least 4.5."""
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
@@ -45,7 +45,7 @@ def blend(*colours: str) -> list[str]:
 def palettes() -> dict[str, dict[str, list[str]]]:
     """Return the colour scale of signed values on each ground; its middle is the colour of the ground."""
     # ColorBrewer's red and blue, as in the package's figures of space and time.
-    blue, red = ("#053061", "#2166AC", "#4393C3", "#92C5DE", "#D1E5F0"), ("#FDDBC7", "#F4A582", "#D6604D", "#B2182B", "#67001F")
+    blue, red = ("#2166AC", "#4393C3", "#92C5DE", "#D1E5F0"), ("#FDDBC7", "#F4A582", "#D6604D", "#B2182B")
     dark = blend("#A8DCFF", "#2F8FD8", DARK["card"], "#E0602A", "#FFC49A")
     return {"light": {"signed": blend(*blue, "#F7F7F7", *red)}, "dark": {"signed": dark}}
 

@@ -32,7 +32,7 @@ class Panels:
     """The linked panels and the time bar of one page: `plots` and `headings` by name, and `player`."""
 
     def __init__(self, explorer: Explorer) -> None:
-        self._explorer, self.stage = explorer, Stage()
+        self._explorer, self.stage, self._hears = explorer, Stage(), False
         self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(self.stage).items()}
         self.headings = {
             name: pn.pane.HTML(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
@@ -55,11 +55,15 @@ class Panels:
             self.player.facts = view.facts
 
     def _move(self) -> None:
-        self.player.cursor = self._explorer.cursor
+        if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile
+            self.player.cursor = {"seconds": self._explorer.cursor, "number": self.player.cursor.get("number", 0) + 1}
 
     def _moved(self, seconds: float) -> None:
-        self._explorer.cursor = seconds
-        self._explorer.tell("cursor")
+        self._explorer.cursor, self._hears = seconds, True
+        try:
+            self._explorer.tell("cursor")
+        finally:
+            self._hears = False
 
 
 def build(explorer: Explorer, **parts: Any) -> Any:

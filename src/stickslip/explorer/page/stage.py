@@ -66,6 +66,7 @@ class Stage:
         drawn.xaxis.name, drawn.yaxis.name = f"axis:{x}@{name}", f"axis:{y}@{name}"
         dress(drawn.xaxis[0], 0 if bare else 11)
         dress(drawn.yaxis[0])
+        drawn.yaxis[0].ticker.desired_num_ticks = 3 if left == NARROW else 5
         for grid in drawn.grid:
             paint(grid, grid_line_color="grid")
         if bare:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Columns = dict[str, Any]
-LineStyle = Literal["line", "dash", "dot", "area", "point", "scale"]
+LineStyle = Literal["line", "dash", "dot", "area", "ring", "scale"]
 
 
 class Key(NamedTuple):
@@ -57,7 +57,8 @@ class View:
 
     def add(self, other: View) -> None:
         """Take over what another view holds."""
-        self.columns |= other.columns
+        for name, columns in other.columns.items():
+            self.columns[name] = self.columns.get(name, {}) | columns
         self.limits |= other.limits
         self.labels |= other.labels
         self.titles |= other.titles

@@ -1,22 +1,41 @@
-"""The words above the panels: the sentence, what is wrong with the last entry, and the progress of a run."""
+"""The words above the panels: the sentence, what is wrong with the last entry, and the progress of a run, with its stop."""
 
 from __future__ import annotations
 
-from html import escape
+from typing import Any
 
-import panel as pn
+import param
+from panel.custom import JSComponent
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.explorer import Explorer
 
+FIRST = "The first answer is being calculated."
+
+
+class WordsBox(JSComponent):  # type: ignore[misc] # panel has no types
+    """The words in the browser, where readers of the screen are told when they change."""
+
+    texts = param.Dict(default={}, doc="sentence, regime, fault, progress and notes.")
+
+    _esm = asset("words.js")
+
+    def __init__(self, explorer: Explorer, **params: Any) -> None:
+        self._explorer = explorer
+        super().__init__(stylesheets=[asset("words.css")], **params)
+
+    def _handle_msg(self, data: Any) -> None:
+        if data == "stop":
+            self._explorer.stop()
+
 
 class Words:
-    """The sentence above the panels, with the fault of the last entry and the progress of a run under way."""
+    """The words of one page. `view` is what is placed on it."""
 
     def __init__(self, explorer: Explorer) -> None:
         self._explorer = explorer
-        self.view = pn.pane.HTML(sizing_mode="stretch_width", stylesheets=[asset("words.css")])
+        self.view = WordsBox(explorer, sizing_mode="stretch_width")
         for news in ("answer", "fault", "progress"):
             explorer.listen(news, self.show)
         self.show()
@@ -24,17 +43,10 @@ class Words:
     def show(self) -> None:
         """Show the words of the explorer as it is now."""
         explorer, answer = self._explorer, self._explorer.answer
-        sentence = _sentence(answer) if answer else "The first answer is being calculated."
-        notes = "".join(f"<li>{escape(note)}</li>" for note in answer.notes) if answer else ""
-        self.view.object = (
-            f'<div class="words"><p class="sentence" role="status" aria-live="polite">{sentence}</p>'
-            f'<p class="progress" aria-live="polite">{escape(explorer.progress)}</p>'
-            f'<p class="fault" role="alert">{escape(explorer.fault)}</p><ul class="notes">{notes}</ul></div>'
-        )
+        told = words_of(answer) if answer else {"sentence": FIRST, "regime": "", "notes": []}
+        self.view.texts = told | {"fault": explorer.fault, "progress": explorer.progress}
 
 
-def _sentence(answer: Answer) -> str:
-    """Return the sentence as HTML; the word for the regime stands out if it comes first."""
-    text, word = escape(answer.sentence), answer.regime
-    first, rest = text[: len(word)], text[len(word) :]
-    return f'<strong class="regime {escape(word)}">{first}</strong>{rest}' if first.lower() == word else text
+def words_of(answer: Answer) -> dict[str, Any]:
+    """Return what is said of an answer: the sentence, the word for the regime, and the notes."""
+    return {"sentence": answer.sentence, "regime": answer.regime, "notes": list(answer.notes)}

@@ -4,7 +4,7 @@
 function numberAt(row, position) {
   const share = position / 1000;
   const value = row.log ? row.low * (row.high / row.low) ** share : row.low + share * (row.high - row.low);
-  return Number(value.toPrecision(4));
+  return row.whole ? Math.round(value) : Number(value.toPrecision(4));
 }
 
 /** The slider's position of a number; outside its range the slider is at its end. */
@@ -12,6 +12,8 @@ function positionOf(row, value) {
   const share = row.log ? Math.log(value / row.low) / Math.log(row.high / row.low) : (value - row.low) / (row.high - row.low);
   return Number.isFinite(share) ? 1000 * Math.min(Math.max(share, 0), 1) : 0;
 }
+
+const LONGEST_WAIT = 400; // ms; after it the next value is sent although nothing came back
 
 class Controls {
   constructor(root, send) {
@@ -21,7 +23,8 @@ class Controls {
 
   /** Show groups of rows: they are made anew only if other rows are needed, so that the focus stays where it is. */
   update(groups, faults) {
-    const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range }) => [path, kind, options, unit, !range])]));
+    this.heard();
+    const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range, rare }) => [path, kind, options, unit, !range, rare])]));
     if (form !== this.drawn) this.make(groups);
     this.drawn = form;
     for (const { rows } of groups) for (const row of rows) this.fill(row);
@@ -29,7 +32,7 @@ class Controls {
   }
 
   make(groups) {
-    const open = new Map([...this.root.querySelectorAll("details")].map((one) => [one.dataset.title, one.open]));
+    const open = this.wasOpen = new Map([...this.root.querySelectorAll("details")].map((one) => [one.dataset.title, one.open]));
     const focused = this.root.getRootNode().activeElement?.id;
     this.rows.clear();
     this.root.replaceChildren(...groups.map((group) => this.makeGroup(group, open.get(group.title) ?? group.open ?? true)));
@@ -41,7 +44,9 @@ class Controls {
     group.open = open; group.dataset.title = title;
     const heading = document.createElement("summary");
     heading.textContent = title;
-    group.append(heading, ...rows.map((row) => this.makeRow(row)));
+    group.append(heading, ...rows.filter((row) => !row.rare).map((row) => this.makeRow(row)));
+    const rare = rows.filter((row) => row.rare);
+    if (rare.length && !title.startsWith("More")) group.append(this.makeGroup({ title: `More of ${title.toLowerCase()}`, rows: rare.map((row) => ({ ...row, rare: false })) }, this.wasOpen?.get(`More of ${title.toLowerCase()}`) ?? false));
     return group;
   }
 
@@ -49,8 +54,8 @@ class Controls {
     const line = document.createElement("div"), id = `control-${row.path.replace(/\W/g, "-")}`;
     line.className = `row ${row.kind}`;
     line.innerHTML = `<label for="${id}"></label><span class="entry"></span><p class="fault" id="${id}-fault" role="alert"></p>`;
-    line.querySelector("label").textContent = row.label;
-    if (row.help) line.title = row.help;
+    line.querySelector("label").append(...nameOf(row));
+    if (row.help) line.querySelector("label").title = row.help;
     const parts = { row, line, fault: line.querySelector(".fault") }, entry = line.querySelector(".entry");
     this.rows.set(row.path, parts);
     if (row.kind === "choice") {
@@ -61,7 +66,8 @@ class Controls {
     } else {
       parts.field = document.createElement("input");
       parts.field.type = "text"; parts.field.spellcheck = false; parts.field.autocomplete = "off";
-      if (row.kind === "number") parts.field.inputMode = "decimal";
+      if (row.kind === "number" || row.kind === "whole") parts.field.inputMode = "decimal";
+      if (row.empty) parts.field.placeholder = row.empty;
       parts.field.addEventListener("change", () => this.send({ path: row.path, text: parts.field.value }));
       entry.append(parts.field);
       if (row.unit) entry.append(Object.assign(document.createElement("span"), { className: "unit", textContent: row.unit }));
@@ -75,7 +81,7 @@ class Controls {
   makeSlider(parts, id) {
     const slider = document.createElement("input");
     Object.assign(slider, { type: "range", min: 0, max: 1000, step: 1, id: `${id}-slider` });
-    slider.setAttribute("aria-label", `${parts.row.label}, slider`);
+    slider.setAttribute("aria-label", `${parts.row.label || parts.row.letter}, slider`);
     slider.addEventListener("input", () => {
       const value = numberAt(parts.row.range, Number(slider.value));
       parts.field.value = String(value);
@@ -86,11 +92,25 @@ class Controls {
     parts.line.insertBefore(slider, parts.fault);
   }
 
-  /** Send the latest value of a slider that moves, at most one a frame. */
+  /** Send the latest value of a slider that moves, at most one a frame, and the next one only when the last one has been heard. */
   later(message) {
-    const waits = this.waiting;
+    const waits = this.waiting || this.unheard;
     this.waiting = message;
-    if (!waits) requestAnimationFrame(() => { const latest = this.waiting; this.waiting = null; this.send(latest); });
+    if (!waits) requestAnimationFrame(() => this.sendWaiting());
+  }
+
+  sendWaiting() {
+    const message = this.waiting;
+    this.waiting = null;
+    if (!message) return;
+    this.unheard = setTimeout(() => this.heard(), LONGEST_WAIT);
+    this.send(message);
+  }
+
+  heard() {
+    clearTimeout(this.unheard);
+    this.unheard = null;
+    if (this.waiting) requestAnimationFrame(() => this.sendWaiting());
   }
 
   fill(row) {
@@ -106,6 +126,14 @@ class Controls {
     if (parts.fault.textContent !== fault) parts.fault.textContent = fault;
     parts.field.setAttribute("aria-invalid", String(Boolean(fault)));
   }
+}
+
+/** The name of a row: words, and the symbol in italics with its index. */
+function nameOf({ label, letter, index }) {
+  if (!letter) return [label];
+  const symbol = Object.assign(document.createElement("i"), { textContent: letter });
+  if (index) symbol.append(Object.assign(document.createElement("sub"), { textContent: index }));
+  return label ? [`${label} `, symbol] : [symbol];
 }
 
 /** Options of a list; those with a group stand under its name. */

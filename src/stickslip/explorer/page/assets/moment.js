@@ -56,8 +56,8 @@ function showMoment(models, facts, t) {
 
 /** The friction coefficient that acts at time t; at rest it is what the load needs, and lies below the law's curve. */
 function showLaw(models, t) {
-  const times = models.column("visits", "time");
-  const [x, y] = ["x", "y"].map((name) => valueAt(times, models.column("visits", name), t));
+  const times = models.column("motion", "time");
+  const [x, y] = ["law_x", "law_y"].map((name) => valueAt(times, models.column("motion", name), t));
   models.put("now_law", { x: [x], y: [y] });
 }
 
@@ -71,7 +71,7 @@ function showContact(models, facts, t) {
 
 /** The slab, sheared by the displacements at time t: lines that were straight across it, and particles coloured by velocity. */
 function showSlab(models, facts, t) {
-  const { scale, bar, width, height } = facts.shape;
+  const { scale, bar, width, height, text } = facts.shape;
   const displacement = models.column("field", "displacement")[0], velocity = models.column("field", "velocity")[0];
   if (!displacement) return;
   const [rows, columns] = displacement.shape;
@@ -98,13 +98,14 @@ function showSlab(models, facts, t) {
   models.put("particles", particles);
   models.put("body", { x: [], y: [] });
   const end = first + (COLUMNS_DRAWN - 1) * step, top = u[rows - 1];
-  models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [1.06 * height, 1.06 * height]] });
+  models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [1.08 * height, 1.08 * height]] });
+  models.put("texts", { x: [first + top + 0.6, 0.97 * width - bar], y: [1.04 * height, 1.05 * height], text: ["driver", text] });
   models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [-0.02 * height] });
 }
 
 /** The block at time t, on the ground, and its spring up to the end that is pulled. */
 function showBlock(models, facts, values) {
-  const { scale, bar, width, height } = facts.shape;
+  const { scale, bar, width, height, text } = facts.shape;
   const origin = models.column("motion", "slip")[0], drive = models.column("motion", "drive")[0];
   const u = scale * (values.slip - origin), pulled = scale * ((values.drive ?? drive) - drive);
   const [left, right, low, high] = [0.06 * width + u, 0.3 * width + u, 0.02 * height, 0.42 * height];
@@ -119,7 +120,8 @@ function showBlock(models, facts, values) {
   spring.y.push(middle, middle);
   models.put("lines", { x: [spring.x], y: [spring.y] });
   models.put("particles", { x: [], y: [], velocity: [] });
-  models.put("driver", { x: [[end, end], scaleBar(width, bar)], y: [[low, 0.5 * height], [1.06 * height, 1.06 * height]] });
+  models.put("driver", { x: [[end, end], scaleBar(width, bar)], y: [[low, 0.5 * height], [1.08 * height, 1.08 * height]] });
+  models.put("texts", { x: [end + 0.4, 0.97 * width - bar, (left + right) / 2 + 0.5], y: [0.54 * height, 1.05 * height, middle - 0.03 * height], text: ["driver", text, "block"] });
   models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [0] });
 }
 

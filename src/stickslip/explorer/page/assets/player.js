@@ -2,6 +2,7 @@
 
 const WHOLE = 12; // seconds in which a run is played at speed 1
 const GLYPHS = { start: "▸", pulse: "▲", arrest: "■", jump: "◆", fold: "○", echo: "│" };
+const RANKS = ["arrest", "pulse", "start", "jump", "fold", "echo"]; // of marks at one time, the first gives the sign
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 
 const icon = (path) => `<svg viewBox="0 0 16 16" width="1em" height="1em" fill="currentColor" aria-hidden="true"><path d="${path}"/></svg>`;
@@ -14,7 +15,7 @@ const BAR = `
     <label class="speed" title="Speed of playing"><span class="hidden">Speed</span>
       <select aria-label="Speed of playing">${SPEEDS.map((one) => `<option value="${one}"${one === 1 ? " selected" : ""}>${one} ×</option>`).join("")}</select>
     </label>
-    <output class="clock" aria-live="off"></output>
+    <output class="clock" aria-live="off" title="Time of the cursor in all panels"></output>
     <div class="track">
       <div class="marks" role="toolbar" aria-label="Marks: pulses, arrest and jumps"></div>
       <input class="time" type="range" min="0" max="1000" step="any" value="0" aria-label="Time of the cursor">
@@ -110,9 +111,8 @@ class Player {
 
   showMarks() {
     const marks = this.facts.marks ?? [], span = this.end - this.start || 1;
-    this.marks.replaceChildren(...marks.map((mark, i) => {
-      const button = document.createElement("button");
-      const text = mark.text;
+    this.marks.replaceChildren(...together(marks, 0.005 * span).map((mark, i) => {
+      const button = document.createElement("button"), text = mark.text;
       button.type = "button"; button.className = mark.kind; button.textContent = GLYPHS[mark.kind] ?? "│";
       button.title = text; button.setAttribute("aria-label", text); button.tabIndex = i ? -1 : 0;
       button.style.setProperty("--share", (mark.time - this.start) / span);
@@ -189,6 +189,19 @@ class Player {
   }
 }
 
+/** Marks at almost the same time are one button, which says what all of them are. */
+function together(marks, near) {
+  const found = [];
+  for (const mark of marks) {
+    const last = found.at(-1);
+    if (last && mark.time - last.time <= near) {
+      last.text += `; ${mark.text}`;
+      if (RANKS.indexOf(mark.kind) < RANKS.indexOf(last.kind)) last.kind = mark.kind;
+    } else found.push({ ...mark });
+  }
+  return found;
+}
+
 /** Digits after the point with which a time of a span can be told apart from its neighbours. */
 function digitsFor(span) { return Math.min(Math.max(3 - Math.floor(Math.log10(span || 1)), 0), 6); }
 
@@ -207,9 +220,9 @@ export function render({ model, view, el }) {
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
   const update = () => player.update(model.facts);
   model.on("facts", update);
-  model.on("cursor", () => player.goSeconds(model.cursor));
+  model.on("cursor", () => player.goSeconds(model.cursor.seconds));
   update();
-  if (model.cursor) player.goSeconds(model.cursor);
+  player.goSeconds(model.cursor.seconds);
   return root;
 }
 

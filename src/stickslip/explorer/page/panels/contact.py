@@ -40,7 +40,7 @@ def data_of(answer: Answer, units: Units) -> View:
     columns["path"] = path
     found = [kind for kind in KINDS.values() if np.isfinite(columns[kind]["load"]).any()]
     keys = [Key("stick", "stick"), *(KEYS[kind] for kind in found), Key("path", "path")]
-    keys += [Key("fold", "ink", "point")] if len(folds) else []
+    keys += [Key("fold", "ink", "ring")] if len(folds) else []
     keys += [Key("jump", "muted", "dot")] if len(jumps) else []
     name = "force" if units.load[0].endswith("N") else "load"
     return View(
@@ -53,7 +53,7 @@ def data_of(answer: Answer, units: Units) -> View:
             "axis:contact_rate@contact": axis_label("slip rate", "v", units.rate[0]),
             "axis:contact_load@contact": axis_label(name, "β", units.load[0]),
         },
-        keys={"contact": (*keys, Key("load now", "cursor", "dash"))},
+        keys={"contact": tuple(keys)},
         facts={"contact": {}},
     )
 

@@ -41,8 +41,8 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         limits={"place": (0.0, thickness)},
         fastest=largest,
-        titles={"field": axis_label("Distance from the contact", "x", units.place[0])},
-        keys={"field": (Key(f"velocity, ±{largest:.3g} {name}", "signed", "scale"), Key("wave front", "front"))},
+        titles={"field": axis_label("Slab: distance", "x", units.place[0])},
+        keys={"field": (Key(f"velocity ±{largest:.3g} {name}", "signed", "scale"), Key("wave front", "front"))},
         facts={"field": {"thickness": thickness}},
     )
 

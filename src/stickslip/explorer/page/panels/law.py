@@ -42,13 +42,12 @@ def data_of(answer: Answer, units: Units) -> View:
     label = axis_label(name, symbol, unit[0])
     main = answer.motions[0]
     along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
-    visits = {"time": main.time / units.time[1], "x": np.clip(place(along), least, most)}
-    visits["y"] = main.traction / answer.scenario.problem.body.normal_load
+    now = {"law_x": np.clip(place(along), least, most), "law_y": main.traction / answer.scenario.problem.body.normal_load}
     return View(
-        columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "visits": visits},
+        columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "motion": now},
         limits={"law_x": (least, most), "law_y": limits(law.coefficient)},
         labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction coefficient μ"},
-        keys={"law": (Key("law", "grey"), Key("visited by the run", "law"), Key("now", "cursor", "point"))},
+        keys={"law": (Key("law", "grey"), Key("visited by the run", "law"))},
         hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
     )
 
@@ -63,7 +62,6 @@ def plot(stage: Stage) -> Any:
     stage.note("axis:law_powers", powers)
     paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="grey")
     paint(drawn.line("x", "y", source=stage.source("visited", "x", "y"), line_width=3.2, line_cap="round").glyph, line_color="law")
-    stage.source("visits", "time", "x", "y")
     dot = drawn.scatter("x", "y", source=stage.source("now_law", "x", "y"), size=9, level="overlay")
     paint(dot.glyph, fill_color="cursor", line_color="card")
     return drawn

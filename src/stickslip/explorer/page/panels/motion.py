@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.panels.units import share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
 from stickslip.figures.style import CURVES, FORCES
@@ -17,9 +20,11 @@ SYMBOLS = {"slip": "u", "rate": "v", "traction": "τ"}
 def data_of(answer: Answer, units: Units) -> View:
     """Return the curves of both bodies, and the times of the marks."""
     main = answer.motions[0]
-    others = [motion for motion in answer.motions[1:] if motion.load_unit == main.load_unit]
+    others = answer.motions[1:2]
     drawn = [_columns(motion, units) for motion in (main, *others)]
     columns = {"motion": drawn[0], "companion": drawn[1] if others else {name: [] for name in drawn[0]}}
+    if others and not share_loads(main, others[0]):
+        columns["companion"] |= {name: np.full(others[0].time.size, np.nan) for name in ("traction", "load")}
     columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks]}
     if main.body == "block":
         # The end of the spring that is pulled, from the law of the spring.
@@ -34,7 +39,8 @@ def data_of(answer: Answer, units: Units) -> View:
         role: tuple(Key(body, role, style) for body, style in zip(bodies, styles, strict=False))  # type: ignore[arg-type]
         for role in TEXTS
     }
-    keys["traction"] = (*keys["traction"], Key("spring force" if force else "load", "load", "dot"))
+    beside = bool(others) and share_loads(main, others[0])
+    keys["traction"] = (*keys["traction"][: 1 + beside], Key("spring force" if force else "load", "load", "dot"))
     time = [body["time"] for body in drawn]
     return View(
         columns=columns,

@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from bokeh.core.properties import value
 
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.look import FONT, paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Key, Units, View, axis_label, round_step
 
@@ -27,17 +28,17 @@ def data_of(answer: Answer, units: Units) -> View:
     shown = np.asarray(slab.displacement if slab is not None else slip - slip[0]) / units.slip[1]
     largest = float(np.abs(shown).max()) or 1.0
     scale, bar = REACH * WIDTH / largest, round_step(largest)
-    keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else [Key("block", "slip", "area")]
+    keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else []
     height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
     return View(
         limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.1 * height)},
         labels={"axis:shape_y@shape": axis_label("distance from contact", "x", units.place[0])},
-        keys={"shape": (*keys, Key(f"bar: {bar:g} {units.slip[0]}", "ink", "line"))},
+        keys={"shape": tuple(keys)},
         hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
         facts={
             "shape": {
                 "kind": "slab" if slab is not None else "block",
-                "scale": scale, "bar": bar * scale, "width": WIDTH, "height": height,
+                "scale": scale, "bar": bar * scale, "width": WIDTH, "height": height, "text": f"{bar:g} {units.slip[0]}",
             }
         },
     )  # fmt: skip
@@ -55,9 +56,12 @@ def plot(stage: Stage) -> Any:
     body = drawn.patches("x", "y", source=stage.source("body", "x", "y"), fill_alpha=0.12, level="overlay")
     paint(body.glyph, fill_color="slip", line_color="slip")
     lines = drawn.multi_line("x", "y", source=stage.source("lines", "x", "y"), line_width=1, level="overlay")
-    paint(lines.glyph, line_color="grey")
+    paint(lines.glyph, line_color="faint")
     driver = drawn.multi_line("x", "y", source=stage.source("driver", "x", "y"), line_width=3, level="overlay")
     paint(driver.glyph, line_color="ink")
+    texts = drawn.text("x", "y", "text", source=stage.source("texts", "x", "y", "text"), text_align="right", level="overlay")
+    texts.glyph.text_font = value(FONT)
+    paint(texts.glyph, text_color="ink", sizes={"text_font_size": 11})
     dots = drawn.scatter("x", "y", source=stage.source("particles", "x", "y", "velocity"), size=5, level="overlay")
     dots.glyph.fill_color = {"field": "velocity", "transform": stage.signed}
     paint(dots.glyph, line_color="grey")

@@ -1,0 +1,259 @@
+"""The answers of the explorer: for every bundled scenario they show what `simulate` calculates."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.runs import MOST_PIECES, companion_of
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.shown import Shown
+from stickslip.explorer.model.solve import solve
+from stickslip.explorer.model.stop import Stopped
+from stickslip.foundation.errors import InputError
+from stickslip.observables.energy.balance import energies
+from stickslip.run.session import SPARE
+from stickslip.scenarios import library
+
+NAMES = [name for name in library.names() if name != "rate-and-state-block"]
+"""All bundled scenarios but one, which takes a second to answer; it is the one that is stopped."""
+SLABS = [name for name in NAMES if "slab" in name or name.startswith(("fig4", "second"))]
+POINTS = 8_000
+"""Largest number of points of one curve."""
+
+
+@cache
+def answer(name: str) -> Answer:
+    """Return the answer to a bundled scenario."""
+    return solve(Setting.bundled(name).scenario())
+
+
+def on_slabs(test):
+    """Run a test for every scenario with a slab."""
+    return pytest.mark.parametrize("name", SLABS)(test)
+
+
+def everywhere(test):
+    """Run a test for every bundled scenario."""
+    return pytest.mark.parametrize("name", NAMES)(test)
+
+
+@everywhere
+def test_run_is_that_of_simulate_bit_for_bit(name: str) -> None:
+    own, other = answer(name).solution, ss.simulate(name)
+    assert own.history.store.pieces.tobytes() == other.history.store.pieces.tobytes()
+    assert own.status == other.status
+
+
+@everywhere
+def test_curves_are_those_of_the_solution_between_their_points_too(name: str) -> None:
+    found = answer(name)
+    for motion, solution in zip(found.motions, (found.solution, found.companion), strict=False):
+        first, last = solution.history.span
+        times = np.random.default_rng(1).uniform(first, last, 50)
+        assert np.all(np.diff(motion.time) >= 0.0)
+        assert motion.slip[-1] == solution.slip(last)
+        assert np.interp(times, motion.time, motion.slip) == pytest.approx(
+            solution.slip(times), abs=2e-3 * max(np.ptp(motion.slip), 1e-12)
+        )
+        assert len({len(motion.time), len(motion.slip), len(motion.slip_rate), len(motion.traction), len(motion.load)}) == 1
+        assert len(motion.time) <= POINTS
+
+
+@everywhere
+def test_path_lies_on_the_contact_equation(name: str) -> None:
+    found = answer(name)
+    if found.contact is None:
+        assert found.solution.problem.body.has_inertia or found.solution.problem.friction.state is not None
+        return
+    if found.solution.problem.friction.depends_on_slip:
+        return
+    contact, unique = found.contact, ss.uniqueness(found.scenario)
+    known = ~np.isnan(contact.path_rate)
+    rate, load = contact.path_rate[known], contact.path_load[known]
+    moving = rate != 0.0
+    assert load[moving] == pytest.approx(unique.g(rate[moving]), rel=1e-9, abs=1e-9 * contact.strength)
+    assert np.all(np.abs(load[~moving]) <= contact.strength * (1.0 + 1e-9))
+    assert len(contact.path_time) == len(contact.path_rate) == len(contact.path_load)
+    assert np.abs(rate).max() <= np.nanmax(contact.rate)
+    curve = ~np.isnan(contact.rate)
+    assert contact.load[curve][-1] == pytest.approx(unique.g(contact.rate[curve][-1]), rel=1e-12)
+
+
+@everywhere
+def test_parts_of_the_energy_balance_and_are_those_of_the_run(name: str) -> None:
+    found = answer(name)
+    parts = {part: values for part, values in found.energy.parts.items() if part != "total"}
+    size = max(float(np.ptp(values)) for values in parts.values()) or 1.0
+    assert sum(parts.values()) == pytest.approx(found.energy.parts["total"], abs=1e-9 * size)
+    shown = Shown.of(found.solution)
+    chosen = np.linspace(0, len(found.energy.time) - 1, 5).astype(int)
+    history = shown.readings.history
+    exact = energies(history, history.find(np.minimum(found.energy.time[chosen] - shown.begin, history.span[1]), "right"))
+    assert parts["kinetic"][chosen] == pytest.approx(exact["kinetic"], abs=4e-3 * size)
+    for part in set(parts) - {"kinetic"}:
+        was, now = (values - values[0] for values in (exact[part], parts[part][chosen]))
+        assert now == pytest.approx(was, abs=4e-3 * size)
+
+
+@on_slabs
+def test_inside_of_the_slab_is_the_field_of_the_run(name: str) -> None:
+    found, shown = answer(name), Shown.of(answer(name).solution)
+    slab = found.slab
+    time = np.linspace(shown.start, shown.end, len(slab.time))[::24]
+    exact = shown.readings.field(slab.place[::6], time[:, None])
+    start = shown.readings.field(slab.place[::6], shown.start)
+    for shape, own, other in (
+        ("slip", slab.displacement, exact.displacement - start.displacement),
+        ("rate", slab.velocity, exact.velocity),
+        ("stress", slab.stress, exact.stress),
+    ):
+        miss = np.abs(own[::24, ::6] - other) / (np.ptp(other) or 1.0)
+        assert np.mean(miss > 2e-3) < 0.02, shape  # but for the cells that a front passes
+    assert slab.time.size <= 240
+    assert slab.place.size <= 80
+    for front in slab.fronts:
+        assert set(np.round(front[:, 1] / slab.place[-1], 12)) <= {0.0, 1.0}
+
+
+def test_fronts_start_where_slip_does() -> None:
+    fronts = answer("fig4-loop").slab.fronts
+    assert sorted(front[0, 0] for front in fronts) == pytest.approx([2.242991, 5.213], rel=1e-3)
+
+
+@everywhere
+def test_marks_are_moments_of_the_run_in_order(name: str) -> None:
+    found = answer(name)
+    times = [mark.time for mark in found.marks]
+    first, last = found.solution.history.span
+    assert times == sorted(times)
+    assert all(first <= time <= last for time in times)
+    assert all(mark.text and "\n" not in mark.text for mark in found.marks)
+    assert len(found.marks) <= 120
+
+
+def test_pulses_are_marked_at_their_peaks() -> None:
+    found = answer("fig5-slab-reconstructed")
+    pulses = [mark.time for mark in found.marks if mark.kind == "pulse"]
+    assert len(pulses) == 3 == found.solution.events.pulses[0]
+    assert max(found.solution.slip_rate(np.array(pulses))) == pytest.approx(found.solution.events.peak_rate[0], rel=1e-3)
+
+
+@everywhere
+def test_law_is_drawn_over_all_that_the_run_passed(name: str) -> None:
+    law, problem = answer(name).law, answer(name).solution.problem
+    assert np.all(np.diff(law.x) > 0.0)
+    assert law.x[0] <= max(law.visited[0], law.x[0] if law.log else 0.0)
+    assert law.x[-1] >= law.visited[1]
+    assert law.x.size <= POINTS
+    if law.along == "slip":
+        assert law.coefficient == pytest.approx(problem.friction.static_coefficient(law.x))
+    elif problem.friction.state is None:
+        assert law.coefficient == pytest.approx(problem.friction.coefficient(problem.law_slip, law.x))
+
+
+@everywhere
+def test_key_numbers_are_those_of_the_tables(name: str) -> None:
+    found = answer(name)
+    numbers, events = {one.name: one.value for one in found.numbers}, found.solution.events
+    assert numbers["slip events"] == len(events)
+    assert numbers["slip in all"] == found.solution.slip(found.solution.history.span[1]) - found.solution.problem.initial_slip
+    if len(events):
+        assert numbers["slip of the largest event"] == pytest.approx(events.slip.max(), rel=0.01)
+    else:
+        assert math.isnan(numbers["arrest"])
+
+
+@everywhere
+def test_sentence_says_regime_and_motion_in_full_sentences(name: str) -> None:
+    found = answer(name)
+    assert found.sentence.startswith(found.regime.capitalize())
+    assert found.sentence.endswith(".")
+    assert "nan" not in found.sentence
+    assert "\n" not in found.sentence
+    assert ("slip event" in found.sentence) or ("slips" in found.sentence)
+
+
+@pytest.mark.parametrize(("alpha", "word"), [("0.19599 s/m", "regular"), ("0.19601 s/m", "irregular")])
+def test_regime_changes_at_the_critical_alpha(alpha: str, word: str) -> None:
+    found = solve(Setting.bundled("fig6-slab").with_value("friction.alpha", alpha).scenario())
+    assert found.regime == word
+    assert "0.196 s/m" in found.sentence
+
+
+def test_companion_of_a_slab_is_its_equivalent_block() -> None:
+    found = answer("fig6-slab")
+    slab, block = found.solution.problem, found.companion.problem
+    assert [motion.name for motion in found.motions] == ["slab", "equivalent block"]
+    assert block.body == slab.body.equivalent_block()
+    assert found.motions[1].load_unit == "N"
+    assert found.motions[1].normal_load == slab.normal  # for each m^2, so that N reads as Pa
+
+
+def test_companion_of_a_block_of_the_paper_is_the_slab_under_the_same_law() -> None:
+    setting = Setting.bundled("fig6-block-reconstructed").with_value("friction.alpha", "0.7 s/m")
+    other = companion_of(setting.scenario())
+    assert other.problem.body == ss.scenarios["fig6-slab"].problem.body
+    assert other.problem.friction == setting.scenario().problem.friction
+
+
+@pytest.mark.parametrize("name", ["kolsky-slab", "tides-block"])
+def test_what_has_no_companion_is_shown_alone(name: str) -> None:
+    assert answer(name).companion is None
+    assert len(answer(name).motions) == 1
+
+
+def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
+    lines: list[str] = []
+
+    def told(text: str) -> None:
+        lines.append(text)
+        if len(lines) == 2:
+            raise Stopped
+
+    found = solve(Setting.bundled("rate-and-state-block").scenario(), told)
+    end = found.solution.history.span[1]
+    assert found.solution.status.name == "interrupted"
+    assert 0.0 < end < found.scenario.duration
+    assert found.motions[0].time[-1] == pytest.approx(end)
+    assert found.notes[0].startswith("interrupted")
+    assert "years" in lines[0]
+    assert found.companion is None
+
+
+def test_run_that_is_stopped_before_it_begins_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise Stopped
+
+    monkeypatch.setattr("stickslip.explorer.model.runs.simulate", stopped)
+    with pytest.raises(InputError, match="fig6-slab: stopped before the run had begun"):
+        solve(Setting.bundled("fig6-slab").scenario())
+
+
+def test_memory_of_a_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert MOST_PIECES * 450 < 100e6  # bytes: 0.44 GB for a million pieces
+    monkeypatch.setattr("stickslip.explorer.model.runs.MOST_PIECES", 500)
+    found = solve(Setting.bundled("rate-and-state-slab").scenario())
+    assert found.solution.status.name == "too many pieces"
+    assert "too many pieces" in found.notes[0]
+    assert len(found.solution.history) <= 500 + SPARE
+
+
+def test_contact_that_rests_for_ever_is_shown() -> None:
+    found = solve(Setting.bundled("fig6-slab").with_value("loading.pull_rate", 0.0).scenario())
+    assert "Nothing slips" in found.sentence
+    assert np.all(found.motions[0].slip_rate == 0.0)
+    assert found.marks == ()
+
+
+def test_backward_slip_has_the_mirror_image_of_the_contact_equation() -> None:
+    setting = Setting.bundled("fig6-slab").with_value("initial.excess", None).with_value("initial.load", "-90 MPa")
+    found = solve(setting.with_value("loading.pull_rate", 0.0).scenario())
+    contact = found.contact
+    assert found.motions[0].slip_rate.min() < 0.0
+    known = ~np.isnan(contact.rate)
+    assert contact.rate[known] == pytest.approx(-contact.rate[known][::-1])
+    assert contact.load[known] == pytest.approx(-contact.load[known][::-1])

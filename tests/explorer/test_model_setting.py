@@ -1,0 +1,430 @@
+"""Settings of the explorer: their controls, links, files, code, uploads, and the difference of two of them."""
+
+import base64
+import json
+import tomllib
+import zlib
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.code import python_of, toml_of
+from stickslip.explorer.model.controls import Control, controls_of
+from stickslip.explorer.model.difference import difference
+from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.link import LONGEST, parameters_of, setting_of
+from stickslip.explorer.model.scenario_list import FIRST, OTHERS, offered
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import solve
+from stickslip.explorer.model.upload import uploaded, with_expression
+from stickslip.foundation.errors import InputError
+from stickslip.scenarios import library
+from stickslip.scenarios.scenario import read_scenario
+
+NAMES = library.names()
+
+
+def everywhere(test):
+    """Run a test for every bundled scenario."""
+    return pytest.mark.parametrize("name", NAMES)(test)
+
+
+def controls(setting: Setting) -> dict[str, Control]:
+    """Return all controls of a setting by their paths."""
+    return {control.path: control for group in controls_of(setting) for control in group.controls}
+
+
+@cache
+def exchanged(name: str) -> tuple[Setting, ...]:
+    """Return a bundled scenario, and all settings that one exchange of a kind makes of it."""
+    setting = Setting.bundled(name)
+    return (setting, *(with_kind(setting, group.table, kind) for group in controls_of(setting) for kind in group.kinds))
+
+
+def one_line(error: pytest.ExceptionInfo[InputError]) -> str:
+    """Return the message of an error, which must be one short line in ASCII."""
+    text = str(error.value)
+    assert "\n" not in text
+    assert text.isascii()
+    assert len(text) < 800  # a list of all that is allowed may be long
+    return text
+
+
+# ---- controls ---------------------------------------------------------------------------------------------------------------
+
+
+@everywhere
+def test_what_a_field_shows_reads_back(name: str) -> None:
+    setting = Setting.bundled(name)
+    for path, control in controls(setting).items():
+        if control.kind in ("number", "whole") and isinstance(control.value, float | int):
+            again = controls(setting.with_value(path, control.read(control.shown)))[path]
+            assert again.value == pytest.approx(control.value, rel=1e-11, abs=1e-300)
+            assert (again.unit, again.size, again.slider) == (control.unit, control.size, control.slider)
+
+
+@everywhere
+def test_sliders_hold_the_value_and_what_they_give_is_read(name: str) -> None:
+    setting = Setting.bundled(name)
+    for path, control in controls(setting).items():
+        if control.slider is None:
+            continue
+        low, high, log = control.slider
+        assert low < high
+        assert low <= control.value <= high or np.isinf(control.value)
+        assert low > 0.0 or not log
+        for end in (low, high):
+            moved = setting.with_value(path, control.entry(end))
+            try:
+                again = controls(moved)[path]
+            except InputError:  # such as a static coefficient below the dynamic one
+                continue
+            assert again.value == pytest.approx(end, rel=1e-9)
+            assert again.slider == control.slider
+
+
+def test_entries_are_written_with_the_unit_in_which_they_were_given() -> None:
+    setting = Setting.bundled("fig6-slab")
+    thickness = controls(setting)["body.thickness"]
+    assert (thickness.shown, thickness.unit, thickness.size) == ("10", "km", 1000.0)
+    assert thickness.entry(12300.0) == "12.3 km"
+    assert thickness.read("7") == "7.0 km"
+    assert thickness.read(" 700 m ") == "700 m"
+    assert controls(setting)["body.driver_impedance"].shown == "rigid"
+    assert controls(setting)["run.creep_rtol"].read("") is None
+    assert controls(setting)["run.events"].read("3") == 3
+
+
+@pytest.mark.parametrize(
+    ("path", "typed", "part"),
+    [
+        ("body.thickness", "-3", "thickness: it must be greater than 0 m"),
+        ("body.thickness", "3 kg", "does not convert to m"),
+        ("body.thickness", "", "thickness: it must be a number in m"),
+        ("body.thickness", "a lot", "got 'a lot'"),
+        ("friction.static", "nan", "static: it must be finite"),
+        ("friction.static", "0,8", "static: it must be a number"),
+        ("run.events", "1.5", "slip events: number must be a whole number above 0"),
+        ("run.duration", "1e999", "duration: it must be finite"),
+    ],
+)
+def test_bad_entry_is_refused_in_one_line(path: str, typed: str, part: str) -> None:
+    with pytest.raises(InputError) as error:
+        controls(Setting.bundled("fig6-slab"))[path].read(typed)
+    assert part in one_line(error)
+
+
+@everywhere
+def test_every_exchange_of_a_kind_makes_a_scenario(name: str) -> None:
+    for setting in exchanged(name):
+        assert setting.scenario().problem
+        assert controls_of(setting)
+
+
+def test_exchange_keeps_what_fits() -> None:
+    setting = Setting.bundled("fig6-slab").with_value("friction.static", 0.75)
+    changed = with_kind(setting, "friction", "exponential-stribeck")
+    assert changed.value("friction.static") == 0.75
+    assert changed.value("friction.dynamic") == 0.3
+    assert changed.value("friction.rate") == "0.1 m/s"
+    assert changed.value("initial.excess") == 0.0
+    assert with_kind(changed, "friction", "hyperbolic-rate").document == setting.document
+
+
+def test_exchange_of_the_start_keeps_the_load() -> None:
+    setting = with_kind(Setting.bundled("fig6-slab"), "initial", "load")
+    assert setting.value("initial.load") == 80e6
+    assert setting.value("initial.excess") is None
+
+
+def test_exchange_of_the_body_goes_to_the_equivalent_block_and_back() -> None:
+    setting = Setting.bundled("fig6-slab")
+    block = with_kind(setting, "body", "spring-block")
+    assert block.scenario().problem.body == ss.scenarios["fig6-slab"].problem.body.equivalent_block()
+    assert with_kind(block, "body", "elastic-slab").scenario().problem == setting.scenario().problem
+
+
+@pytest.mark.parametrize("table", ["body", "friction", "loading", "initial"])
+def test_unknown_kind_is_refused_in_one_line(table: str) -> None:
+    with pytest.raises(InputError) as error:
+        with_kind(Setting.bundled("fig6-slab"), table, "nonsense\n")
+    one_line(error)
+
+
+@pytest.mark.parametrize(
+    "name", ["fig6-slab", "fig5-slab-printed", "fig6-block-reconstructed", "stress-pulse-slab", "direct-shear-block"]
+)
+def test_random_settings_give_an_answer_or_one_line(name: str) -> None:
+    rng, answers = np.random.default_rng(7), 0
+    began = Setting.bundled(name)
+    sliders = [control for control in controls(began).values() if control.slider is not None and control.path != "run.duration"]
+    for _ in range(5):
+        setting = began
+        for control in rng.choice(np.array(sliders, object), 3, replace=False):
+            low, high, log = control.slider
+            share = rng.uniform()
+            setting = setting.with_value(
+                control.path, control.entry(low * (high / low) ** share if log else low + share * (high - low))
+            )
+        try:
+            found = solve(setting.scenario())
+        except InputError:
+            continue
+        answers += 1
+        assert all(np.all(np.isfinite(one)) for motion in found.motions for one in (motion.slip, motion.slip_rate, motion.traction))
+        assert "nan" not in found.sentence
+    assert answers >= 2
+
+
+def test_scenarios_are_offered_once_each_with_the_paper_first() -> None:
+    found = offered()
+    assert sorted(one.name for one in found) == NAMES
+    assert found[0].section == "Figures of the paper"
+    assert [one.section for one in found] == sorted(
+        (one.section for one in found), key=["Figures of the paper", "In the laboratory", OTHERS].index
+    )
+    assert all(one.title and one.description for one in found)
+    assert FIRST in NAMES
+
+
+# ---- links ------------------------------------------------------------------------------------------------------------------
+
+
+@everywhere
+def test_links_reproduce_every_setting(name: str) -> None:
+    for setting in exchanged(name):
+        again = setting_of(parameters_of(setting) | {"cursor": "3.2", "token": "secret"})
+        assert again.document == setting.document
+        assert again.scenario() == setting.scenario()
+
+
+def test_link_to_a_changed_scenario_is_readable() -> None:
+    setting = Setting.bundled("fig6-slab").with_value("friction.alpha", "0.7 s/m").with_value("run.events", 3)
+    assert parameters_of(setting) == {"scenario": "fig6-slab", "friction.alpha": "0.7 s/m", "run.events": "3", "v": "1"}
+
+
+def test_link_to_a_scenario_of_the_user_holds_its_document() -> None:
+    setting = replace(Setting.bundled("fig6-slab").with_value("title", "Mine: 50 % & more"), name="mine")
+    parameters = parameters_of(setting)
+    assert set(parameters) == {"scenario", "document", "v"}
+    assert setting_of(parameters) == setting
+
+
+@pytest.mark.parametrize("text", ["0.5", "7", "0.5 + 0.1/(1+v)", "(0.5)"])
+def test_formulas_that_look_like_something_else_survive_a_link(text: str) -> None:
+    setting = with_expression(Setting.bundled("fig6-slab"), text)
+    assert setting_of(parameters_of(setting)).document == setting.document
+
+
+@pytest.mark.parametrize("text", ["true", "null", '"quoted"', "[1]", "{", "", "-", "1e5", "NaN"])
+def test_texts_that_look_like_something_else_survive_a_link(text: str) -> None:
+    setting = Setting.bundled("fig6-slab").with_value("friction.alpha", text)
+    with pytest.raises(InputError) as own:
+        setting.scenario()
+    with pytest.raises(InputError) as linked:
+        setting_of(parameters_of(setting))
+    assert str(linked.value) == str(own.value)
+
+
+BOMB = base64.urlsafe_b64encode(zlib.compress(b'"' + b"a" * 50_000_000 + b'"', 9)).decode()
+DEEP = base64.urlsafe_b64encode(zlib.compress(b"[" * 100_000, 9)).decode()
+
+
+@pytest.mark.parametrize(
+    ("parameters", "part"),
+    [
+        ({}, "no bundled scenario"),
+        ({"scenario": "fig6-slob"}, "did you mean 'fig6-slab'?"),
+        ({"scenario": "../../etc/passwd"}, "no bundled scenario"),
+        ({"scenario": "fig6-slab", "v": "99"}, "version '99' is unknown"),
+        ({"scenario": "fig6-slab", "friction.alpha": "loud"}, "[friction] alpha"),
+        ({"scenario": "fig6-slab", "friction.alpah": "1"}, "did you mean 'alpha'?"),
+        ({"scenario": "fig6-slab", "friction.file": "/etc/passwd"}, "[friction] file is unknown"),
+        ({"scenario": "fig6-slab", "friction.alpha.x": "1"}, "not the place of an entry"),
+        ({"scenario": "fig6-slab", "friction.a.b.c.d.e.f": "1"}, "not the place of an entry"),
+        ({"scenario": "fig6-slab", "friction": "1"}, "not the place of an entry"),
+        ({"scenario": "fig6-slab", "friction.alpha": "1" * LONGEST}, "more than"),
+        ({"scenario": "mine", "document": "!!!"}, "broken or too large"),
+        ({"scenario": "mine", "document": "AAAA"}, "broken or too large"),
+        ({"scenario": "mine", "document": BOMB[:LONGEST]}, "link:"),
+        ({"scenario": "mine", "document": DEEP}, "broken or too large"),
+        ({"scenario": "", "document": "AAAA"}, "name"),
+        ({"scenario": "mine", "document": base64.urlsafe_b64encode(zlib.compress(b"{}")).decode()}, "[body] is missing"),
+    ],
+)
+def test_bad_link_is_refused_in_one_line(parameters: dict[str, str], part: str) -> None:
+    with pytest.raises(InputError) as error:
+        setting_of(parameters)
+    assert part in one_line(error)
+
+
+def test_document_that_unpacks_to_more_than_allowed_is_not_unpacked() -> None:
+    packed = base64.urlsafe_b64encode(zlib.compress(json.dumps({"body": "a" * 2_000_000}).encode(), 9)).decode()
+    assert len(packed) < LONGEST
+    with pytest.raises(InputError, match="too large"):
+        setting_of({"scenario": "mine", "document": packed})
+
+
+def test_setting_that_is_too_large_for_a_link_says_so() -> None:
+    rng = np.random.default_rng(1)
+    rates = np.cumsum(rng.uniform(0.1, 1.0, 3000))
+    rows = "\n".join(f"{rate},{0.6 - 1e-4 * k}" for k, rate in enumerate(rates))
+    setting = uploaded(Setting.bundled("fig6-slab"), "many.csv", f"slip_rate,friction\n{rows}".encode())
+    with pytest.raises(InputError, match="too large for a link"):
+        parameters_of(setting)
+
+
+# ---- files and code ---------------------------------------------------------------------------------------------------------
+
+
+@everywhere
+def test_scenario_file_and_code_make_the_same_problem(name: str) -> None:
+    for setting in exchanged(name):
+        scenario = setting.scenario()
+        again = read_scenario(toml_of(setting), "written.toml")
+        assert replace(again, description="") == replace(scenario, description="")
+        made: dict = {}
+        exec(python_of(setting).split("solution = ")[0], made)
+        assert made["problem"] == scenario.problem
+
+
+@pytest.mark.parametrize("name", ["fig6-slab", "fig5-block-reconstructed-k", "bowed-string-slab", "block-or-slab"])
+def test_code_and_file_run_with_the_same_numbers(name: str, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    setting = Setting.bundled(name).with_value("body.driver_impedance", None).with_value("run.duration", "0.05 s")
+    own = solve(setting.scenario()).solution
+    code = python_of(setting).replace("solution.plot()", "solution.plot(dpi=20)")
+    made: dict = {}
+    exec(compile(code, "run.py", "exec"), made)
+    (tmp_path / "mine.toml").write_text(toml_of(setting), encoding="utf-8")
+    for other in (made["solution"], ss.simulate(tmp_path / "mine.toml")):
+        assert other.history.store.pieces.tobytes() == own.history.store.pieces.tobytes()
+        assert other.slip(own.history.span[1]) == own.slip(own.history.span[1])
+    assert made["solution"].title == own.title
+    assert (tmp_path / "run.png").is_file()
+
+
+def test_changed_scenario_says_so_wherever_it_goes() -> None:
+    setting = Setting.bundled("fig6-slab").with_value("friction.alpha", "0.7 s/m")
+    assert tomllib.loads(toml_of(setting))["description"] == "fig6-slab with friction.alpha = 0.7 s/m"
+    assert setting.scenario().title.endswith(", changed")
+    assert "# fig6-slab with friction.alpha = 0.7 s/m" in python_of(setting)
+    assert "changed" not in toml_of(Setting.bundled("fig6-slab"))
+
+
+@pytest.mark.parametrize("title", ['"""\nimport os\n"""', "a\\", "\u2028import os", "}}{{", "'; import os"])
+def test_texts_of_strangers_stay_texts_in_code(title: str) -> None:
+    setting = replace(Setting.bundled("fig6-slab").with_value("title", title), name="mine")
+    made: dict = {}
+    exec(python_of(setting).split("solution = ")[0], made)
+    assert "os" not in made
+    assert made["problem"] == setting.scenario().problem
+
+
+# ---- uploads ----------------------------------------------------------------------------------------------------------------
+
+
+def test_uploaded_scenario_takes_the_place_of_the_setting() -> None:
+    text = library.text("kolsky-slab")
+    made = uploaded(Setting.bundled("fig6-slab"), "C:\\data\\mine.toml", text.encode())
+    assert made.name == "mine"
+    assert made.scenario() == ss.scenarios["kolsky-slab"]
+
+
+def test_uploaded_scenario_with_a_bundled_name_is_not_taken_for_the_bundled_one() -> None:
+    made = uploaded(Setting.bundled("fig6-slab"), "fig6-slab.toml", library.text("kolsky-slab").encode())
+    assert made.name == "fig6-slab (uploaded)"
+    assert not made.is_changed
+    assert setting_of(parameters_of(made)) == made
+
+
+def test_uploaded_points_become_the_law() -> None:
+    made = uploaded(Setting.bundled("fig6-slab"), "points.csv", b"# mine\nslip_rate (mm/s),friction\n0,0.6\n10,0.5\n1000,0.4\n")
+    law = made.scenario().problem.friction
+    assert (tuple(law.rate), tuple(law.friction)) == ((0.0, 0.01, 1.0), (0.6, 0.5, 0.4))
+    assert made.value("initial.excess") == 0.0
+    assert made.value("body.thickness") == "10 km"
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "part"),
+    [
+        ("a.csv", b"", "no column 'friction'"),
+        ("a.csv", b"\xff\xfe\x00", "not a text file in UTF-8"),
+        ("a.csv", b"slip,friction\n0,0.5\n", "at least two rows"),
+        ("a.csv", b"slip,friction\n0,0.5\n1,-1\n", "must not be negative"),
+        ("a.csv", b"slip,friction\n1,0.5\n0,0.4\n", "a.csv"),
+        ("a.csv", b"1\n" * 20_001, "20001 lines are too many"),
+        ("a.csv", b"0" * 1_000_001, "1.0 MB is too large"),
+        ("a\n\x1b[31m.csv", b"", "a__[31m.csv"),
+        ("a.toml", b"x = 1", "x is unknown"),
+        ("a.toml", b"[[[", "a.toml"),
+        ("a.toml", b"a." * 50 + b"b = 1", "not a scenario"),
+        ("../../secret.toml", b"[body]", "secret.toml: "),
+    ],
+)
+def test_bad_upload_is_refused_in_one_line(file: str, content: bytes, part: str) -> None:
+    with pytest.raises(InputError) as error:
+        uploaded(Setting.bundled("fig6-slab"), file, content)
+    assert part in one_line(error)
+
+
+def test_uploaded_scenario_cannot_name_a_file() -> None:
+    text = library.text("fig6-slab").partition("[friction]")[0] + '[friction]\nkind = "table"\nfile = "/etc/passwd"\n'
+    text += "[initial]\nexcess = 0.0\n[run]\nduration = 1.0\n"
+    with pytest.raises(InputError, match="write the points as lists"):
+        uploaded(Setting.bundled("fig6-slab"), "mine.toml", text.encode())
+
+
+def test_formula_brings_its_parameters() -> None:
+    setting = with_expression(Setting.bundled("fig6-slab"), "mu_d + (mu_s - mu_d)/(1 + alpha*v)")
+    assert setting.value("friction.parameters.alpha") == "1 s/m"
+    other = with_expression(setting, "mu_d + 1e-3*drop/(1 + v)")
+    assert set(other.value("friction.parameters")) == {"mu_d", "drop"}
+    assert other.value("friction.parameters.drop") == 1.0
+    assert with_expression(other, "0.5").value("friction.parameters") is None
+
+
+@pytest.mark.parametrize("text", ["", "0.3 +", "__import__('os').system('ls')", "u.real", "lambda: 0", "x" * 2000, "v**1000", "é"])
+def test_bad_formula_is_refused_in_one_line(text: str) -> None:
+    with pytest.raises(InputError) as error:
+        with_expression(Setting.bundled("fig6-slab"), text).scenario()
+    assert "expression" in one_line(error)
+
+
+# ---- differences ------------------------------------------------------------------------------------------------------------
+
+
+@cache
+def shown(setting_alpha: str) -> tuple[Setting, Answer]:
+    """Return fig6-slab with another alpha, and its answer."""
+    setting = Setting.bundled("fig6-slab").with_value("friction.alpha", setting_alpha)
+    return setting, solve(setting.scenario())
+
+
+def test_difference_names_what_was_changed_and_what_moved() -> None:
+    found = difference(shown("1 s/m"), shown("0.7 s/m"))
+    assert [str(change) for change in found.changes] == ["friction.alpha: 1 s/m → 0.7 s/m"]
+    moved = {one.name: one for one in found.moved}
+    assert moved["slip in all"].after < moved["slip in all"].before
+    assert moved["slip in all"].share == pytest.approx(-0.104, abs=2e-3)
+    assert "slip events" not in moved
+    assert found.text.startswith("friction.alpha: 1 s/m → 0.7 s/m. Moved: slip in all")
+
+
+def test_the_same_number_in_other_words_is_no_difference() -> None:
+    (old, answer), (new, other) = shown("1 s/m"), shown("1000 ms/m")
+    assert difference((old, answer), (new, other)).text == "the same setting"
+    assert difference((old, answer), (old.with_value("title", "x"), answer)).changes == ()
+
+
+def test_difference_of_kinds_is_named_too() -> None:
+    old, answer = shown("1 s/m")
+    new = with_kind(old, "friction", "coulomb")
+    found = difference((old, answer), (new, solve(new.scenario())))
+    assert "friction.kind: hyperbolic-rate → coulomb" in found.text
+    assert any(change.path == "friction.alpha" and change.after == "" for change in found.changes)
