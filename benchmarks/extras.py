@@ -30,6 +30,7 @@ try:
     assert "bokeh" in page, page[:500]
 finally:
     server.terminate()
+    server.wait()
 """
 """Start the server, and get its page."""
 IN_NOTEBOOK = """
