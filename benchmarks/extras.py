@@ -1,5 +1,7 @@
 """Each extra of a wheel in an environment of its own: what its installation takes, and whether its doors open.
 
+Times are processor times: downloads come on top.
+
 python -m hatchling build -d dist
 python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-any.whl                # all
 python -m benchmarks.extras dist/stickslip-0.1.0-py3-none-any.whl video cluster  # some
@@ -12,7 +14,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 import venv
 from pathlib import Path
 
@@ -24,10 +25,12 @@ try:
     found = None
     while found is None:
         found = re.search("http://[^ ]+", server.stdout.readline())
-    page = urllib.request.urlopen(found[0].strip()).read().decode()
+    browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())  # the token of the address becomes a cookie
+    page = browser.open(found[0].strip()).read().decode()
     assert "bokeh" in page, page[:500]
 finally:
     server.terminate()
+    server.wait()
 """
 """Start the server, and get its page."""
 IN_NOTEBOOK = """
@@ -69,15 +72,16 @@ def size(folder: Path) -> float:
 
 
 def timed(*command: str | Path, folder: Path, cache: Path) -> float:
-    """Run a command, and return how long one waits for it (s). Raises SystemExit with its last lines if it fails."""
+    """Run a command, and return its processor time (s). Raises SystemExit with its last lines if it fails."""
     clean = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME")}
-    begun = time.perf_counter()
+    before = os.times()
     done = subprocess.run(
         command, cwd=folder, env=clean | {"STICKSLIP_CACHE_DIR": str(cache)}, capture_output=True, text=True, check=False
     )
     if done.returncode:
         raise SystemExit(f"{command}\n{done.stdout[-1500:]}\n{done.stderr[-1500:]}")
-    return time.perf_counter() - begun
+    after = os.times()
+    return after.children_user - before.children_user + after.children_system - before.children_system
 
 
 def try_extra(wheel: Path, extra: str, cache: Path) -> str:
