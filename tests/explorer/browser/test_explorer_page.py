@@ -75,7 +75,7 @@ class Shown:
 def begun(watched: Watched) -> Shown:
     """A page whose first answer is there."""
     shown = Shown(watched)
-    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=90_000)
+    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=180_000)
     return shown
 
 
@@ -188,7 +188,7 @@ def test_the_tour_walks_through_the_paper(shown: Shown) -> None:
         assert page.locator("[data-look]").evaluate_all("(all) => all.map((one) => one.dataset.panel)") == [step.panel]
         seconds = f"() => Math.abs(({MODEL})('cursor:slip').location - {step.cursor}) < 1e-6"
         page.wait_for_function(seconds)
-        page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label.startsWith('{step.strip.parameter}')")
+        page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('{step.strip.parameter}')")
         page.get_by_role("button", name="Next step").click() if k < len(TOUR) else None
     assert page.get_by_role("button", name="Next step").is_disabled()
     page.get_by_role("button", name="Close the tour").click()
@@ -206,7 +206,7 @@ def test_what_is_saved_runs_on_the_command_line_with_the_same_numbers(
     saved = shown.save("events").decode()
     code, said = run_command(Command(["run", "saved.toml", "--out", "run.nc"], None, []))
     assert code == 0, said
-    ours = pd.read_csv(StringIO(saved), comment="#", float_precision="round_trip")
+    ours = pd.read_csv(StringIO(saved), comment="#")
     pd.testing.assert_frame_equal(ours, ss.open_solution("run.nc").events, check_exact=True, check_dtype=False)
     assert shown.save("png")[:8] == b"\x89PNG\r\n\x1a\n"
 
@@ -241,14 +241,16 @@ def test_measured_points_are_dropped_in_and_a_broken_file_is_refused_in_one_line
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> None:
     width, height = SIZES[size]
+    shown.page.get_by_role("button", name="Tour", exact=True).click()  # and its strip with it
+    shown.page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('body.stiffness')")
     shown.page.set_viewport_size({"width": width, "height": height})
     shown.page.wait_for_timeout(200)
     try:
         assert shown.page.evaluate("document.documentElement.scrollWidth") <= width
-        for name in ("slip", "law", "energy"):
-            box = shown.page.locator(f"[data-panel={name}] .plot").bounding_box()
+        for name in ("[data-panel=slip] .plot", "[data-panel=law] .plot", "[data-panel=energy] .plot", "section.step"):
+            box = shown.page.locator(name).bounding_box()
             assert box["width"] > 200
-            assert box["height"] > 60
+            assert box["height"] > 40
             assert box["x"] >= 0
             assert box["x"] + box["width"] <= width
         assert shown.page.get_by_role("button", name="Play", exact=True).is_visible()

@@ -126,7 +126,9 @@ class StripView:
             pn.Column(self._headings[name], pn.pane.Bokeh(plot, sizing_mode="stretch_both", margin=0), margin=0, height=HEIGHT)
             for name, plot in found.items()
         ]
-        self.plots = pn.GridBox(*panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False)
+        self.plots = pn.GridBox(
+            *panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False, stylesheets=[asset("strip_plots.css")]
+        )
         self.view = pn.Column(self.bar, self.plots, sizing_mode="stretch_width", margin=0, css_classes=["strip"])
         explorer.listen("answer", self._ask)
         explorer.listen("strip", self._ask)
