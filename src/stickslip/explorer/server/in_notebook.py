@@ -15,14 +15,14 @@ from stickslip.scenarios.scenario import Scenario
 
 def shown_in_notebook(scenario: Scenario) -> Any:
     """Return the explorer of a scenario as an object that a notebook shows."""
-    from stickslip.explorer.page.page import build
+    from stickslip.explorer.page.cell import build_cell
 
     pn.extension()
     deliver = asyncio.get_event_loop().call_soon_threadsafe
     desk = ThreadDesk(deliver)
     explorer = explorer_of(Setting.of(scenario), desk, ThreadDesk(deliver))
     desk.report = explorer.told
-    page = build(explorer)
+    page = build_cell(explorer)
     page.explorer = explorer
     explorer.change(explorer.setting)
     return page
