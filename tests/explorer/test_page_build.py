@@ -10,8 +10,8 @@ import pytest
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.page.cell import build_cell
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.notebook_page import build_for_notebook
 from stickslip.explorer.page.page import Panels, build
 from stickslip.explorer.page.words import Words
 
@@ -94,7 +94,7 @@ def test_a_move_of_the_browser_is_not_sent_back(explorer: Explorer) -> None:
 
 
 def test_a_cell_of_a_notebook_hides_what_has_nothing_to_show(explorer: Explorer) -> None:
-    cell = build_cell(explorer)
+    cell = build_for_notebook(explorer)
     cell.explorer = explorer
     cards = {card[1].object.name: card for card in cell.select(pn.Column) if len(card) == 2 and isinstance(card[1], pn.pane.Bokeh)}
     assert len(cards) == 12  # eight panels, and four of the strip

@@ -23,7 +23,7 @@ ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "e
 """The rows of panels: names side by side, and within the second row names below each other."""
 
 
-def build_cell(explorer: Explorer) -> Any:
+def build_for_notebook(explorer: Explorer) -> Any:
     """Return the explorer as an object that a notebook shows below a cell."""
     panels = Panels(explorer)
     cards = {name: _card(panels, name) for name in panels.plots}
@@ -49,7 +49,7 @@ def build_cell(explorer: Explorer) -> Any:
         pn.Row(side, body, **wide),
         panels.player,
         StripView(explorer).view,
-        stylesheets=[style_sheet(":host") + asset("cell.css")],
+        stylesheets=[style_sheet(":host") + asset("notebook_page.css")],
         min_width=900,
         **wide,
     )
