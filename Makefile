@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test browser lint bench lock clean
+.PHONY: paper test browser lint bench site lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
@@ -31,6 +31,12 @@ bench: $(VENV)/.installed-test
 	$(PIP) install -e ".[bench]"
 	$(BIN)/python -m benchmarks.speed
 
+# Pages, gallery and reference as a site that can be read offline: docs/_build/html/index.html. Warnings are errors, and every link
+# within the site is checked.
+site: $(VENV)/.installed-site
+	$(BIN)/python -m sphinx -b html -q --fail-on-warning --keep-going docs docs/_build/html
+	$(BIN)/python docs/site/check_site.py docs/_build/html
+
 # Pinned installs, checked against hashes; the package itself last, without looking for anything newer. Python makes bytecode of
 # a module when it is first imported: to make it of all modules now would take longer than the rest of the installation.
 $(VENV)/.installed: requirements/run.txt pyproject.toml | $(BIN)/python
@@ -42,15 +48,19 @@ $(VENV)/.installed-test: requirements/test.txt $(VENV)/.installed
 	$(PIP) install --no-compile --requirement requirements/test.txt
 	touch $@
 
+$(VENV)/.installed-site: requirements/site.txt $(VENV)/.installed
+	$(PIP) install --no-compile --requirement requirements/site.txt
+	touch $@
+
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 # Needs uv; writes versions and hashes, no host.
 lock:
-	for extra in run test; do \
+	for extra in run test site; do \
 	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-header --no-annotate \
 	        $$([ $$extra = run ] || echo --extra $$extra) pyproject.toml requirements/build.in --output-file requirements/$$extra.txt --quiet; \
 	done
 
 clean:
-	rm -rf $(VENV) paper build dist
+	rm -rf $(VENV) paper build dist docs/_build docs/gallery

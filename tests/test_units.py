@@ -74,6 +74,7 @@ def test_a_number_too_large_for_a_float_is_infinite_and_left_to_the_range_check(
         ("yaer", "s", "'yaer' is not a unit; did you mean 'year'?"),
         ("degC", "m", "'degC' does not convert to m"),
         ("dB/m", "1/m", "'decibel' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
+        ("octave", "1", "'octave' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
     ],
 )
 def test_other_units_are_refused(unit: str, si: str, message: str) -> None:

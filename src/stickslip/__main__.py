@@ -1,6 +1,10 @@
 """Run the command line: `python -m stickslip` does what `stickslip` does."""
 
-from stickslip.cli.main import main
+import sys
 
 if __name__ == "__main__":
+    try:
+        from stickslip.cli.main import main
+    except KeyboardInterrupt:  # `main` deals with those that come later
+        sys.exit(130)
     main()

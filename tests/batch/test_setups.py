@@ -20,7 +20,7 @@ from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
 from stickslip.run.run_loop import split_time
 from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import default_event_rate
 
 from .cases import CASES, PULL, SLAB, Case, one
 

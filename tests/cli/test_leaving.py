@@ -1,6 +1,7 @@
 """Ctrl-C while modules are imported, and readers that stop reading, end a command quietly."""
 
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -81,3 +82,16 @@ def test_a_mistake_has_its_exit_code_though_nobody_reads(tmp_path: Path):
     done = run_unheard(["run", "fig6-slap"], tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("stickslip: fig6-slap: no such file")
+
+
+def test_ctrl_c_during_the_first_import_ends_without_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Interrupts:
+        def find_spec(self, name: str, *_: object) -> None:
+            if name == "stickslip.cli.main":
+                raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "stickslip.cli.main", raising=False)
+    monkeypatch.setattr(sys, "meta_path", [Interrupts(), *sys.meta_path])
+    with pytest.raises(SystemExit) as caught:
+        runpy.run_module("stickslip", run_name="__main__")
+    assert caught.value.code == 130

@@ -53,6 +53,7 @@ def test_the_scenario_of_a_run_can_be_run_again(command: Command, tmp_path: Path
     command("run", "fig6-slab", "--duration", "3 s", "--rtol", "1e-8", "--out", "run.nc")
     (tmp_path / "again.toml").write_text(command("show", "run.nc", "--scenario").out)
     again = load_scenario(tmp_path / "again.toml")
+    assert again.description == load_scenario("fig6-slab").description
     assert (again.problem, again.duration, again.rtol) == (load_scenario("fig6-slab").problem, 3.0, 1e-8)
 
 

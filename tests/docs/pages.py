@@ -3,6 +3,7 @@
 Conventions of the pages (README.md and docs/*.md):
 
 - ```python blocks of a page run in order in one namespace, in an empty folder. A ```text block right behind one is what it prints.
+  A number in a comment behind a statement that prints is one that it prints, to the digits of the comment, or one of its code.
 - ```toml blocks that begin with `# NAME.toml` are put into that folder under this name.
 - ```console blocks: lines `$ stickslip ...` are run; the lines shown below one appear in what it says, in this order ("..." stands
   for anything). A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
@@ -10,6 +11,7 @@ Conventions of the pages (README.md and docs/*.md):
 
 from __future__ import annotations
 
+import ast
 import io
 import re
 import shlex
@@ -23,7 +25,7 @@ from unittest.mock import patch
 from stickslip.cli.main import main
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -103,3 +105,26 @@ def missing_lines(shown: list[str], said: str) -> list[str]:
     """The shown lines that do not appear, in order, in what was said; blanks count once."""
     rest = iter([" ".join(line.split()) for line in said.splitlines()])
     return [line for line in shown if line != "..." and not any(" ".join(line.split()) == other for other in rest)]
+
+
+def comments_of(block: Block) -> Iterator[tuple[str, str]]:
+    """Yield the statements of a ```python block, and with each the comment at the end of its last line."""
+    rows = block.text.splitlines()
+    for node in ast.parse(block.text).body:
+        first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
+        code = "\n" * (first - 1) + "\n".join(rows[first - 1 : node.end_lineno])
+        behind = rows[(node.end_lineno or 1) - 1].encode()[node.end_col_offset :].decode()
+        yield code, behind.partition("#")[2].strip()
+
+
+def wrong_numbers(comment: str, code: str, said: str) -> list[str]:
+    """The numbers of a comment that are neither printed, to its digits, nor in the code that it comments on."""
+    number = r"(?<![\w.])-?\d+(?:\.\d+)?"
+    printed = [float(one) for one in re.findall(number + r"(?:e[+-]?\d+)?", said)]
+    given = re.findall(number, code)
+
+    def is_right(text: str) -> bool:
+        half_a_digit = 0.5 * 10.0 ** -len(text.partition(".")[2])
+        return text in given or any(abs(one - float(text)) <= 1.001 * half_a_digit for one in printed)
+
+    return [text for text in re.findall(number, comment) if not is_right(text)]

@@ -20,13 +20,13 @@ import pytest
 import stickslip
 from stickslip.problem.selection_rule import registered
 from stickslip.scenarios.library import names
-from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, missing_lines, run_command
+from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, comments_of, missing_lines, run_command, wrong_numbers
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 def page_name(page: Path) -> str:
-    return page.stem
+    return page.relative_to(ROOT).with_suffix("").as_posix()
 
 
 @pytest.fixture(autouse=True)
@@ -60,8 +60,26 @@ def run_python(block: Block, module: types.ModuleType, where: str) -> str:
     said = io.StringIO()
     with warnings.catch_warnings(), redirect_stdout(said):
         warnings.simplefilter("error")
-        exec(compile(block.text, where, "exec"), module.__dict__)
+        for code, comment in comments_of(block):
+            before = len(said.getvalue())
+            exec(compile(code, where, "exec"), module.__dict__)
+            printed = said.getvalue()[before:]
+            assert not printed or wrong_numbers(comment, code, printed) == [], f"{where}: {code.strip()}"
     return said.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("comment", "wrong"),
+    [
+        ("4.102 m/s after 0", []),
+        ("4.1 at 70 MPa", []),
+        ("4.103 m/s", ["4.103"]),
+        ("three in 80 MPa, 4.2", ["80", "4.2"]),
+        ("-4.102", ["-4.102"]),
+    ],
+)
+def test_numbers_in_comments_are_those_printed(comment: str, wrong: list[str]) -> None:
+    assert wrong_numbers(comment, "print(rate(70e6))", "0.0 4.1020408\n") == wrong
 
 
 def run_console(block: Block, where: str) -> None:
@@ -75,7 +93,7 @@ def lines(text: str) -> list[str]:
     return [line.rstrip() for line in text.rstrip().splitlines()]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=page_name)
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md"], ids=page_name)
 def test_every_link_has_its_target(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for target in LINK.findall(text):
@@ -95,8 +113,8 @@ def headings(page: Path) -> list[str]:
 
 
 def test_no_page_is_lost() -> None:
-    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     for page in PAGES[1:]:
+        index = (page.parent / "index.md").read_text(encoding="utf-8")
         assert page.stem == "index" or f"({page.name})" in index
 
 

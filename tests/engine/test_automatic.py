@@ -180,10 +180,10 @@ def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: P
 
 
 def test_a_file_has_the_size_that_is_documented(tmp_path: Path) -> None:
-    """0.44 GB a million pieces, to a tenth."""
+    """0.42 GB a million pieces, to a tenth."""
     run = ss.simulate(printed(1), 150 * ROUND)
     size = run.to_netcdf(tmp_path / "run.nc").stat().st_size
-    assert size / len(run.history) == pytest.approx(440.0, rel=0.1, abs=0.0)
+    assert size / len(run.history) == pytest.approx(420.0, rel=0.1, abs=0.0)
 
 
 def test_a_run_that_slides_for_ever_is_rarely_examined_for_creep(monkeypatch: pytest.MonkeyPatch) -> None:

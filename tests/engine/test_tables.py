@@ -19,8 +19,7 @@ from stickslip.engine.series.polynomial import crossings
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
-from stickslip.trajectory.slip_events import SlipEvents, highest, keeps_its_sign
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate, highest, keeps_its_sign
 from tests.long_runs.problems import RUNS
 from tests.problems import SLAB, scaled_rate
 
@@ -39,6 +38,7 @@ CASES: dict[str, tuple[ss.Problem, float]] = {
     "contact mass": RUNS["contact mass"],
     "creep": RUNS["rate and state, slab"],
     "left open": (RUNS["slip law, slab"][0], 3.0),
+    "Coulomb, block": (ss.Problem(SWING.body, F.Coulomb(0.3, 0.2), pull_rate=1.0, initial_excess=-1.0), 10.0),
 }
 RATES: dict[str, Callable[[ss.Solution], float]] = {
     "every slip": lambda run: 0.0,
@@ -120,6 +120,19 @@ def traction(history: History, when: Epoch, side: str) -> float:
     return history.problem.strength + float(local.friction(found)[0])
 
 
+def traction_before(history: History, event: PlainEvent, earlier: int) -> float:
+    """At rest or, if it is more, where the event begins; slip that began up to piece `earlier` belongs to the event before."""
+    (first, low, _), store = event.stretches[0], history.store
+    moving = traction(history, place(history, first, low), "left")
+    while first > 0 and store.mode[first - 1] == store.mode[first] and not history.rests[first - 1]:
+        first -= 1
+    if not history.problem.friction.sticks or first <= earlier:
+        return moving
+    local = history.seen_from(place(history, first, 0.0))
+    at_rest = history.problem.strength + float(local.excess(local.find(np.zeros(1), "left"))[0])
+    return max(moving, at_rest) if store.mode[first] > 0 else min(moving, at_rest)
+
+
 def traction_after(history: History, n: int, xi: float) -> float:
     """At rest, where the slip rate falls on to zero; else where the event ends."""
     mode, rate = history.store.mode, abs(Polynomial(history.store.rate[n])(xi))
@@ -133,11 +146,11 @@ def traction_after(history: History, n: int, xi: float) -> float:
     return history.problem.strength + float(history.friction(Positions.inside(n, xi))[0])
 
 
-def plain_row(history: History, event: PlainEvent) -> dict[str, float]:
+def plain_row(history: History, event: PlainEvent, earlier: int) -> dict[str, float]:
     (first, low, _), (last, _, high) = event.stretches[0], event.stretches[-1]
     top, peak_piece, peak_xi = max(event.points, key=lambda point: point[0])
     start, end, peak = place(history, first, low), place(history, last, high), place(history, peak_piece, peak_xi)
-    before, after = traction(history, start, "left"), traction_after(history, last, high)
+    before, after = traction_before(history, event, earlier), traction_after(history, last, high)
     row, slip = history.round_trip_time, slip_of(history, event)
     lasts = (end.trip - start.trip) * row + (end.offset - start.offset)
     return {
@@ -169,7 +182,8 @@ def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, 
     history, threshold = run.history, rate(run)
     table, events = run.catalogue(threshold), plain_events(run.history, threshold)
     assert len(table) == len(events) > 0
-    rows = [plain_row(history, event) for event in events]
+    ends = [-1, *(event.stretches[-1][0] for event in events)]
+    rows = [plain_row(history, event, earlier) for event, earlier in zip(events, ends, strict=False)]
     width = history.store.speed.max() + history.store.bend.max()
     strength = abs(run.problem.strength)
     slack = {"start": 1e-9 * width, "peak_time": 1e-7 * width, "peak_after": 1e-7 * width}

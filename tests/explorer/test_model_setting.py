@@ -271,7 +271,7 @@ def test_document_that_unpacks_to_more_than_allowed_is_not_unpacked() -> None:
 
 def test_setting_that_is_too_large_for_a_link_says_so() -> None:
     rng = np.random.default_rng(1)
-    rates = np.cumsum(rng.uniform(0.1, 1.0, 3000))
+    rates = np.cumsum(rng.uniform(0.001, 0.01, 3000))
     rows = "\n".join(f"{rate},{0.6 - 1e-4 * k}" for k, rate in enumerate(rates))
     setting = uploaded(Setting.bundled("fig6-slab"), "many.csv", f"slip_rate,friction\n{rows}".encode())
     with pytest.raises(InputError, match="too large for a link"):

@@ -101,3 +101,28 @@ def test_steps_are_one_two_or_five(size: float, step: float) -> None:
 
 def test_headings_are_escaped() -> None:
     assert "<b>" not in heading("<b>", [Key("<b>", "slip")])
+
+
+def test_a_kept_run_is_shown_in_the_units_of_both() -> None:
+    slab, block = answer("fig6-slab"), answer("fig6-block-reconstructed")
+    view = view_of(slab, slab)
+    np.testing.assert_array_equal(view.columns["pinned"]["slip"], view.columns["motion"]["slip"])
+    np.testing.assert_array_equal(view.columns["pinned_law"]["x"], view.columns["law"]["x"])
+    assert all(Key("pinned", "pin") in view.keys[name] for name in ("slip", "rate", "traction", "law", "contact"))
+    other = view_of(block, slab)
+    assert np.isnan(other.columns["pinned"]["traction"]).all()  # Pa beside N
+    for name in ("slip", "rate"):
+        low, high = other.limits[name]
+        assert low <= np.min(other.columns["pinned"][name])
+        assert np.max(other.columns["pinned"][name]) <= high
+
+
+def test_an_event_of_a_long_run_has_a_time_of_its_own() -> None:
+    found = answer("cycles-slab")
+    view = view_of(found)
+    near, time = view.facts["near"], view.columns["field"]
+    assert not near["whole"]
+    assert view.limits["near"] == (near["from"], near["to"])
+    assert view.columns["energy"]["time"][-1] * near["size"] + near["begin"] == pytest.approx(found.energy.time[-1])
+    assert near["from"] - time["dw"][0] <= time["x"][0] <= time["x"][0] + time["dw"][0] <= near["to"] + time["dw"][0]
+    assert view_of(answer("fig6-slab")).limits["near"] == view_of(answer("fig6-slab")).limits["time"]

@@ -94,7 +94,7 @@ def test_tables_are_read_from_files(tmp_path: Path) -> None:
 
 BAD_FILES = [
     ("", "line 1: no column 'friction' in the header"),
-    ("slip,tau\n0,1\n", "line 1: no column 'friction' in the header; write it as friction"),
+    ("slip,tau\n0,1\n", "line 1: no column 'friction' in the header; friction is shear stress over normal stress"),
     ("slip,fricton\n0,1\n", "line 1: no column 'friction' in the header; rename 'fricton'?"),
     ("0,0.7\n1,0.6\n", "line 1: no column 'friction'"),
     ("slips,friction\n0,1\n", "line 1: the header needs a column slip or slip_rate, got none; rename 'slips'?"),

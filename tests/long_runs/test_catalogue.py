@@ -25,7 +25,8 @@ from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
-from stickslip.trajectory.tables import ENERGY_COLUMNS, default_event_rate
+from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.trajectory.tables import ENERGY_COLUMNS
 from tests.long_runs.problems import RUNS, bundled, differences
 from tests.long_runs.processes import killed
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pandas as pd
 import pytest
 
 import stickslip as ss
@@ -90,7 +91,7 @@ def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Pa
     for share in np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
         ss.simulate(problem, share * duration).to_netcdf(path)
         assert differences(ss.resume(path, duration), whole) == [], f"from {share} of the way"
-        assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
+    assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
 
 
 def test_the_comparison_shows_a_state_that_is_not_restored(tmp_path: Path) -> None:
@@ -198,3 +199,21 @@ def test_ctrl_c_leaves_a_solution_that_continues(tmp_path: Path) -> None:
     assert begun.status.name == "interrupted"
     end = begun.history.duration * 1.1
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
+
+
+@pytest.mark.parametrize("events", [1, 2])
+def test_an_event_that_begins_as_the_last_one_ends_is_not_counted(events: int, tmp_path: Path) -> None:
+    """Undamped, an oscillating block turns round without rest: each swing begins in the instant in which the one before ends."""
+    block = ss.SpringBlock(2.0, 50.0, 10.0)
+    problem = ss.Problem(block, ss.friction.LinearSlipWeakening(0.3, 0.1, 2.0), initial_load=20.0)
+    path = tmp_path / "run.nc"
+    run, whole = ss.simulate(problem, 10.0, max_events=events, checkpoint=path), ss.simulate(problem, 10.0)
+    assert len(whole.events) > events + 1
+    wanted = whole.events.iloc[:events]
+    for found in (run.events, run.catalogue(0.01), run.energetics(), run.pulses(), ss.open_solution(path).events):
+        assert len(found) == events
+    pd.testing.assert_frame_equal(run.events, wanted)
+    pd.testing.assert_frame_equal(ss.catalogue(problem, 10.0, max_events=events), wanted)
+    ss.catalogue(problem, 10.0, tmp_path / "events.csv", max_events=events)
+    assert len(ss.resume(tmp_path / "events.checkpoint.nc", max_events=events + 1)) == events + 1
+    pd.testing.assert_frame_equal(ss.resume(path, 10.0).events, whole.events)

@@ -62,10 +62,46 @@ def test_a_block_overshoots_by_all_of_its_drop(direction: float) -> None:
     assert math.isnan(event.radiation_efficiency)
 
 
-def test_the_drop_is_from_rest_though_the_event_begins_in_motion() -> None:
-    run = ss.simulate(coulomb_block(0.0), 2.0)
-    assert run.events.traction_before[0] == pytest.approx(3.0)  # it moves already where |v| passes the threshold
-    assert run.energetics().dynamic_drop[0] == pytest.approx(1.1, rel=1e-12, abs=0.0)
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_drop_is_from_the_static_strength_though_the_event_begins_in_motion(direction: float) -> None:
+    """Coulomb friction drops at once: a block moves, against sliding friction, before its slip rate counts as an event.
+
+    Its spring then has drops of 2 (static - dynamic) normal force, and so has friction from rest to rest.
+    """
+    problem = replace(coulomb_block(0.0), initial_load=None, initial_excess=0.0, pull_rate=1e-3)
+    run = ss.simulate(problem if direction > 0.0 else mirrored(problem), 100.0, rtol=1e-12)
+    assert len(run.events) == 3
+    drop = direction * 2.0 * (4.0 - 3.0)
+    assert run.events.traction_before.to_numpy() == pytest.approx(direction * 4.0, rel=1e-12, abs=0.0)
+    assert run.events.traction_drop.to_numpy() == pytest.approx(drop, rel=1e-3, abs=0.0)  # while it slips, the driver goes on
+    assert run.energetics().dynamic_drop.to_numpy() == pytest.approx(1.0, rel=1e-12, abs=0.0)
+    table = ss.catalogue(run.problem, run.duration, rtol=1e-12)
+    assert table.traction_before.to_numpy() == pytest.approx(direction * 4.0, rel=1e-12, abs=0.0)
+
+
+def mirrored(problem: ss.Problem) -> ss.Problem:
+    """Return the same problem pulled backwards."""
+    return replace(problem, initial_excess=None, initial_load=-4.0, pull_rate=-1e-3)
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e5])
+def test_a_slab_gives_way_at_its_static_strength_with_and_without_mass_at_the_contact(mass: float) -> None:
+    slab = replace(SLAB, contact_mass=mass)
+    run = ss.simulate(ss.Problem(slab, F.Coulomb(0.8, 0.3), pull_rate=0.1, initial_excess=-1e5), 20.0, rtol=1e-12)
+    assert run.events.traction_before[0] == pytest.approx(8e7, rel=1e-12, abs=0.0)
+    assert run.energetics().dynamic_drop[0] == pytest.approx(5e7, rel=1e-12, abs=0.0)
+
+
+def test_only_the_first_event_of_a_slip_counts_from_the_rest_before_it() -> None:
+    """A damped block creeps over bumps and never rests: friction is 5 at rest before the first event, not before the second."""
+    law = F.SinusoidalSlip(0.5, 0.1, 2.0)
+    run = ss.simulate(ss.Problem(ss.SpringBlock(2.0, 1.0, 10.0, damping=4.0), law, pull_rate=0.01, initial_excess=0.0), 900.0)
+    fast = run.catalogue(0.2)
+    assert (run.history.store.mode == 1).all()
+    assert fast.traction_before[0] == pytest.approx(5.0, rel=1e-12, abs=0.0)
+    at_the_threshold = float(run.traction(fast.start[1], side="left"))
+    assert at_the_threshold < 4.5
+    assert fast.traction_before[1] == pytest.approx(at_the_threshold, rel=1e-9, abs=0.0)
 
 
 def test_what_damping_takes_is_a_blocks_radiation() -> None:

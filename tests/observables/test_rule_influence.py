@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -67,3 +68,9 @@ def test_a_unique_rate_leaves_no_choice() -> None:
         found = solution.rule_influence
         assert (found.regime, found.since, found.shocks.any()) == ("regular", None, np.False_)
         assert solution.selection_note.endswith("without effect, the solution is unique")
+
+
+def test_a_run_without_shocks_has_decided_none() -> None:
+    note = RuleInfluence("maxwell", "irregular", np.zeros(0, bool)).note
+    assert note.endswith("no shock occurred: the load was never between the folds")
+    assert "0" not in note

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from stickslip import ElasticSlab, Problem, SpringBlock
-from stickslip.friction import LAWS, SinusoidalSlip
+from stickslip.contact.rules.loop import resolved
+from stickslip.friction import LAWS, FromTable, SinusoidalSlip
 from stickslip.scenarios import library
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
@@ -178,3 +179,21 @@ def test_rate_and_state_is_judged_by_its_stiffness() -> None:
     assert not block.warnings + slab.warnings
     assert {fact.name for fact in slab.derived} >= {"steady friction", "steady state", "b - a"}
     assert not {fact.name for fact in slab.derived} & {"strength", "excess"}
+
+
+def test_only_what_a_body_and_a_law_can_feel_is_listed() -> None:
+    def listed(scenario: Scenario) -> set[str]:
+        return {fact.name for facts in examine(scenario).given.values() for fact in facts}
+
+    table = FromTable(rate=[0.0, 1.0], friction=[0.6, 0.5])
+    block = Scenario(Problem(SpringBlock(1.0, 1.0, 10.0), table, initial_excess=0.0), 1.0)
+    assert not {"counts", "memory", "far_stress_rate"} & listed(block)
+    assert not {"far_stress_rate"} & listed(Scenario(Problem(SLAB, LAW, initial_excess=0.0), 1.0))
+    matched = replace(SLAB, driver_impedance=SLAB.impedance)
+    slips = FromTable(slip=[0.0, 1.0], friction=[0.6, 0.5])
+    assert {"counts", "memory", "far_stress_rate"} <= listed(Scenario(Problem(matched, slips, initial_excess=0.0), 1.0))
+
+
+@pytest.mark.parametrize(("rate", "shown"), [(2e-61, 0.0), (1e-16, 0.0), (-0.0, 0.0), (2e-6, 2e-6), (4.1, 4.1)])
+def test_a_rate_whose_load_rounding_hides_is_rest(rate: float, shown: float) -> None:
+    assert resolved(rate, 8e7, 9.8e6) == shown

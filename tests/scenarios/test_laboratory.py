@@ -13,6 +13,7 @@ import stickslip as ss
 GABBRO = ss.scenarios["direct-shear-block"]
 TUBE = ss.scenarios["kolsky-slab"]
 STRING = ss.scenarios["bowed-string-slab"]
+PLATE = ss.scenarios["granite-slab"]
 
 
 def test_gabbro_slips_as_a_block_under_coulomb_friction() -> None:
@@ -36,6 +37,22 @@ def test_gabbro_slips_as_long_and_as_far_as_was_measured() -> None:
     assert event.duration == pytest.approx(17.7e-3, rel=0, abs=0.05e-3)
     assert event.slip == pytest.approx(3.5e-3, rel=0, abs=0.05e-3)
     assert event.static_drop == pytest.approx(0.4e6, rel=0.01, abs=0)
+
+
+def test_the_plate_slips_for_a_round_trip_again_and_again() -> None:
+    """Friction falls within 1 mm/s, far below the slip rate: Coulomb's closed forms, a slip of 2 drop h/G within 2 h/c.
+
+    The driver makes up for it in slip / pull_rate. At rest before the event friction has its static value, after it 2 drops less.
+    """
+    body, law, pull = PLATE.problem.body, PLATE.problem.friction, PLATE.problem.pull_rate
+    drop = (law.static - law.dynamic) * body.normal_stress
+    events = ss.simulate(PLATE).events
+    assert len(events) == 5
+    assert events.slip.to_numpy() == pytest.approx(2.0 * drop * body.thickness / body.shear_modulus, rel=1e-3, abs=0)
+    assert events.duration.to_numpy() == pytest.approx(body.two_way_time, rel=1e-3, abs=0)
+    assert events.recurrence[1:].to_numpy() == pytest.approx(events.slip[0] / pull, rel=1e-3, abs=0)
+    assert events.traction_before.to_numpy() == pytest.approx(law.static * body.normal_stress, rel=1e-4, abs=0)
+    assert events.traction_drop.to_numpy() == pytest.approx(2.0 * drop, rel=1e-3, abs=0)
 
 
 def tube_by_hand(steps: int) -> tuple[np.ndarray, np.ndarray]:

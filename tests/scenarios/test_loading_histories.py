@@ -73,7 +73,10 @@ def test_every_kind_can_be_a_far_stress(kind: str) -> None:
         (document(PULL.replace("values", "value")), "[loading.pull_rate] value is unknown; did you mean 'values'?"),
         (document(PULL.replace("values = [1, 2]\n", "")), "[loading.pull_rate] values is missing: the values, in m/s, a list"),
         (document(PULL.replace("[1, 2]", "[1, 2, 3]")), "[loading.pull_rate] 2 times but 3 values"),
-        (document(PULL.replace("[0, 1]", "[1, 0]")), "[loading.pull_rate] times must ascend, but [1] = 0 follows 1"),
+        (
+            document(PULL.replace("[0, 1]", "[1, 0]")),
+            "times must ascend, but [1] = 0 follows 1; sort the points",
+        ),
         (
             document(PULL.replace("[0, 1]", "[1, 2]")),
             "[loading.pull_rate] times must begin with 0, from which the first value holds, got 1",

@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.contact.regime_map import Axis
+from stickslip.foundation.errors import InputError
 from stickslip.reference.slab.folds import HyperbolicFolds, fold_delay
+from stickslip.scenarios.scenario import Scenario
 from stickslip.studies.regularisations import KINDS, regularised
 from stickslip.studies.regularise import Regularisation, regularise
 from stickslip.studies.run_distance import passage
@@ -200,3 +205,19 @@ def test_an_interrupted_run_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(import_module("stickslip.studies.regularise"), "simulate", partial(ss.simulate, progress=stop))
     with pytest.raises(KeyboardInterrupt):
         regularise(LOOP.problem, 1.0)
+
+
+def test_studies_take_a_scenario_and_its_duration(tmp_path: Path) -> None:
+    problem = ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), ss.friction.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=1.0)
+    file = tmp_path / "one.toml"
+    file.write_text(Scenario(problem, 3.0).to_toml())
+    options: dict[str, Any] = {"sizes": [1.0, 0.5, 0.25], "rules": ["perfect-delay"], "rtol": 1e-6}
+    found, wanted = ss.studies.regularise(file, **options), ss.studies.regularise(problem, 3.0, **options)
+    assert found.exact["perfect-delay"].duration == 3.0
+    assert found.problem == wanted.problem
+    pushed = ss.studies.ensemble(file, members=1, rtol=1e-6)
+    assert (pushed.reference.duration, pushed.reference.problem) == (3.0, problem)
+    axes = Axis("body.thickness", 1e4, 2e4, 2), Axis("friction.alpha", 0.5, 1.0, 2)
+    assert len(ss.studies.analogy(file, None, *axes, rtol=1e-6).table) == 4
+    with pytest.raises(InputError, match="ensemble: duration"):
+        ss.studies.ensemble(problem)

@@ -18,8 +18,8 @@ from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import INTERRUPTED
-from stickslip.trajectory.tables import default_event_rate
 
 if TYPE_CHECKING:
     import pandas as pd

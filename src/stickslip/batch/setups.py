@@ -19,7 +19,7 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import default_event_rate
 
 LOADING = Lock()
 """Lock around the compilation of formulas: if two threads loaded the same formula, machine code whose address the other thread

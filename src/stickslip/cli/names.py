@@ -11,7 +11,7 @@ from pathlib import Path
 
 from typer import Context  # typer evaluates the annotation at run time
 
-STARTERS = ("slab", "block")
+STARTERS = ("slab", "lab-slab", "block")
 """Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
 
 RESULTS = (".nc", ".csv", ".parquet")

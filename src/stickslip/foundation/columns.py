@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.conversion import has_unit
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, nearest, warn
 from stickslip.foundation.units import si_factor, split_quantity
 
 Floats = NDArray[np.float64]
@@ -36,11 +36,17 @@ COLUMNS: Mapping[str, Column] = {
     "slip": Column("m", ("u", "displacement", "slip distance", "cumulative slip"), signed=True),
     "slip_rate": Column("m/s", ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed")),
     "friction": Column("1", ("mu", "μ", "friction coefficient", "coefficient of friction", "cof")),
+    "shear_stress": Column("Pa", ("tau", "τ", "shear", "traction"), signed=True),
+    "normal_stress": Column("Pa", ("sigma", "σ", "sigma n", "normal")),
     "time": Column("s", ("t",)),
     "pull_rate": Column("m/s", signed=True),
     "far_stress": Column("Pa", signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, - and _ make no difference."""
+LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0}
+"""Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
+PREAMBLE = 200
+"""Number of lines before the header in which notes of an instrument are looked for."""
 PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 DECIMAL_COMMA = (
@@ -81,13 +87,18 @@ class Table:
 def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
-    The first line that is neither blank nor a comment (#) is the header. Columns are separated by tabs, semicolons or commas,
+    The first line that is neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the
+    lines that follow names two of them, that line is the header, and those before it are notes. Columns
+    are separated by tabs, semicolons or commas,
     whichever of them the header has, in this order. Raises InputError with a message of one line that names `place` and the line;
     also for more than `most` rows.
     """
-    lines, separator = _rows(text, place)
+    lines, separator = _rows(text, place, wanted)
     number, header = next(lines, (1, [""]))
     chosen = find(header, wanted, f"{place}, line {number}")
+    at_header = f"{place}, line {number}"
+    if not chosen:
+        return Table({}, place, np.array([number]))  # the caller says what is missing
     found: dict[str, list[float]] = {name: [] for name in chosen}
     numbers: list[int] = []
     for number, row in lines:
@@ -101,6 +112,7 @@ def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
             found[name].append(_number(row[i].strip() if i < len(row) else "", name, at, first=not numbers))
         numbers.append(number)
     columns = {name: _scaled(np.array(found[name], float), factor) for name, (_, factor) in chosen.items()}
+    note_units(header, {name: i for name, (i, _) in chosen.items()}, columns, at_header)
     return Table(columns, place, np.array(numbers or [number]))
 
 
@@ -108,10 +120,12 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI."""
     headings = list(table)
     chosen = find([str(heading) for heading in headings], wanted, place)
-    columns = {}
+    columns: dict[str, Floats] = {}
+    plain: dict[str, int] = {}
     for name, (i, factor) in chosen.items():
         given = table[headings[i]]
         try:
+            plain |= {} if has_unit(given) else {name: i}
             if has_unit(given):  # a unit of its own outweighs one in the heading
                 given, factor = given.to(COLUMNS[name].unit).magnitude, Fraction(1)
             numbers = np.asarray(given, dtype=float)
@@ -127,7 +141,30 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     for name, numbers in columns.items():
         for i in np.flatnonzero(~np.isfinite(numbers) | ((numbers < 0.0) & (not _signed(name))))[:1].tolist():
             _check(float(numbers[i]), name, made.at(i))
+    note_units([str(heading) for heading in headings], plain, columns, place)
     return made
+
+
+def note_units(header: Sequence[str], chosen: Mapping[str, int], columns: Mapping[str, Floats], place: str) -> None:
+    """Issue an `InputWarning` for a column without a unit that is hardly in SI.
+
+    That is so if another heading has a unit other than SI, or if its numbers are larger than any slip or slip rate. `chosen` has
+    the places of the columns in the header. The ratio of two stresses needs no unit if both have none.
+    """
+    units = {name: part["unit"] if (part := _HEADING.fullmatch(header[i])) else None for name, i in chosen.items()}
+    if units.get("shear_stress", "") is units.get("normal_stress", "") is None:
+        del units["shear_stress"], units["normal_stress"]
+    sized = {name: unit for name, unit in units.items() if COLUMNS.get(name, Column("1")).unit != "1"}
+    foreign = any(unit is not None and _plain(unit) != _plain(COLUMNS[name].unit) for name, unit in sized.items())
+    for name in (name for name, unit in sized.items() if unit is None):
+        if foreign or np.max(np.abs(columns[name]), initial=0.0) > LARGEST.get(name, math.inf):
+            si = COLUMNS[name].unit
+            cure = f"write its unit into the heading, as in {name} ({_OFTEN.get(si, si)})"
+            warn(f"{place}: column {chosen[name] + 1}, {name}, has no unit and is read in {si}; if it is in another, {cure}")
+
+
+_OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa"}
+"""Units that laboratories use in place of those of SI."""
 
 
 def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, tuple[int, Fraction]]:
@@ -151,6 +188,10 @@ def missing(header: Sequence[str], column: str) -> str:
     """Return a hint for a header that lacks a column: the heading that could be meant, or how a header is written."""
     if len(header) == 1 and len(header[0].split()) > 1:
         return "columns are separated by commas, semicolons or tabs"
+    if column == "friction" and any(_plain(_HEADING.sub(r"\g<name>", cell)) in _headings("shear_stress") for cell in header):
+        return "friction is shear stress over normal stress, both in one unit"
+    if any(_plain(cell).startswith(("log", "ln")) for cell in header):
+        return f"logarithms are not read: write the numbers themselves, as in a column {_example(column)}"
     if any(map(_is_number, header)):
         return f"the first line must name the columns, as {_example(column)}"
     hint = nearest(column, [cell for cell in header if cell.strip()])
@@ -164,16 +205,20 @@ def _example(column: str) -> str:
     return column if unit == "1" else f"{column} ({unit})"
 
 
-def header_of(text: str, place: str) -> tuple[int, list[str]]:
-    """Return line number and cells of the header of a text."""
-    return next(_rows(text, place)[0], (1, []))
+def header_of(text: str, place: str, wanted: Sequence[str]) -> tuple[int, list[str]]:
+    """Return line number and cells of the header of a text that is to have some of the wanted columns."""
+    return next(_rows(text, place, wanted)[0], (1, []))
 
 
-def _rows(text: str, place: str) -> tuple[Iterator[tuple[int, list[str]]], str]:
-    """Return the rows of a text that are neither blank nor comments, with their line numbers, and the separator of columns."""
+def _rows(text: str, place: str, wanted: Sequence[str]) -> tuple[Iterator[tuple[int, list[str]]], str]:
+    """Return the rows of a text from its header on, with their line numbers, and the separator of columns.
+
+    Rows that are blank or comments are left out.
+    """
     lines = text.lstrip("\ufeff").splitlines()
-    header = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
-    separator = next((mark for mark in "\t;" if mark in header), ",")
+    first = _header_line(lines, wanted)
+    separator = _separator(lines[first]) if lines else ","
+    lines[:first] = [""] * first
 
     def rows() -> Iterator[tuple[int, list[str]]]:
         read = csv.reader(lines, delimiter=separator)
@@ -185,6 +230,26 @@ def _rows(text: str, place: str) -> tuple[Iterator[tuple[int, list[str]]], str]:
             raise InputError(f"{place}, line {read.line_num}: {error}") from None
 
     return rows(), separator
+
+
+def _header_line(lines: Sequence[str], wanted: Sequence[str]) -> int:
+    """Return the index of the header among the lines of a text; see `read_text`."""
+    known = set().union(*map(_headings, wanted))
+    rows = [i for i, line in enumerate(lines[:PREAMBLE]) if line.strip() and not line.lstrip().startswith("#")]
+    named = {i: _named(lines[i], known) for i in rows}
+    headers = [i for i in rows if named[i] > 1]
+    first = rows[0] if rows else 0
+    return headers[0] if rows and named[first] == 0 and len(headers) == 1 else first
+
+
+def _named(line: str, known: set[str]) -> int:
+    """Return how many cells of a line are headings of known columns."""
+    parts = (_HEADING.fullmatch(cell.strip().strip('"')) for cell in line.split(_separator(line)))
+    return sum(_plain(part["name"]) in known for part in parts if part)
+
+
+def _separator(header: str) -> str:
+    return next((mark for mark in "\t;" if mark in header), ",")
 
 
 def _plain(heading: str) -> str:

@@ -162,7 +162,8 @@ class Series:
         if self.ascending:
             for i, (one, following) in enumerate(pairwise(found)):
                 if not one < following:
-                    raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}")
+                    cure = "sort the points" if following < one else "keep one point of each, or their mean"
+                    raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}; {cure}")
         return found
 
 

@@ -59,15 +59,22 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
     registry = _registry()
     try:
         parsed = registry.parse_units(f"1{unit}" if unit.startswith("/") else unit)  # the parser understands 1/ m, but not / m
+        for name in parsed._units:
+            if _is_logarithmic(registry, name.removeprefix("delta_")):
+                raise pint.UndefinedUnitError(name.removeprefix("delta_"))
         return Fraction(registry.get_root_units(parsed)[0]), dict(parsed.dimensionality)
     except pint.UndefinedUnitError as error:
-        # pint looks up decibels and the like as "delta_decibel", which it does not know: no factor converts them to SI units
-        name = str(error.args[0]).removeprefix("delta_")
+        name = str(error.args[0])
         known = nearest(name, COMMON_UNITS)
         examples = known if known.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
         raise InputError(f"'{name}' is not a unit; {examples}") from None
     except pint.PintError:
         raise InputError(f"'{unit}' is not a unit{hint}") from None
+
+
+def _is_logarithmic(registry: Any, name: str) -> bool:
+    """Return True for decibels and the like, which no factor converts to SI units, although pint gives them one."""
+    return name in registry._units and bool(registry._units[name].is_logarithmic)
 
 
 def to_si(number: float, unit: str, si: str) -> float:

@@ -39,6 +39,10 @@ _FORMULAS: dict[tuple[tuple[str, ...], str], Formula] = {
 """Formula of a piece by its parameters and its variable."""
 
 
+LARGEST_COEFFICIENT = 10.0
+"""Friction coefficient above which numbers look like percentages."""
+
+
 @dataclass(frozen=True)
 class PiecewiseLaw(FrictionLaw):
     """A law given by points; all its pieces share one formula, each with its own `start` and its own coefficients."""
@@ -63,6 +67,7 @@ class PiecewiseLaw(FrictionLaw):
         places, values = self.points
         if len(places) != len(values):
             raise InputError(f"{type(self).__name__}: {len(places)} places but {len(values)} friction coefficients")
+        note_percent(values, type(self).__name__)
         noise = noise_in(places, values)
         if noise is not None:
             warn(f"{type(self).__name__}: {noise.warning()}")
@@ -119,3 +124,10 @@ class PiecewiseLinearLaw(PiecewiseLaw):
     def polynomials(self) -> NDArray[np.float64]:
         places, values = self.points
         return np.column_stack((values[:-1], np.diff(values) / np.diff(places)))
+
+
+def note_percent(friction: Sequence[float] | NDArray[np.float64], where: str) -> None:
+    """Issue an `InputWarning`, beginning with `where`, for friction coefficients that look like percentages."""
+    most = float(np.max(friction, initial=0.0))
+    if most > LARGEST_COEFFICIENT:
+        warn(f"{where}: friction reaches {most:g}: it is shear over normal stress, hardly ever above 2; divide a percentage by 100")

@@ -29,7 +29,7 @@ from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
-from stickslip.trajectory.status import Status
+from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
 from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS
 
 FORMAT = 1
@@ -336,15 +336,17 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
     round_trip_time, ramp, reached = (float(dataset[name].item()) for name in ("round_trip_time", "ramp", "reached"))
-    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep)
     status = Status(str(attributes["status"]), str(attributes["status_message"]), bool(attributes["status_ok"]))
+    counted = scenario.max_events if status.name == STATUSES[ENOUGH_EVENTS].name else None
+    history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted)
     checkpoint = None
     if "engine" in attributes:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, scenario.title)
+    named = scenario.title, scenario.description
+    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, *named)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

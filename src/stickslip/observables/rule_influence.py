@@ -61,9 +61,10 @@ class RuleInfluence:
             return depends
         shocks, decided = len(self.shocks), int(self.shocks.sum())
         if self.since is None and not decided:
-            return f"{depends}; it decided none of the {shocks} shocks: the load was never between the folds"
+            none = f"it decided none of the {shocks} shocks" if shocks else "no shock occurred"
+            return f"{depends}; {none}: the load was never between the folds"
         since = "" if self.since is None else f": the load was between the folds first at {_time(self.since)}"
-        return f"{depends}; it decided {decided} of the {shocks} shocks{since}"
+        return f"{depends}; {f'it decided {decided} of the {shocks} shocks' if shocks else 'no shock occurred'}{since}"
 
 
 def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floats]]) -> RuleInfluence:

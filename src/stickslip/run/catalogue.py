@@ -24,7 +24,7 @@ from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_opti
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
 from stickslip.run.session import Session
-from stickslip.trajectory.status import UNDER_WAY, Status
+from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note
 
 if TYPE_CHECKING:
@@ -221,7 +221,8 @@ class EventRows:
 
     def finish(self, run: Session, stream: EventStream, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
-        self.rows.append(stream.look(run.store, run.length).table(unknown=True))
+        if code != ENOUGH_EVENTS:
+            self.rows.append(stream.look(run.store, run.length).table(unknown=True))
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None

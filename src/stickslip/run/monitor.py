@@ -16,8 +16,8 @@ from stickslip.run.progress import Reporter
 from stickslip.run.run_loop import NowAndThen, repeat, run_loop
 from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import ENOUGH_EVENTS, INTERRUPTED, STATUSES
-from stickslip.trajectory.tables import default_event_rate
 
 Result_co = TypeVar("Result_co", covariant=True)
 

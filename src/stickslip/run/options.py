@@ -49,12 +49,13 @@ class RunOptions:
     checkpoint_every: Number = declare(CHECKPOINT_INTERVAL, CHECKPOINT_EVERY)
     max_pieces: int | None = None
     title: str = ""
+    description: str = ""
 
     @classmethod
     def of(cls, scenario: Scenario, **given: Any) -> Self:
         """Return the options of a scenario, those in `given` that are not None in their place or beside them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
-        own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading}
+        own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading, "description": scenario.description}
         return cls(**(own | _not_none(given)))
 
     @classmethod
@@ -71,6 +72,7 @@ class RunOptions:
             stopped.shortest_event,
             max_events if max_events is not None or had_them else stopped.max_events,
             title=stopped.title,
+            description=stopped.description,
             **others,
         )
 

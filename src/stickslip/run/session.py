@@ -27,7 +27,7 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint, engine
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.status import STATUSES, rounding_note
+from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, rounding_note
 
 FIRST_CAPACITY = 256
 """Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""
@@ -116,7 +116,9 @@ class Session:
         kept, row, options = at.trimmed(self.store, self.length), self.problem.round_trip_time, self.options
         whole = code in (Stop.FINISHED, Stop.LOCKED)
         reached = options.duration if whole else float(kept.trip[-1] * row + kept.phase_to[-1])
-        history = History(kept, self.problem, row, float(self.setup.params.ramp), reached, creep=self.creep)
+        counted = options.max_events if code == ENOUGH_EVENTS else None
+        ramp = float(self.setup.params.ramp)
+        history = History(kept, self.problem, row, ramp, reached, creep=self.creep, max_events=counted)
         return Solution(
             self.problem,
             options.duration,
@@ -128,6 +130,7 @@ class Session:
             creep_rtol=options.creep_rtol,
             shortest_event=options.shortest_event,
             title=options.title,
+            description=options.description,
             lumping_note=self.lumping_note,
             rounding_note=self.rounding_note,
         )

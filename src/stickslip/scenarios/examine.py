@@ -26,6 +26,8 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 
+OF_SLIP = ("counts", "memory")
+"""Options of a law that say which slip it sees; they mean nothing to a law without slip."""
 BARELY_ABOVE = 1.01
 """Factor (1) up to which the growth of a disturbance is shown as its excess over 1."""
 LARGE_STRAIN = 0.01
@@ -81,7 +83,9 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         facts[table] = []
         for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.state).items():
             value = getattr(owner, prefix + name)
-            if value is not None and not (owner is scenario and value == 0.0):  # an option of a run that is off
+            off = owner is scenario and value == 0.0  # an option of a run
+            unfelt = name.startswith("far_stress") and math.isinf(problem.body.driver_impedance)
+            if value is not None and not (off or unfelt):
                 facts[table] += _facts(name, value, declared)
     facts["run"] += _automatic(scenario)
     return facts
@@ -116,6 +120,8 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
     for name, (entry, _) in fields_of(type(law)).items():
         declared = in_units(entry, {VARYING: varying})
         value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
+        if name in OF_SLIP and isinstance(law, FrictionLaw) and not law.depends_on_slip:
+            continue
         if isinstance(declared, Quantity) and value is not None:
             facts.append(Fact(place, value, declared.unit, declared.meaning))
         elif isinstance(declared, Series) and value:

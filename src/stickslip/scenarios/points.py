@@ -13,7 +13,7 @@ from pathlib import Path
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import header_of, missing, read_text
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import LARGEST_SERIES
 from stickslip.scenarios.values import show
 
@@ -23,14 +23,22 @@ ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
 """Environment variable whose value 1 allows data files outside the folder of the scenario."""
 
 
-def read_points(name: str, folder: Path | None, columns: Mapping[str, str], where: str) -> dict[str, list[float]]:
+def read_points(
+    name: str, folder: Path | None, columns: Mapping[str, str], where: str, along: str | None = None
+) -> dict[str, list[float]]:
     """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
 
-    `columns` maps headings to fields. The last is that of the dependent variable; exactly one other column must be there, and
-    holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that begin with # and unknown
-    columns are ignored; headings may carry units (`foundation.columns`). Raises InputError with a message of one line that names
-    the file and the line.
+    `columns` maps headings to fields. The last is that of the dependent variable; exactly one other column must be there, or be
+    named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.columns`).
+    Raises InputError with a message of one line that names the file and the line.
     """
+    *others, value = columns
+    if along is not None:
+        if along not in others:
+            at = where.removesuffix(" file")
+            raise InputError(f"{at} along: {show(along)} is no column to go along; {nearest(str(along), others)}")
+        columns = {column: columns[column] for column in (along, value)}
     try:
         text = _text(name, folder)
     except InputError as error:
@@ -44,13 +52,13 @@ def points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, lis
     `file` is the name of the text in messages.
     """
     *others, value = columns
-    number, header = header_of(text, file)
+    number, header = header_of(text, file, tuple(columns))
     table = read_text(text, tuple(columns), file, LARGEST_SERIES)
     place, found = f"{file}, line {number}", [column for column in others if column in table.columns]
     if value not in table.columns:
         raise InputError(f"{place}: no column '{value}' in the header; {missing(header, value)}")
     if len(found) != 1:
-        got = "both; rename or remove one" if found else f"none; {missing(header, others[0])}"
+        got = f'both; choose one with along = "{found[0]}"' if found else f"none; {missing(header, others[0])}"
         raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {got}")
     count = len(table.columns[value])
     if count < 2:

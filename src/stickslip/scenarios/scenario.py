@@ -105,6 +105,7 @@ class Scenario:
             creep_rtol=solution.creep_rtol,
             shortest_event=solution.shortest_event,
             title=solution.title,
+            description=solution.description,
             name=name,
         )
 

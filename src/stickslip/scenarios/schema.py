@@ -192,8 +192,10 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, stat
         if both or not isinstance(name, str):
             got = f"and {both} exclude each other" if both else f"must be text in quotes, got {show(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
-        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file")
-        raw = {key: value for key, value in raw.items() if key != "file"} | points
+        along = raw.get("along") if len(columns) > 2 else None
+        points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along)
+        taken = {"file"} if along is None else {"file", "along"}
+        raw = {key: value for key, value in raw.items() if key not in taken} | points
     return _validate(table_model(table, kind, state), raw, source, table)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.conversion import WithUnit
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.problem.run_quantities import DURATION
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -27,6 +28,19 @@ def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | 
     if not isinstance(source, Scenario):
         check_problem(who, source, "a Problem, a scenario, or the name of one")
     return source
+
+
+def read_duration_and_problem(
+    who: str, source: Problem | Scenario | str | Path, duration: float | str | WithUnit | None
+) -> tuple[float, Problem]:
+    """Return a checked duration (s), that of the scenario if none is given, and the problem of what `read_source` reads.
+
+    Raises InputError, which begins with `who`, also if a problem comes without a duration.
+    """
+    found = read_source(who, source)
+    if isinstance(found, Problem):
+        return DURATION.check(who, "duration", duration), found
+    return DURATION.check(who, "duration", found.duration if duration is None else duration), found.problem
 
 
 def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:

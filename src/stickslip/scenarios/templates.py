@@ -19,7 +19,7 @@ from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
-STARTERS = {"slab": "fig6-slab", "block": "fig6-block-reconstructed"}
+STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed"}
 """Names of the generic starters, each with the bundled scenario whose values it shows."""
 
 _HEADER = """\
@@ -50,7 +50,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     Parameters
     ----------
     name : str
-        "slab" or "block" for a starter, or the name of a bundled scenario.
+        "slab", "lab-slab" or "block" for a starter, or the name of a bundled scenario.
     friction : str, optional
         Kind of another friction law for a starter, which then has plausible values.
     pull : str, optional
@@ -183,6 +183,9 @@ def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable
     columns = columns_of(table, kind)
     if columns:
         lines.append(f'# file = "points.csv"  # instead of lists: columns {", ".join(columns)}, in SI or with units as in (mm/s)')
+    if len(columns) > 2:
+        *others, _ = columns
+        lines.append(f'# along = "{others[-1]}"  # the column that counts, if the file has {" and ".join(others)}')
     return lines + inner
 
 

@@ -20,8 +20,9 @@ from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
+from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import Status
-from stickslip.trajectory.tables import creep_note, creep_table, default_event_rate
+from stickslip.trajectory.tables import creep_note, creep_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,6 +59,8 @@ class Solution(Exports):
     """One line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
     title: str = ""
     """Title of the scenario, which figures show; empty for a problem from Python."""
+    description: str = ""
+    """Description of the scenario; empty for a problem from Python."""
 
     @cached_property
     def events(self) -> pd.DataFrame:

@@ -12,7 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from typing import Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -22,11 +23,15 @@ from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.problem.problem import Problem, check_problem
-from stickslip.problem.run_quantities import DURATION
+from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
+from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
 
 Quantity = Literal["slip", "peak_rate", "duration"]
 QUANTITIES: tuple[Quantity, ...] = ("slip", "peak_rate", "duration")
@@ -55,10 +60,10 @@ class Analogy(Study):
         Tolerance of the ratios in the column `stands`.
     table : pandas.DataFrame
         One row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at the start,
-        and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event slip_ (m),
-        peak_rate_ (m/s), duration_ (s), pulses_, shocks_ and status_, each for slab and block; slip_ratio, peak_rate_ratio and
-        duration_ratio, slab over block; stands, True if the block represents the slab. Values are NaN if there is no event, and
-        the duration also if the event does not end in the run.
+        and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event ``slip_`` (m),
+        ``peak_rate_`` (m/s), ``duration_`` (s), ``pulses_``, ``shocks_`` and ``status_``, each for slab and block; slip_ratio,
+        peak_rate_ratio and duration_ratio, slab over block; stands, True if the block represents the slab. Values are NaN if there
+        is no event, and the duration also if the event does not end in the run.
     """
 
     problem: Problem
@@ -119,8 +124,8 @@ def block_for(problem: Problem) -> Problem:
 
 
 def analogy(
-    problem: Problem,
-    duration: float | str | WithUnit,
+    problem: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None,
     x: Axis,
     y: Axis,
     *,
@@ -132,10 +137,11 @@ def analogy(
 
     Parameters
     ----------
-    problem : Problem
-        Problem whose body is a slab under a rigid driver; everything except the two parameters is fixed.
-    duration : float or str
-        Longest time to wait for the end of the event (s, or a text with a unit).
+    problem : Problem, Scenario, str or Path
+        Problem whose body is a slab under a rigid driver; everything except the two parameters is fixed. Itself, its scenario, the
+        name of a bundled scenario, or a scenario file.
+    duration : float, str or None
+        Longest time to wait for the end of the event (s, or a text with a unit); None takes the duration of the scenario.
     x, y : Axis
         The two parameters and their values.
     rtol : float
@@ -159,12 +165,11 @@ def analogy(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    check_problem("analogy", problem)
-    names = two_parameters(problem, x, y, "analogy")
-    lasts = DURATION.check("analogy", "duration", duration)
+    lasts, given = read_duration_and_problem("analogy", problem, duration)
+    names = two_parameters(given, x, y, "analogy")
     if not 0.0 < within < 1.0:
         raise InputError(f"analogy: within must lie between 0 and 1, got {within!r}")
-    block_for(problem)  # raises InputError if there is no equivalent block
+    block_for(given)  # raises InputError if there is no equivalent block
     rows = []
     with telling(progress, "analogy") as tell:
         for at_y, at_x in product(y.values.tolist(), x.values.tolist()):
@@ -172,7 +177,7 @@ def analogy(
             tell(f"{len(rows)} of {x.points * y.points} points")
     table = pd.DataFrame(rows)
     table = table.assign(**{f"{key}_ratio": table[f"{key}_slab"] / table[f"{key}_block"] for key in QUANTITIES})
-    return Analogy(problem, lasts, x, y, within, table.assign(stands=_stands(table, within)))
+    return Analogy(given, lasts, x, y, within, table.assign(stands=_stands(table, within)))
 
 
 def _point(problem: Problem | None, duration: float, rtol: float) -> dict[str, Any]:

@@ -22,8 +22,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
-from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import default_event_rate
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
@@ -36,7 +35,7 @@ COLUMNS = {
     "slip": ("m", "slip of the largest event"),
     "peak_rate": ("m/s", "largest slip rate of the run"),
     "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
-    "traction_drop": ("load", "traction at rest before the largest event minus traction at rest after it"),
+    "traction_drop": ("load", "traction before the largest event minus traction at rest after it"),
     "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate"),
@@ -216,13 +215,13 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
     n = int(events.slip.to_numpy().argmax())
     largest, history, event_rate = events.iloc[n], solution.history, default_event_rate(problem)
     found = SlipEvents.of(history, event_rate)
-    begin, pulses = found.begin, Pulses.of(history, found, event_rate)
-    before, smallest = extreme_tractions(history, begin, pulses)
+    pulses = Pulses.of(history, found, event_rate)
+    before, smallest = extreme_tractions(history, found, pulses)
     return row | {
         "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "traction_drop": before[n] - history.mode(begin)[n] * largest.traction_after,
+        "traction_drop": history.mode(found.begin)[n] * largest.traction_drop,
         "dynamic_drop": before[n] - smallest[n],
         "duration": events.duration.iloc[0],
     }

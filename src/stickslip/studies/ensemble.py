@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -21,11 +21,16 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
+from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
 from stickslip.studies.disturbances import disturbed, drawn, is_lossy
 from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.trajectory.history import Floats
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
 
 MAX_TOTAL = 2_000_000
 """Default limit on the pieces of history of all runs together."""
@@ -234,8 +239,8 @@ class Ensemble(RunsCompared):
 
 
 def ensemble(
-    problem: Problem,
-    duration: float | str | WithUnit,
+    problem: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None = None,
     members: int = 8,
     size: float = 1e-12,
     rtol: float = 1e-10,
@@ -250,10 +255,10 @@ def ensemble(
 
     Parameters
     ----------
-    problem : Problem
-        Problem to disturb.
-    duration : float or str
-        Duration of each run (s, or a text with a unit).
+    problem : Problem, Scenario, str or Path
+        Problem to disturb: itself, its scenario, the name of a bundled scenario, or a scenario file.
+    duration : float or str, optional
+        Duration of each run (s, or a text with a unit); by default that of the scenario.
     members : int
         Number n of disturbed runs.
     size : float
@@ -292,19 +297,20 @@ def ensemble(
     its strength or beyond, no member is held back. If it starts from rest, another load only shifts the same run in time, see
     `Ensemble.note`.
     """
-    options = RunOptions(duration, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", problem)
-    pushes = drawn(problem, members, size, seed)
+    lasts, given = read_duration_and_problem("ensemble", problem, duration)
+    options = RunOptions(lasts, rtol, max_events=max_events, max_pieces=max_pieces).check("ensemble", given)
+    pushes = drawn(given, members, size, seed)
     rate = check_event_rate(event_rate, "ensemble")
     most = min(MAX_PIECES, MAX_TOTAL // (members + 1)) if max_pieces is None else max_pieces
     options = replace(options, max_pieces=most)
     runs: list[Solution] = []
     with telling(progress, "ensemble") as tell:
         tell("undisturbed")
-        reference = _run(problem, options)
+        reference = _run(given, options)
         try:
             for i, push in enumerate(pushes.tolist()):
                 tell(f"member {i + 1} of {members}")
-                runs.append(_run(disturbed(problem, push), options))
+                runs.append(_run(disturbed(given, push), options))
         except KeyboardInterrupt:
             if not runs:
                 raise

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -21,15 +23,19 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, Series
 from stickslip.problem.problem import Problem
-from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.run.simulate import simulate
+from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import check_massless, kind_of, regularised
 from stickslip.studies.run_distance import Difference, difference, passage
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 from stickslip.trajectory.history import Floats
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
 
 LARGEST_SHARE, FACTOR, COUNT = 30.0, 4.0, 8
 """Default sizes: the largest is the two-way travel time over LARGEST_SHARE; each of COUNT is the one before over FACTOR."""
@@ -172,9 +178,9 @@ class Regularisation(RunsCompared):
         Returns
         -------
         pandas.DataFrame
-            Columns: size (s); the parameter of the kind of regularisation; for each rule mean_, largest_ and end_, the slip
-            difference (m) from its exact solution, and order_, between neighbouring sizes; change, the mean difference (m) from the
-            size before; delay_ of each jump (s); pieces of history; seconds of computing time; status.
+            Columns: size (s); the parameter of the kind of regularisation; for each rule ``mean_``, ``largest_`` and ``end_``,
+            the slip difference (m) from its exact solution, and ``order_``, between neighbouring sizes; change, the mean difference
+            (m) from the size before; ``delay_`` of each jump (s); pieces of history; seconds of computing time; status.
         """
         kind = kind_of(self.by)
         columns: dict[str, object] = {"size": self.sizes}
@@ -210,8 +216,8 @@ def default_sizes(two_way_time: float) -> tuple[float, ...]:
 
 
 def regularise(
-    problem: Problem,
-    duration: float | str | WithUnit,
+    problem: Problem | Scenario | str | Path,
+    duration: float | str | WithUnit | None = None,
     by: str = "contact-mass",
     sizes: Sequence[float | str | WithUnit] | WithUnit | None = None,
     rules: Sequence[str] = SELECTION_RULES,
@@ -224,10 +230,11 @@ def regularise(
 
     Parameters
     ----------
-    problem : Problem
-        Problem with a slab without contact mass and a law without a state.
-    duration : float or str
-        Duration of each run (s, or a text with a unit).
+    problem : Problem, Scenario, str or Path
+        Problem with a slab without contact mass and a law without a state: itself, its scenario, the name of a bundled scenario, or
+        a scenario file.
+    duration : float or str, optional
+        Duration of each run (s, or a text with a unit); by default that of the scenario.
     by : str
         Kind of regularisation: "contact-mass" (Z size), "lag" (LaggedFriction of time `size`) or "direct-effect" (the same with
         direct = variation of mu * size / R).
@@ -256,21 +263,21 @@ def regularise(
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
-    slab = check_massless(problem)
-    lasts = DURATION.check("regularise", "duration", duration)
+    lasts, given = read_duration_and_problem("regularise", problem, duration)
+    slab = check_massless(given)
     times = _checked(default_sizes(slab.two_way_time) if sizes is None else sizes)
-    softened = [regularised(problem, by, size) for size in times.tolist()]
+    softened = [regularised(given, by, size) for size in times.tolist()]
     exact, runs, seconds = {}, [], []
     with telling(progress, "regularise") as tell:
         for rule in _known(rules):
             tell(f"exact answer, {rule}")
-            exact[rule], _ = _run(replace(problem, selection=rule), lasts, rtol, max_pieces)
+            exact[rule], _ = _run(replace(given, selection=rule), lasts, rtol, max_pieces)
         for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):
             tell(f"size {size:.3g} s, {i + 1} of {len(times)}")
             run, spent = _run(one, lasts, rtol, max_pieces)
             runs.append(run)
             seconds.append(spent)
-    return Regularisation(problem, by, times, rtol, exact, tuple(runs), tuple(seconds))
+    return Regularisation(given, by, times, rtol, exact, tuple(runs), tuple(seconds))
 
 
 def _run(problem: Problem, duration: float, rtol: float, max_pieces: int) -> tuple[Solution, float]:

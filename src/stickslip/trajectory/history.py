@@ -110,6 +110,10 @@ class History:
     """Leaps over creep, one per row: round trips before it, round trips in it, and bounds of the errors of slip at its landing
     (m) and of the time at which that slip is reached (s).
     """
+    max_events: int | None = None
+    """Number of slip events after which the run stopped; None if it did not stop because of them. The history reaches beyond the
+    last of them, to the piece from which on it is known what it leaves behind, and another event may begin there.
+    """
 
     def seen_from(self, epoch: Epoch) -> History:
         """Return the same history with its times counted from another epoch."""

@@ -11,6 +11,7 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
+from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
 
 MAXIMA_PER_PIECE = 32
@@ -188,6 +189,11 @@ def walk(history: History, threshold: float, begin: int = 0) -> Turns:
         room *= 2
 
 
+def default_event_rate(problem: Problem) -> float:
+    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
+    return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
+
+
 class SlipEvents(NamedTuple):
     """Slip events in order of time. Their begin, peak and end are places in the history: pieces, and xi in each."""
 
@@ -200,7 +206,21 @@ class SlipEvents(NamedTuple):
 
     @classmethod
     def of(cls, history: History, threshold: float, first: int = 0) -> Self:
-        """Find the maximal intervals with |slip rate| above the threshold (m/s), from piece `first` on."""
+        """Find the maximal intervals with |slip rate| above the threshold (m/s), from piece `first` on.
+
+        If the run stopped after a number of events, what begins after the last of them does not count.
+        """
+        found = cls._all_of(history, threshold, first)
+        if history.max_events is None:
+            return found
+        counted = cls._all_of(history, default_event_rate(history.problem)).some(slice(history.max_events))
+        if not len(counted.pulses):
+            return found
+        last = counted.piece[2, -1] + 0.5 * counted.xi[2, -1]
+        return found.some(slice(int(np.searchsorted(found.piece[0] + 0.5 * found.xi[0], last))))
+
+    @classmethod
+    def _all_of(cls, history: History, threshold: float, first: int = 0) -> Self:
         piece, xi, rate, kind = walk(history, threshold, first)
         begin = np.flatnonzero(kind == 1)
         past = np.append(begin, len(kind))[1:]

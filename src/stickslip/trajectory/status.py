@@ -68,7 +68,7 @@ STATUSES = {
     ),
     FULL_HISTORY: Status(
         "too many pieces",
-        "the history reached its limit of pieces (a million takes 0.44 GB): shorten the duration, loosen rtol or creep_rtol, keep"
+        "the history reached its limit of pieces (a million takes 0.42 GB): shorten the duration, loosen rtol or creep_rtol, keep"
         " events only (a catalogue), or raise max_pieces",
         False,
     ),

@@ -28,7 +28,10 @@ EVENT_COLUMNS = {
     "peak_rate": ("m s-1", "largest |v|"),
     "peak_time": ("s", "time of the largest |v|"),
     "peak_after": ("s", "peak_time - start, without the rounding of either"),
-    "traction_before": ("load", "friction just before"),
+    "traction_before": (
+        "load",
+        "what friction had reached when it gave way: at rest before, or just before |v| passes the threshold",
+    ),
     "traction_after": ("load", "friction at rest after"),
     "traction_drop": ("load", "traction_before - traction_after"),
     "static_drop": ("load", "stiffness (G/h, or K) times slip"),
@@ -54,17 +57,12 @@ CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 """Names of the causes of shocks, by their code in the history; code 0 is no shock."""
 
 
-def default_event_rate(problem: Problem) -> float:
-    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
-    return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
-
-
 def event_columns(history: History, events: SlipEvents) -> Columns:
     """Return the columns of EVENT_COLUMNS, with one row per event."""
     begin, peak, end = events.begin, events.peak, events.end
     row, offset = history.placed(begin)
     lasts, slip = history.lasting(begin, end), np.abs(history.slipped_within(begin, end))
-    before, after = friction_before(history, begin), friction_after(history, events)
+    before, after = friction_before(history, events), friction_after(history, events)
     since = np.full(len(row), np.nan)
     since[1:] = np.diff(row) * history.round_trip_time + np.diff(offset)
     return {
@@ -88,8 +86,28 @@ def event_columns(history: History, events: SlipEvents) -> Columns:
     }
 
 
-def friction_before(history: History, begin: Positions) -> Floats:
-    """Return the traction minus the reference strength just before events begin (left limit)."""
+def friction_before(history: History, events: SlipEvents) -> Floats:
+    """Return the traction minus the reference strength before events: what friction had reached when it gave way.
+
+    This is friction just before the slip rate passes the threshold, or at rest before the slip in which the event begins,
+    whichever resists that slip more. A block, or a contact with mass, moves for a while before its slip rate counts as an event,
+    and friction that falls at once has its sliding value by then. Rest counts only if it ends after the event before. Where slip
+    reverses its direction without rest, the traction at rest is the load.
+    """
+    begin = events.begin
+    reached = _friction_at(history, begin)
+    if not history.problem.friction.sticks:
+        return reached
+    mode = history.store.mode
+    begins = np.append(True, (np.diff(mode) != 0) | history.rests[:-1])[: len(mode)]
+    first = np.maximum.accumulate(np.where(begins, np.arange(len(mode)), 0))[begin.piece]
+    at_rest = history.excess(history.just_before(first))
+    is_new = first > np.append(-1, events.piece[2])[: len(first)]
+    return np.where(is_new & (history.mode(begin) * (at_rest - reached) > 0.0), at_rest, reached)
+
+
+def _friction_at(history: History, begin: Positions) -> Floats:
+    """Return the traction minus the reference strength where events begin (left limit)."""
     at_once = begin.xi == 0.0
     friction = np.empty(len(at_once))
     friction[at_once] = history.friction(history.just_before(begin.piece[at_once]))

@@ -141,29 +141,67 @@ def friction_in(run: Run, piece: int, xi: float) -> float:
 
 
 @kernel
-def friction_before(run: Run, piece: int, excess: float) -> float:
-    """Return friction minus the reference strength (Pa or N) just before a piece starts.
+def friction_before(run: Run, piece: int, xi: float, excess: float) -> float:
+    """Return friction minus the reference strength (Pa or N) before the first event, as in `tables.friction_before`.
 
-    Before the first piece the contact is at rest under the initial `excess`. After round trips at rest that were not recorded, the
-    load follows from the piece whose echo holds there, and from the ramp.
+    The event begins at a place; the contact is under the initial `excess` before the run.
+    """
+    history = run.history
+    reached = friction_just_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
+    if run.counts.sticks == 0:
+        return reached
+    first, mode = piece, history[piece].mode
+    while first > 0 and history[first - 1].mode == mode and not rests_before(history, run.params.round_trip_time, first):
+        first -= 1
+    at_rest = load_just_before(run, first, excess)
+    return at_rest if mode * (at_rest - reached) > 0.0 else reached
+
+
+@kernel
+def friction_just_before(run: Run, piece: int, excess: float) -> float:
+    """Return friction minus the reference strength (Pa or N) just before a piece starts; `excess` before the first one."""
+    if piece == 0:
+        return excess
+    last, xi, trips = place_just_before(run, piece)
+    return friction_in(run, last, xi) if trips == 0 else load_just_before(run, piece, excess)
+
+
+@kernel
+def load_just_before(run: Run, piece: int, excess: float) -> float:
+    """Return the load minus the reference strength (Pa or N) just before a piece starts; `excess` before the first one.
+
+    After round trips at rest that were not recorded, the load follows from the piece whose echo holds there, and from the ramp.
     """
     if piece == 0:
         return excess
-    history, round_trip_time, last = run.history, run.params.round_trip_time, piece - 1
-    if not time_between(history, round_trip_time, (last, 1.0), (piece, 0.0)) > ROUNDING * round_trip_time:
-        return friction_in(run, last, 1.0)
+    last, xi, trips = place_just_before(run, piece)
+    load = evaluate(run.history[last].load, xi)
+    if trips == 0:
+        return load
+    load += trips * run.params.ramp
+    return load if run.counts.is_block == 1 else load - 2.0 * run.params.impedance * evaluate(run.history[last].rate, xi)
+
+
+@kernel
+def place_just_before(run: Run, piece: int) -> tuple[int, float, int]:
+    """Return the piece and xi whose load, or its echo, holds just before a piece starts, and the round trips at rest since then."""
+    history, last = run.history, piece - 1
+    if not rests_before(history, run.params.round_trip_time, piece):
+        return last, 1.0, 0
     row, phase = history[piece].trip, history[piece].phase_from
     if phase == 0.0:
-        row, phase = row - 1, round_trip_time
+        row, phase = row - 1, run.params.round_trip_time
     while last >= 0 and not (history[last].phase_from < phase <= history[last].phase_to):
         last -= 1
     if last < 0:
-        return friction_in(run, piece - 1, 1.0)
-    xi, trips = place_of(history, last, phase - history[last].phase_from), row - history[last].trip
-    if trips == 0:
-        return friction_in(run, last, xi)
-    load = evaluate(history[last].load, xi) + trips * run.params.ramp
-    return load if run.counts.is_block == 1 else load - 2.0 * run.params.impedance * evaluate(history[last].rate, xi)
+        return piece - 1, 1.0, 0
+    return last, place_of(history, last, phase - history[last].phase_from), row - history[last].trip
+
+
+@kernel
+def rests_before(history: HistoryPiece, round_trip_time: float, piece: int) -> bool:
+    """Return True if the contact rests, unrecorded, between the previous piece and this one, which is not the first."""
+    return time_between(history, round_trip_time, (piece - 1, 1.0), (piece, 0.0)) > ROUNDING * round_trip_time
 
 
 @kernel
@@ -239,8 +277,7 @@ def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
         out.first_end = time_at(history, round_trip_time, last, last_xi)
         out.first_duration = time_between(history, round_trip_time, (piece, xi), (last, last_xi))
     out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
-    before = friction_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
-    out.first_traction_drop = before - friction_after(run, last, last_xi)
+    out.first_traction_drop = friction_before(run, piece, xi, excess) - friction_after(run, last, last_xi)
 
 
 @kernel

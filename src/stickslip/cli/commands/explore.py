@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -16,6 +17,7 @@ FIRST = "fig6-slab"
 ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
 ALLOW_ORIGIN = "Host (NAME or NAME:PORT) under which the page may be reached as well, as behind a proxy; may be repeated."
 PORT = "Port to listen on; 0 for any that is free. Not given: the first free one from 5018 on."
+STATIC = "Write the guided tour into this new folder, as files that need neither Python nor a network, and end."
 NO_BROWSER = "Do not open a browser; the address is printed."
 
 
@@ -27,6 +29,7 @@ def explore(
     allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
     sessions: Annotated[int, typer.Option(help="Largest number of pages open at once.", min=1, rich_help_panel=SERVER)] = 8,
     no_browser: Annotated[bool, typer.Option("--no-browser", help=NO_BROWSER, rich_help_panel=SERVER)] = False,
+    static: Annotated[Path | None, option(STATIC, metavar="<folder>")] = None,
 ) -> None:
     r"""Open a page in the browser on which a scenario answers while its numbers are moved.
 
@@ -38,6 +41,7 @@ def explore(
       stickslip explore
       stickslip explore fig6-slab
       stickslip explore mine.toml --no-browser --port 5018
+      stickslip explore --static tour
 
     Needs the extra `explorer`: pip install "stickslip[explorer]".
 
@@ -47,6 +51,9 @@ def explore(
     from stickslip.explorer.extra import check_extra
 
     check_extra("explore")
+    if static is not None:
+        _write(static, scenario)
+        return
     loaded = load(scenario or FIRST)
     from stickslip.explorer.model.setting import Setting
     from stickslip.explorer.server.serve import Place
@@ -54,3 +61,16 @@ def explore(
 
     place = Place(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
     start(Setting.of(loaded), place, browser=not no_browser, say=typer.echo)
+
+
+def _write(folder: Path, scenario: str | None) -> None:
+    """Write the tour into a folder and say how large it is. Raises InputError."""
+    from stickslip.explorer.static.export import write_tour
+    from stickslip.foundation.errors import InputError
+    from stickslip.run.progress_line import progress_line
+
+    if scenario is not None:
+        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave SCENARIO away")
+    with progress_line("explore:") as report:
+        written = write_tour(folder, report)
+    typer.echo(written)

@@ -39,7 +39,7 @@ SHORTEST_EVENT = (
     "only where a round trip has more than 4096 pieces. 0 resolves them all."
 )
 MAX_PIECES = (
-    "Largest number of pieces of history (0.44 kB each); the history is written whatever ended the run. Not given: a million, and "
+    "Largest number of pieces of history (0.42 kB each); the history is written whatever ended the run. Not given: a million, and "
     "a run that needs more is not written."
 )
 OUT = "Save the whole solution (netCDF, .nc), with a checkpoint every 30 s."

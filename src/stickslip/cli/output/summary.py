@@ -17,6 +17,7 @@ from stickslip.scenarios.scenario import read_scenario
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
     from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
@@ -32,13 +33,13 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary of a run on standard output."""
-    from stickslip.trajectory.slip_events import SlipEvents
-    from stickslip.trajectory.tables import default_event_rate, event_columns, shock_columns
+    from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
+    from stickslip.trajectory.tables import event_columns, shock_columns
 
     screen, load, history = titled(scenario), scenario.problem.load_unit, solution.history
     _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
     say(screen, f"selection rule {solution.selection_note}\n")
-    _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), load)
+    _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
     _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", load, load))
     notes = (solution.trapped_note, solution.horizon_note, solution.rounding_note)
     for what, note in zip(("trapped energy", "predictability", "rounding"), notes, strict=True):
@@ -67,13 +68,19 @@ def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any]) -
         say(screen, clean(f"selection rule {about['selection_rule']}"))
         say(screen, *(clean(str(about[note])) for note in ("lumping", "rounding") if about.get(note)))
     screen.print()
-    known = "scenario" in about
-    _print_events(screen, table, read_scenario(str(about["scenario"]), name).problem.load_unit if known else "Pa or N")
+    _print_events(screen, table, read_scenario(str(about["scenario"]), name).problem if "scenario" in about else None)
 
 
-def _print_events(screen: Console, events: Mapping[Any, Any], load: str) -> None:
-    shown = ["start", "duration", "peak_after", "slip", "peak_rate", "traction_drop", "static_drop", "pulses"]
-    _print(screen, "slip event", {name: events[name] for name in shown}, ("s", "s", "s", "m", "m/s", load, load, ""))
+def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem | None) -> None:
+    """Print the slip events of a problem, or of one that is not known.
+
+    Stiffness times slip is left out where the driver has a finite impedance: the load does not fall by that much.
+    """
+    load = "Pa or N" if problem is None else problem.load_unit
+    units = {"start": "s", "duration": "s", "peak_after": "s", "slip": "m", "peak_rate": "m/s", "traction_drop": load}
+    units |= {"static_drop": load} if problem is None or math.isinf(problem.body.driver_impedance) else {}
+    units["pulses"] = ""
+    _print(screen, "slip event", {name: events[name] for name in units}, list(units.values()))
 
 
 def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lumping: str) -> None:

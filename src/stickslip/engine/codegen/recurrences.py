@@ -9,11 +9,9 @@ from their differential equations, such as (exp a)' = a' exp a, order by order.
 from __future__ import annotations
 
 from stickslip.engine.codegen.guards import guards_of
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT, in_denominators_only
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
-LARGEST_EXPONENT = 150.0
-"""Largest exponent, dimensionless, of an exp that occurs in denominators only; larger ones are replaced by it. A quotient over
-e^150 is negligible, and the square and the series of e^150 are still finite."""
 NO_LIMIT = 1e308
 """Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""
 FRESH = 4
@@ -52,27 +50,6 @@ def _vanishes(node: Expression) -> bool:
     if node.operation == "mul":
         return any(_vanishes(argument) for argument in node.arguments)
     return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
-
-
-def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
-    """Return the nodes whose every way into the formula leads through sums, differences and products to a denominator."""
-    parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
-    for node in nodes:
-        for argument in node.arguments:
-            parents[argument].append(node)
-    below: set[Expression] = set()
-    for node in reversed(nodes):
-        ways = parents[node]
-        if ways and all(
-            _divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul")) for parent in ways
-        ):
-            below.add(node)
-    return below
-
-
-def _divides(node: Expression, parent: Expression) -> bool:
-    """Return True if a node is the denominator, and not also the numerator, of its parent."""
-    return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
 
 
 class Recurrences:

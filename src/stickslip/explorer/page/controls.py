@@ -100,7 +100,8 @@ def _row(control: Control) -> Row:
     letter, index = symbol_of(control)
     row: Row = {
         "path": control.path, "kind": control.kind, "text": control.shown, "rare": control.rare, "help": control.meaning,
-        "label": "" if control.label in GREEK else control.label, "letter": letter, "index": index, "empty": control.empty,
+        "label": "" if control.label in (*GREEK, letter) else control.label, "letter": letter, "index": index,
+        "empty": control.empty,
         "options": [{"value": choice, "label": choice.replace("-", " ")} for choice in control.choices],
         "unit": spelled(control.unit),
     }  # fmt: skip

@@ -39,20 +39,23 @@ class Panels:
             for name in self.plots
         }
         self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
-        explorer.listen("answer", self.show)
+        for news in ("answer", "pin"):
+            explorer.listen(news, self.show)
         explorer.listen("cursor", self._move)
         self.show()
 
     def show(self) -> None:
         """Show the answer of the explorer, if it has one."""
-        if self._explorer.answer is None:
+        answer, pinned = self._explorer.answer, self._explorer.pinned
+        if answer is None:
             return
-        view = view_of(self._explorer.answer)
+        view = view_of(answer, pinned[1] if pinned else None)
         with pn.io.hold():
             self.stage.show(view)
             for name, pane in self.headings.items():
                 pane.object = heading(view.titles.get(name, TITLES[name]), view.keys.get(name, ()))
             self.player.facts = view.facts
+        pn.io.push_notebook(*self.plots.values())  # nothing happens where there is a server
 
     def _move(self) -> None:
         if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile

@@ -43,7 +43,7 @@ class Tour:
     def __init__(self, explorer: Explorer) -> None:
         self._explorer = explorer
         self.card = TourCard(self.show, step=explorer.tour, sizing_mode="stretch_width", margin=0)
-        self.button = pn.widgets.Button(label="Tour", margin=0)
+        self.button = pn.widgets.Button(label="Tour", margin=0, stylesheets=[asset("button.css")])
         self.button.on_click(lambda _: self.show(0 if explorer.tour else 1))
         explorer.listen("tour", self._update)
 

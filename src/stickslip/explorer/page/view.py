@@ -73,6 +73,11 @@ class Units:
     """The units of an answer, chosen once for all panels that show the same quantity: name and size in SI."""
 
     time: tuple[str, float]
+    near: tuple[str, float]
+    """That of the time in the panels of slab and energy, which show only one event of a long run."""
+    begin: float
+    """Where that time begins (s); 0 if these panels show the whole run."""
+    whole: bool
     slip: tuple[str, float]
     rate: tuple[str, float]
     stress: tuple[str, float]
@@ -80,8 +85,13 @@ class Units:
     offset: float
     """What is taken off traction and load against time, because they hardly change (Pa or N); 0 usually."""
     load: tuple[str, float]
-    """That of the load on the contact's curve."""
+    on_curve: tuple[str, float]
+    """Those of load and slip rate on the contact's curve."""
     place: tuple[str, float]
+
+    def nearby(self, seconds: Any) -> Any:
+        """Return times (s) on the axis of the panels of slab and energy."""
+        return (np.asarray(seconds, float) - self.begin) / self.near[1]
 
 
 def axis_label(name: str, symbol: str, unit: str) -> str:

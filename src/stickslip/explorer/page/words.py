@@ -7,6 +7,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.explorer import Explorer
 
@@ -42,10 +43,10 @@ class Words:
     def show(self) -> None:
         """Show the words of the explorer as it is now."""
         explorer, answer = self._explorer, self._explorer.answer
-        self.view.texts = {
-            "sentence": answer.sentence if answer else FIRST,
-            "regime": answer.regime if answer else "",
-            "notes": list(answer.notes) if answer else [],
-            "fault": explorer.fault,
-            "progress": explorer.progress,
-        }
+        told = words_of(answer) if answer else {"sentence": FIRST, "regime": "", "notes": []}
+        self.view.texts = told | {"fault": explorer.fault, "progress": explorer.progress}
+
+
+def words_of(answer: Answer) -> dict[str, Any]:
+    """Return what is said of an answer: the sentence, the word for the regime, and the notes."""
+    return {"sentence": answer.sentence, "regime": answer.regime, "notes": list(answer.notes)}

@@ -139,6 +139,8 @@ class ThreadDesk:
             pass
 
     def _show(self, outcome: Call, shown: threading.Event) -> None:
+        with self._changed:
+            self._news = None  # what is still under way to the page is of the work that is finished now
         try:
             if not self._closed:
                 outcome()

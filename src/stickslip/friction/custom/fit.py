@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import html_table, text_table, with_uncertainty
 from stickslip.friction.custom.fit_parameters import Leaf, leaves, numbers_of, rebuilt, slopes, template
 from stickslip.friction.custom.fit_search import WHOLE, Model, search
 from stickslip.friction.custom.fit_statistics import Spread, misses_trend
-from stickslip.friction.custom.fit_text import html_of, text_of, with_uncertainty
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.law import FrictionLaw
 
@@ -107,10 +107,10 @@ class Fit:
         return [*found, ("residual", f"{self.residual:.3g}", "standard deviation of the points about the law")]
 
     def __repr__(self) -> str:
-        return text_of(self.title, self.rows, self.notes)
+        return text_table(self.title, self.rows, self.notes)
 
     def _repr_html_(self) -> str:
-        return html_of(self.title, self.rows, self.notes)
+        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
 
 
 def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed: Mapping[str, Any] | None = None) -> Fit:
@@ -121,8 +121,9 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     points : Points, str, Path, DataFrame or mapping
         The points; `Points.read` says what is understood.
     law : str, FrictionLaw or class
-        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by + or *, one of a law of slip and one of a law
-        of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no hint.
+        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by "+" or "*", one of a law of slip and one of
+        a law of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no
+        hint.
     start : mapping, optional
         Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
     fixed : mapping, optional

@@ -49,6 +49,8 @@ def FromFunction(
 def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
     """Make a friction law from a Python function of slip u, of slip rate v, or of both, with named parameters.
 
+    Call it, or write it over the function::
+
         law = ss.friction.FromFunction(my_function, mu_s=0.8, mu_d=0.3)
 
         @ss.friction.FromFunction

@@ -15,7 +15,7 @@ from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import COLUMNS, Table, header_of, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.piecewise import PiecewiseLaw
+from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
 Floats = NDArray[np.float64]
 Along = Literal["slip", "slip_rate"]
@@ -26,6 +26,10 @@ LARGEST_FILE = 100_000_000
 MOST_POINTS = 1_000_000
 """Largest number of measured points; a fit to that many takes minutes."""
 ALONG: tuple[Along, ...] = ("slip", "slip_rate")
+STRESSES = ("shear_stress", "normal_stress")
+"""Columns whose ratio is friction, where no column holds friction itself."""
+WANTED = (*ALONG, "friction", *STRESSES)
+"""The columns that are looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +62,10 @@ class Points:
         Parameters
         ----------
         source : str, Path, DataFrame or mapping
-            A CSV file, or columns of numbers by their headings: `friction` with `slip`, `slip_rate` or both. A heading may carry a
-            unit, as in "v (mm/s)"; without one numbers are in SI. `u`, `v`, `mu` and some full names are understood, and other
-            columns are ignored. Points, and a law given by points, are taken as they are.
+            A CSV file, or columns of numbers by their headings: `friction` with `slip`, `slip_rate` or both. `shear_stress` and
+            `normal_stress` may take the place of friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are
+            in SI. `u`, `v`, `mu`, `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before
+            the headings are passed over. Points, and a law given by points, are taken as they are.
 
         Returns
         -------
@@ -76,6 +81,7 @@ class Points:
             return source
         table = _table_in(source)
         columns = table.columns
+        note_percent(columns["friction"], table.place)
         return cls(columns["friction"], columns.get("slip"), columns.get("slip_rate"), table.place)
 
     @property
@@ -134,18 +140,19 @@ class Points:
         return {name: np.asarray(x) for name, x in named.items() if x is not None} | {"friction": self.friction}
 
 
-def read_table(source: Any) -> tuple[Along, Floats, Floats]:
+def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Floats]:
     """Return points that are to be joined exactly: the variable, its ascending values and the friction coefficients.
 
-    Raises InputError as `Points.read` does, for points with slip and slip rate, and for those that do not ascend.
+    `along` names the variable where the source has both. Raises InputError as `Points.read` does, for points with slip and slip
+    rate, and for those that do not ascend.
     """
     if isinstance(source, Points):
-        points = source.along()
+        points = source.along(along)
         columns = {points.has[0]: points.places, "friction": points.friction}
         table = Table(columns, points.name, np.arange(len(points)), "point")
     else:
         table = _table_in(source)
-    return _joined(table)
+    return _joined(table, along)
 
 
 def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
@@ -153,10 +160,13 @@ def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
     return _joined(_from_text(text, name))
 
 
-def _joined(table: Table) -> tuple[Along, Floats, Floats]:
-    found = [name for name in ALONG if name in table.columns]
+def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
+    found = [name for name in ALONG if name in table.columns and along in (None, name)]
+    if along is not None and not found:
+        hint = nearest(str(along), [name for name in ALONG if name in table.columns])
+        raise InputError(f"{table.place}: the points have no {shown(along)} to go along; {hint}")
     if len(found) != 1:
-        raise InputError(f'{table.place}: slip and slip_rate are both there: a table takes one, Points.read(...).along("slip")')
+        raise InputError(f'{table.place}: slip and slip_rate are both there: choose one with along="slip" or along="slip_rate"')
     table.check_ascending(found[0])
     return found[0], table.columns[found[0]], table.columns["friction"]
 
@@ -167,7 +177,7 @@ def _table_in(source: Any) -> Table:
         places, friction = source.points
         source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return _complete(read_mapping(source, (*ALONG, "friction"), "points"), "points", [str(heading) for heading in source])
+        return _complete(read_mapping(source, WANTED, "points"), "points", [str(heading) for heading in source])
     if not isinstance(source, str | os.PathLike):
         wanted = "a CSV file, a DataFrame, or a mapping of headings to numbers"
         raise InputError(f"points must be {wanted}, got {shown(source)}")
@@ -190,13 +200,16 @@ def _from_file(path: Path) -> Table:
 
 
 def _from_text(text: str, name: str) -> Table:
-    number, header = header_of(text, name)
-    return _complete(read_text(text, (*ALONG, "friction"), name, MOST_POINTS), f"{name}, line {number}", header)
+    number, header = header_of(text, name, WANTED)
+    return _complete(read_text(text, WANTED, name, MOST_POINTS), f"{name}, line {number}", header)
 
 
 def _complete(table: Table, place: str, header: list[str]) -> Table:
     """Return a table if it has all that points need. Raises InputError, beginning with `place`, if not."""
     found = table.columns
+    shear, normal = (found.pop(name, None) for name in STRESSES)
+    if "friction" not in found and shear is not None and normal is not None:
+        found["friction"] = _ratio(shear, normal, table)
     if "friction" not in found:
         raise InputError(f"{place}: no column 'friction'; {missing(header, 'friction')}")
     if not set(ALONG) & set(found):
@@ -206,3 +219,11 @@ def _complete(table: Table, place: str, header: list[str]) -> Table:
     for numbers in found.values():
         numbers.flags.writeable = False
     return table
+
+
+def _ratio(shear: Floats, normal: Floats, table: Table) -> Floats:
+    """Return friction from shear and normal stress. Raises InputError for a shear stress below 0 and a normal stress that is 0."""
+    for i in np.flatnonzero((normal == 0.0) | (shear < 0.0))[:1].tolist():
+        what = "normal_stress must be above 0" if normal[i] == 0.0 else "shear_stress must not be negative"
+        raise InputError(f"{table.at(i)}: {what}, got {(normal if normal[i] == 0.0 else shear)[i]:g}")
+    return np.asarray(shear / normal)

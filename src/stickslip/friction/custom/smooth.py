@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import is_number, shown
 from stickslip.foundation.errors import InputError, InputWarning, nearest
-from stickslip.friction.custom.fit_text import html_of, text_of
+from stickslip.foundation.formatting import html_table, text_table
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.custom.penalised_spline import Basis
 from stickslip.friction.custom.table import FromTable
@@ -113,10 +113,10 @@ class Smooth:
         return found
 
     def __repr__(self) -> str:
-        return text_of(self.title, self.rows, self.notes)
+        return text_table(self.title, self.rows, self.notes)
 
     def _repr_html_(self) -> str:
-        return html_of(self.title, self.rows, self.notes)
+        return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
 
 
 @dataclass(frozen=True)

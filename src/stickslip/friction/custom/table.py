@@ -23,7 +23,8 @@ class FromTable(RemembersSlip, PiecewiseLaw):
     """mu through measured points of slip or of slip rate: monotone cubic between them, constant outside (no extrapolation).
 
     Give the points as a CSV file, a DataFrame or `Points`, as in `FromTable("data.csv")`, with what `Points.read` understands. Or
-    give either `slip` or `rate`, with as many points as `friction`. Slips must not be negative where the path is counted.
+    give either `slip` or `rate`, with as many points as `friction`. `along` names the column, slip or slip_rate, that counts
+    where a source has both. Slips must not be negative where the path is counted.
 
     The cubic passes through the points without overshoot. Its slope is continuous between the first and the last point. Through
     noisy points it turns at almost every one of them, and an `InputWarning` says so: see `smooth` and `fit`.
@@ -49,13 +50,16 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         friction: Iterable[Any] | None = None,
         slip: Iterable[Any] | None = None,
         rate: Iterable[Any] | None = None,
+        along: Literal["slip", "slip_rate"] | None = None,
         counts: Literal["net", "path"] = "path",
         memory: Literal["all", "since-arrest"] = "all",
     ) -> None:
         if source is not None:
             if not (friction is slip is rate is None):
                 raise InputError("FromTable: give a source of points or lists of numbers, not both")
-            slip, rate, friction = _read(source)
+            slip, rate, friction = _read(source, along)
+        elif along is not None:
+            raise InputError("FromTable: along chooses a column of a source: lists are given as slip or as rate")
         elif friction is None:
             raise InputError("FromTable: friction is missing: give a file, a DataFrame, or friction with slip or rate")
         given = {"friction": friction, "slip": slip, "rate": rate, "counts": counts, "memory": memory}
@@ -92,10 +96,10 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         return np.column_stack((values[:-1], left, second, third))
 
 
-def _read(source: Any) -> tuple[Any, Any, Any]:
+def _read(source: Any, along: str | None) -> tuple[Any, Any, Any]:
     """Return slips or None, slip rates or None, and friction coefficients of a source of points. Raises InputError."""
     try:
-        variable, places, friction = read_table(source)
+        variable, places, friction = read_table(source, along)
     except InputError as error:
         raise InputError(f"FromTable: {error}") from None
     return (places, None, friction) if variable == "slip" else (None, places, friction)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT, in_denominators_only
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
 
 Array = NDArray[np.float64]
@@ -43,15 +44,26 @@ def difference(
     """
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
+    nodes = nodes_of(tree)
+    limited = {node for node in in_denominators_only(nodes) if node.operation == "exp"}
     with np.errstate(divide="ignore", over="ignore"):
-        for node in nodes_of(tree):
-            if node.arguments:
+        for node in nodes:
+            if node in limited:
+                found[node] = _exp(_at_most(found[node.arguments[0]], LARGEST_EXPONENT))
+            elif node.arguments:
                 found[node] = _RULES[node.operation](*(found[argument] for argument in node.arguments))
             elif node not in found:
                 number = parameters[node.name] if node.operation == "parameter" else node.value
                 found[node] = _Node(number, 0.0, number, 0.0)
     result = found[tree]
     return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
+
+
+def _at_most(a: _Node, largest: float) -> _Node:
+    """Return the node of min(a, largest)."""
+    start, end = np.minimum(a.reference, largest), np.minimum(a.value, largest)
+    within = (np.asarray(a.reference) <= largest) & (np.asarray(a.value) <= largest)
+    return _Node(start, np.where(within, a.step, end - start), end, np.where(np.asarray(a.value) <= largest, a.slope, 0.0))
 
 
 def _add(a: _Node, b: _Node) -> _Node:

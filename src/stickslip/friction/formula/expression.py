@@ -108,7 +108,7 @@ class Expression:
         if ufunc.__name__ in _KINKED:
             raise InputError(f"formula: np.{ufunc.__name__} has a kink or a jump and cannot be traced; {_instead(*inputs)}")
         if rule is None or method != "__call__" or options:
-            allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *_EXTRA))
+            allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *COMPOSED))
             raise InputError(f"formula: np.{ufunc.__name__} cannot be traced; allowed: {allowed} and + - * / **")
         if any(isinstance(value, np.ndarray) and value.ndim for value in inputs):
             raise InputError("formula: an array cannot be traced: u and v are single numbers")
@@ -189,7 +189,7 @@ def _function(name: str) -> Callable[[Any], Any]:
 sin, cos, exp, log, sqrt, tanh, arcsinh = (_function(name) for name in FUNCTIONS)
 
 
-_EXTRA: dict[str, Callable[..., Any]] = {
+COMPOSED: dict[str, Callable[..., Any]] = {
     "square": lambda x: x * x,
     "reciprocal": lambda x: 1.0 / x,
     "log1p": lambda x: log(1.0 + x),
@@ -201,7 +201,7 @@ _EXTRA: dict[str, Callable[..., Any]] = {
     "cosh": lambda x: 0.5 * (exp(x) + exp(-x)),
     "sinh": lambda x: 0.5 * (exp(x) - exp(-x)),
 }
-"""Further functions of numpy, expressed by those in FUNCTIONS."""
+"""Further functions, named as in numpy, that are expressed by those in FUNCTIONS."""
 
 OPERATIONS: dict[str, Callable[..., Any]] = {
     "add": lambda a, b: a + b,
@@ -216,7 +216,7 @@ _KINKED = ("maximum", "minimum", "fmax", "fmin", "sign", "heaviside", "floor", "
 
 _UFUNCS: dict[str, Callable[..., Any]] = (
     {name: OPERATIONS[name] for name in FUNCTIONS}
-    | _EXTRA
+    | COMPOSED
     | {
         "add": lambda a, b: as_expression(a) + b,
         "subtract": lambda a, b: as_expression(a) - b,

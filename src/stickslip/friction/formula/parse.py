@@ -1,8 +1,8 @@
 """Read a formula tree from text, by a whitelist over Python's syntax tree; no text is ever evaluated.
 
 Allowed are numbers, the variables u (slip, m) and v (slip rate, m/s), pi, declared parameters, + - * /, ** with an exponent that
-does not depend on u or v, and the functions of `stickslip.friction.formula.expression`. Length, depth and size are limited because
-the text is untrusted.
+does not depend on u or v, and the functions in FUNCTIONS and COMPOSED of `stickslip.friction.formula.expression`. Length, depth and
+size are limited because the text is untrusted.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from functools import lru_cache
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.formula.expression import (
+    COMPOSED,
     FUNCTIONS,
     OPERATIONS,
     RATE,
@@ -150,22 +151,22 @@ class _Reader:
             raise InputError(f"the exponent of {self.part(node)} must be within {LARGEST_EXPONENT:g}")
 
     def call(self, node: ast.Call, depth: int) -> Expression:
-        if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *KINKED):
+        if isinstance(node.func, ast.Attribute) and node.func.attr in (*FUNCTIONS, *COMPOSED, *KINKED):
             raise InputError(f"{self.part(node.func)} is written {node.func.attr}, without the name of a library")
         if not isinstance(node.func, ast.Name):
             raise InputError(f"{self.part(node)} is not allowed; {ALLOWED}")
         name = node.func.id
         if name in KINKED:
             raise InputError(f"the function {self.part(node.func)} has a kink or a jump; {KINKS}")
-        if name not in FUNCTIONS:
-            raise InputError(f"the function {self.part(node.func)} is unknown; {nearest(name, FUNCTIONS)}")
+        if name not in FUNCTIONS and name not in COMPOSED:
+            raise InputError(f"the function {self.part(node.func)} is unknown; {nearest(name, [*FUNCTIONS, *COMPOSED])}")
         if len(node.args) != 1 or node.keywords or isinstance(node.args[0], ast.Starred):
             raise InputError(f"{self.part(node)}: {name} takes one number")
         return self.made(node, name, self.read(node.args[0], depth + 1))
 
     def made(self, node: ast.expr, operation: str, *arguments: Expression) -> Expression:
         try:
-            result: Expression = OPERATIONS[operation](*arguments)
+            result: Expression = (OPERATIONS | COMPOSED)[operation](*arguments)
         except InputError:
             raise InputError(f"too many operations with powers written out as products, at {self.part(node)}") from None
         return result

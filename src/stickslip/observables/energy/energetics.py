@@ -40,7 +40,7 @@ ENERGETICS_COLUMNS = {
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
     "static_drop": EVENT_COLUMNS["static_drop"],
-    "dynamic_drop": ("load", "traction at rest before the slip less the smallest one while it slips"),
+    "dynamic_drop": ("load", "traction_before less the smallest traction while it slips"),
     "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
@@ -69,7 +69,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
     pulses = Pulses.of(history, events, threshold)
     columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
-    before, smallest = extreme_tractions(history, begin, pulses)
+    before, smallest = extreme_tractions(history, events, pulses)
     columns["dynamic_drop"] = before - smallest
     table = pd.DataFrame(columns | _ratios(history, columns))
     return table[list(ENERGETICS_COLUMNS)]
@@ -101,26 +101,11 @@ def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, F
     return {"kinetic": moving, "radiated": nothing, "trapped_before": nothing}
 
 
-def extreme_tractions(history: History, begin: Positions, pulses: Pulses) -> tuple[Floats, Floats]:
-    """Return two tractions against the slip of each event (Pa, block: N): at rest before it, and the smallest of its pulses."""
-    smallest = np.full(len(begin.piece), np.inf)
+def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> tuple[Floats, Floats]:
+    """Return two tractions against the slip of each event (Pa, block: N): before it, and the smallest of its pulses."""
+    smallest = np.full(len(events.pulses), np.inf)
     np.minimum.at(smallest, pulses.event, pulses.smallest_traction(history))
-    return history.mode(begin) * (history.problem.strength + friction_at_rest_before(history, begin)), smallest
-
-
-def friction_at_rest_before(history: History, begin: Positions) -> Floats:
-    """Return the traction minus the reference strength at rest before the slip in which each event begins.
-
-    This is the load, also if the contact does not rest but only reverses its direction. A block, or a contact with mass, moves
-    for a while before its slip rate counts as an event, and friction that falls at once has its sliding value by then; so the
-    traction is taken before the slip, not before the event. For a law that never sticks it is the traction just before the event.
-    """
-    if not history.problem.friction.sticks:
-        return friction_before(history, begin)
-    mode = history.store.mode
-    begins = np.append(True, (np.diff(mode) != 0) | history.rests[:-1])
-    first = np.maximum.accumulate(np.where(begins, np.arange(len(mode)), 0))
-    return history.excess(history.just_before(first[begin.piece]))
+    return history.mode(events.begin) * (history.problem.strength + friction_before(history, events)), smallest
 
 
 def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:

@@ -53,7 +53,7 @@ class Pulses(NamedTuple):
     def of(cls, history: History, events: SlipEvents, threshold: float) -> Pulses:
         """Find the pulses of the slip events above a threshold (m/s)."""
         piece, xi, rate, kind = walk(history, threshold)
-        starts = np.append(np.flatnonzero(kind == 1), len(kind))
+        starts = np.append(np.flatnonzero(kind == 1), len(kind))[: len(events.pulses) + 1]
         places = [_starts(rate, begin, past) for begin, past in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)]
         event = np.repeat(np.arange(len(places)), [len(found) for found in places])
         first = np.concatenate([*places, np.empty(0, np.intp)]).astype(np.intp)

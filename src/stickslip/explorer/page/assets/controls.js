@@ -22,13 +22,23 @@ class Controls {
   }
 
   /** Show groups of rows: they are made anew only if other rows are needed, so that the focus stays where it is. */
-  update(groups, faults) {
+  update(groups) {
     this.heard();
     const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range, rare }) => [path, kind, options, unit, !range, rare])]));
     if (form !== this.drawn) this.make(groups);
     this.drawn = form;
     for (const { rows } of groups) for (const row of rows) this.fill(row);
-    for (const [path, parts] of this.rows) this.blame(parts, faults[path] ?? "");
+  }
+
+  /** Say what is wrong beside the rows that are; what was entered there stays. */
+  blame(faults) {
+    for (const [path, { field, fault, line }] of this.rows) {
+      const text = faults[path] ?? "";
+      field.setAttribute("aria-invalid", String(Boolean(text)));
+      if (fault.textContent === text) continue;
+      fault.textContent = text;
+      if (text) line.scrollIntoView({ block: "nearest" });
+    }
   }
 
   make(groups) {
@@ -52,7 +62,7 @@ class Controls {
 
   makeRow(row) {
     const line = document.createElement("div"), id = `control-${row.path.replace(/\W/g, "-")}`;
-    line.className = `row ${row.kind}`;
+    line.className = `row ${row.kind}${row.path === "scenario" ? " wide" : ""}`;
     line.innerHTML = `<label for="${id}"></label><span class="entry"></span><p class="fault" id="${id}-fault" role="alert"></p>`;
     line.querySelector("label").append(...nameOf(row));
     if (row.help) line.querySelector("label").title = row.help;
@@ -89,7 +99,7 @@ class Controls {
       this.later({ path: parts.row.path, value });
     });
     parts.slider = slider;
-    parts.line.insertBefore(slider, parts.fault);
+    parts.line.append(slider);
   }
 
   /** Send the latest value of a slider that moves, at most one a frame, and the next one only when the last one has been heard. */
@@ -121,11 +131,6 @@ class Controls {
     if (active === parts.slider && parts.slider) return; // it is being moved: what it says is newer
     if (active !== parts.field || parts.field.value !== row.text) parts.field.value = row.text;
   }
-
-  blame(parts, fault) {
-    if (parts.fault.textContent !== fault) parts.fault.textContent = fault;
-    parts.field.setAttribute("aria-invalid", String(Boolean(fault)));
-  }
 }
 
 /** The name of a row: words, and the symbol in italics with its index. */
@@ -153,9 +158,10 @@ function fillChoices(select, options) {
 export function render({ model }) {
   const root = document.createElement("div");
   const controls = new Controls(root, (message) => model.send_msg(message));
-  const update = () => controls.update(model.groups, model.faults);
-  model.on(["groups", "faults"], update);
-  update();
+  model.on("groups", () => controls.update(model.groups));
+  model.on("faults", () => controls.blame(model.faults));
+  controls.update(model.groups);
+  controls.blame(model.faults);
   return root;
 }
 

@@ -35,12 +35,18 @@ class Models {
   set(name, changes) { this.get(name)?.setv(changes, { sync: false }); }
 }
 
-const TIME_PLOTS = ["slip", "rate", "traction", "field", "energy"];
+const TIME_PLOTS = ["slip", "rate", "traction"], NEAR_PLOTS = ["field", "energy"];
 const COLUMNS_DRAWN = 11, ROWS_DRAWN = 20;
+
+/** Time t on the axis of the panels of slab and energy, which show one event of a long run; and back. */
+function nearOf(facts, t) { return facts.near ? (t * facts.time.size - facts.near.begin) / facts.near.size : t; }
+function fromNear(facts, x) { return facts.near ? (facts.near.begin + x * facts.near.size) / facts.time.size : x; }
 
 /** Bring the cursor of all panels to time t (in the unit shown); return the values there. */
 function showMoment(models, facts, t) {
+  const near = nearOf(facts, t);
   for (const name of TIME_PLOTS) models.set(`cursor:${name}`, { location: t });
+  for (const name of NEAR_PLOTS) models.set(`cursor:${name}`, { location: near });
   const times = models.column("motion", "time"), values = {};
   for (const name of ["slip", "rate", "traction", "load", "drive"]) {
     const column = models.column("motion", name);
@@ -49,7 +55,7 @@ function showMoment(models, facts, t) {
   models.put("now", { time: [t], slip: [values.slip], rate: [values.rate], traction: [values.traction] });
   showLaw(models, t);
   showContact(models, facts, t);
-  if (facts.shape?.kind === "slab") showSlab(models, facts, t);
+  if (facts.shape?.kind === "slab") showSlab(models, facts, near);
   else if (facts.shape) showBlock(models, facts, values);
   return values;
 }
@@ -99,7 +105,7 @@ function showSlab(models, facts, t) {
   models.put("body", { x: [], y: [] });
   const end = first + (COLUMNS_DRAWN - 1) * step, top = u[rows - 1];
   models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [1.08 * height, 1.08 * height]] });
-  models.put("texts", { x: [first + top + 0.6, 0.97 * width - bar], y: [1.04 * height, 1.05 * height], text: ["driver", text] });
+  models.put("texts", { x: [first + top + 1.5, 0.97 * width - bar], y: [1.04 * height, 1.05 * height], text: ["driver", text] });
   models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [-0.02 * height] });
 }
 

@@ -7,6 +7,8 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 
 const icon = (path) => `<svg viewBox="0 0 16 16" width="1em" height="1em" fill="currentColor" aria-hidden="true"><path d="${path}"/></svg>`;
 const PLAY = icon("M4 2.5v11l9-5.5z"), PAUSE = icon("M4 2.5h3v11H4zM9 2.5h3v11H9z"), TO_START = icon("M3 2.5h2v11H3zM13 2.5v11L5.5 8z");
+const LENS = "M6.5 1.5a5 5 0 1 0 3 9l3.7 3.7 1.1-1.1-3.7-3.7a5 5 0 0 0-4.1-7.9zm0 1.6a3.4 3.4 0 1 1 0 6.8 3.4 3.4 0 0 1 0-6.8z";
+const ZOOM_IN = icon(`${LENS}M5.8 4.6h1.4v1.2h1.2v1.4H7.2v1.2H5.8V7.2H4.6V5.8h1.2z`), ZOOM_OUT = icon(`${LENS}M4.6 5.8h3.8v1.4H4.6z`);
 
 const BAR = `
   <div class="bar" role="group" aria-label="Time">
@@ -20,6 +22,8 @@ const BAR = `
       <div class="marks" role="toolbar" aria-label="Marks: pulses, arrest and jumps"></div>
       <input class="time" type="range" min="0" max="1000" step="any" value="0" aria-label="Time of the cursor">
     </div>
+    <button class="in" type="button" aria-label="Show less time, around the cursor" title="Show less time, around the cursor (+)">${ZOOM_IN}</button>
+    <button class="out" type="button" aria-label="Show more time" title="Show more time (−; 0 shows all)" disabled>${ZOOM_OUT}</button>
     <output class="values" aria-live="off"></output>
   </div>`;
 
@@ -34,6 +38,8 @@ class Player {
     this.root = root; this.button = find(".play"); this.slider = find(".time"); this.clock = find(".clock");
     this.values = find(".values"); this.marks = find(".marks"); this.speed = find("select");
     this.button.addEventListener("click", () => this.toggle());
+    find(".in").addEventListener("click", () => this.zoom(0.5));
+    find(".out").addEventListener("click", () => this.zoom(2));
     find(".start").addEventListener("click", () => this.go(this.start, true));
     this.slider.addEventListener("input", () => { this.pause(); this.go(this.fromShare(this.slider.value / 1000)); });
     this.slider.addEventListener("change", () => this.report());
@@ -51,8 +57,10 @@ class Player {
   update(facts) {
     this.facts = facts;
     this.showPanels();
+    this.root.querySelector(".out").disabled = true; // a new answer is shown whole
     this.showMarks();
-    this.go(this.t === null ? this.start : Math.min(Math.max(this.t, this.start), this.end));
+    this.t = this.t === null ? this.start : Math.min(Math.max(this.t, this.start), this.end);
+    this.draw(); // at once: what is drawn next must not hold the old moment in the new axes
   }
 
   /** Bring the cursor to a time in seconds. */
@@ -110,8 +118,9 @@ class Player {
   }
 
   showMarks() {
-    const marks = this.facts.marks ?? [], span = this.end - this.start || 1;
-    this.marks.replaceChildren(...together(marks, 0.005 * span).map((mark, i) => {
+    const span = this.end - this.start || 1;
+    const marks = (this.facts.marks ?? []).filter(({ time }) => time >= this.start && time <= this.end);
+    this.marks.replaceChildren(...together(marks, 0.018 * span).map((mark, i) => {
       const button = document.createElement("button"), text = mark.text;
       button.type = "button"; button.className = mark.kind; button.textContent = GLYPHS[mark.kind] ?? "│";
       button.title = text; button.setAttribute("aria-label", text); button.tabIndex = i ? -1 : 0;
@@ -138,18 +147,45 @@ class Player {
 
   /** Dragging or clicking in a panel with an axis of time moves the cursor. */
   holdPlots() {
-    for (const name of TIME_PLOTS) {
-      const plot = this.models.get(`plot:${name}`);
-      for (const kind of ["tap", "panstart", "pan"]) plot?.on_event(kind, (event) => { this.pause(); this.go(event.x); });
-      plot?.on_event("panend", () => this.report());
+    for (const place of document.querySelectorAll("[data-panel] > .plot")) {
+      const texts = (this.models.get(`plot:${place.parentElement.dataset.panel}`)?.tags ?? []).map((tag) => tag?.text).filter(Boolean);
+      place.setAttribute("role", "img");
+      place.setAttribute("aria-label", texts.join("; "));
     }
+    for (const name of [...TIME_PLOTS, ...NEAR_PLOTS]) {
+      const plot = this.models.get(`plot:${name}`), time = (x) => (NEAR_PLOTS.includes(name) ? fromNear(this.facts, x) : x);
+      for (const kind of ["tap", "panstart", "pan"]) plot?.on_event(kind, (event) => { this.pause(); this.go(time(event.x)); });
+      plot?.on_event("panend", () => this.report());
+      plot?.on_event("doubletap", () => (NEAR_PLOTS.includes(name) && !this.facts.near?.whole ? this.showNear() : this.zoom(Infinity)));
+    }
+  }
+
+  /** Show a share of the time that is shown now, around the cursor; at most the whole run. */
+  zoom(factor) {
+    const { from, to } = this.facts.time ?? {};
+    if (from === undefined) return;
+    const span = Math.min((this.end - this.start) * factor, to - from), share = (this.t - this.start) / (this.end - this.start || 1);
+    const start = Math.min(Math.max(this.t - share * span, from), to - span);
+    this.showTimes(start, start + span);
+  }
+
+  /** Show in all panels the time that those of slab and energy show. */
+  showNear() { this.showTimes(fromNear(this.facts, this.facts.near.from), fromNear(this.facts, this.facts.near.to)); }
+
+  showTimes(start, end) {
+    const { from, to } = this.facts.time;
+    this.models.set("range:time", { start, end });
+    if (this.facts.near?.whole) this.models.set("range:near", { start, end });
+    this.showMarks();
+    this.draw();
+    this.root.querySelector(".out").disabled = end - start >= (to - from) * 0.999999;
   }
 
   key(event, onSlider = false) {
     const step = (event.shiftKey ? 0.05 : 0.005) * (this.end - this.start);
     const acts = {
       ArrowRight: () => this.go(this.t + step, true), ArrowLeft: () => this.go(this.t - step, true),
-      Home: () => this.go(this.start, true), End: () => this.go(this.end, true), " ": () => this.toggle(),
+      Home: () => this.go(this.start, true), End: () => this.go(this.end, true), " ": () => this.toggle(), "+": () => this.zoom(0.5), "-": () => this.zoom(2), 0: () => this.zoom(Infinity),
     };
     const act = acts[event.key];
     if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -189,14 +225,14 @@ class Player {
   }
 }
 
-/** Marks at almost the same time are one button, which says what all of them are. */
+/** Marks at almost the same time are one button, which says what all of them are and goes to the first of the most telling kind. */
 function together(marks, near) {
   const found = [];
   for (const mark of marks) {
     const last = found.at(-1);
     if (last && mark.time - last.time <= near) {
       last.text += `; ${mark.text}`;
-      if (RANKS.indexOf(mark.kind) < RANKS.indexOf(last.kind)) last.kind = mark.kind;
+      if (RANKS.indexOf(mark.kind) < RANKS.indexOf(last.kind)) Object.assign(last, { kind: mark.kind, time: mark.time });
     } else found.push({ ...mark });
   }
   return found;

@@ -6,6 +6,7 @@ from typing import Any
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.panels import contact, energy, field, law, motion, shape
+from stickslip.explorer.page.panels.pinned import add_pinned
 from stickslip.explorer.page.panels.units import units_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import View
@@ -15,11 +16,12 @@ __all__ = ["plots", "view_of"]
 PANELS = (law, contact, motion, field, energy, shape)
 
 
-def view_of(answer: Answer) -> View:
-    """Return all that the panels show of an answer."""
-    units, view = units_of(answer), View()
+def view_of(answer: Answer, kept: Answer | None = None) -> View:
+    """Return all that the panels show of an answer, with the run that is kept beside it."""
+    units, view = units_of(answer, kept), View()
     for panel in PANELS:
         view.add(panel.data_of(answer, units))
+    add_pinned(view, kept, answer, units)
     view.facts["hidden"] = sorted(view.hidden)
     return view
 

@@ -29,7 +29,7 @@ def data_of(answer: Answer, units: Units) -> View:
     if contact is None:
         hidden = {name: dict(empty) for name in sources} | {"jumps": {"x0": [], "y0": [], "x1": [], "y1": []}}
         return View(columns=hidden, hidden={"contact"}, facts={"contact": None})
-    metre, pascal = units.rate[1], units.load[1]
+    metre, pascal = units.on_curve[1], units.load[1]
     columns: dict[str, Columns] = {kind: _part(contact, number, metre, pascal) for number, kind in KINDS.items()}
     columns["stick"] = {"rate": [0.0, 0.0], "load": [0.0, contact.strength / pascal]}
     folds, jumps = np.reshape(contact.folds, (-1, 2)), np.reshape(contact.jumps, (-1, 4))
@@ -50,7 +50,7 @@ def data_of(answer: Answer, units: Units) -> View:
             "contact_load": limits(contact.load / pascal, path["load"], columns["stick"]["load"][1]),
         },
         labels={
-            "axis:contact_rate@contact": axis_label("slip rate", "v", units.rate[0]),
+            "axis:contact_rate@contact": axis_label("slip rate", "v", units.on_curve[0]),
             "axis:contact_load@contact": axis_label(name, "β", units.load[0]),
         },
         keys={"contact": tuple(keys)},
@@ -74,6 +74,8 @@ def plot(stage: Stage) -> Any:
         dash = "dashed" if kind == "unstable" else "solid"
         line = drawn.line("rate", "load", source=stage.source(kind, "rate", "load"), line_width=3, line_dash=dash)
         paint(line.glyph, line_color=kind)
+    pinned = drawn.line("rate", "load", source=stage.source("pinned_contact", "rate", "load"), line_width=2, line_alpha=0.8)
+    paint(pinned.glyph, line_color="pin")
     path = stage.source("path", "time", "rate", "load")
     paint(drawn.line("rate", "load", source=path, line_width=2.2).glyph, line_color="path")
     head = paint(NormalHead(size=7, line_alpha=0.0), fill_color="muted")

@@ -23,7 +23,7 @@ def data_of(answer: Answer, units: Units) -> View:
     energy = answer.energy
     drawn = [name for name in PARTS if name in energy.parts and np.any(energy.parts[name])]
     top = np.zeros(energy.time.size)
-    edges: Columns = {"time": energy.time / units.time[1], "base": top}
+    edges: Columns = {"time": units.nearby(energy.time), "base": top}
     for name in PARTS:
         top = top + energy.parts[name] if name in drawn else top
         edges[name] = top
@@ -31,18 +31,25 @@ def data_of(answer: Answer, units: Units) -> View:
     unit, size = unit_of(energy.unit, total, top)
     columns = {name: values if name == "time" else values / size for name, values in edges.items()} | {"total": total / size}
     keys = tuple(Key(NAMES.get(name, name), name, "area") for name in reversed(drawn))
+    if units.whole:
+        span = answer.motions[0].time[[0, -1]] / units.time[1]
+        ends, clock = (float(span[0]), float(span[1])), "time"
+    else:
+        ends = (float(edges["time"][0]), float(edges["time"][-1]))
+        clock = f"time since t = {units.begin / units.time[1]:.6g} {units.time[0]}"
     return View(
         columns={"energy": columns},
-        limits={"energy": limits(columns["total"], columns[PARTS[-1]], floor=0.0)},
-        labels={"axis:time@energy": axis_label("time", "t", units.time[0])},
+        limits={"near": ends, "energy": limits(columns["total"], columns[PARTS[-1]], floor=0.0)},
+        labels={"axis:near@energy": axis_label(clock, "t" if units.whole else "", units.near[0])},
         titles={"energy": axis_label("Energy", "", unit)},
+        facts={"near": {"size": units.near[1], "begin": units.begin, "whole": units.whole, "from": ends[0], "to": ends[1]}},
         keys={"energy": (*keys, Key("total", "ink", "dash"))},
     )
 
 
 def plot(stage: Stage) -> Any:
     """Return the plot of the stacked energies."""
-    drawn = stage.plot("energy", "time", "energy", TEXT, left=NARROW)
+    drawn = stage.plot("energy", "near", "energy", TEXT, left=NARROW)
     source = stage.source("energy", "time", "base", *PARTS, "total")
     for below, name in zip(("base", *PARTS), PARTS, strict=False):
         paint(drawn.varea("time", below, name, source=source, fill_alpha=0.75).glyph, fill_color=name)

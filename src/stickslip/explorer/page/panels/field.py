@@ -23,7 +23,7 @@ def data_of(answer: Answer, units: Units) -> View:
         return View(
             columns={"field": dict(EMPTY), "fronts": {"time": [], "place": []}}, hidden={"field"}, facts={"field": None}
         )  # fmt: skip
-    time, place = slab.time / units.time[1], slab.place / units.place[1]
+    time, place = units.nearby(slab.time), slab.place / units.place[1]
     step, height = (float(np.mean(np.diff(one))) if one.size > 1 else 1.0 for one in (time, place))
     name, size = unit_of("m/s", slab.velocity)
     velocity = single(slab.velocity.T / size)
@@ -35,7 +35,7 @@ def data_of(answer: Answer, units: Units) -> View:
         columns={
             "field": image | shape,
             "fronts": {
-                "time": [front[:, 0] / units.time[1] for front in slab.fronts],
+                "time": [units.nearby(front[:, 0]) for front in slab.fronts],
                 "place": [front[:, 1] / units.place[1] for front in slab.fronts],
             },
         },
@@ -49,7 +49,7 @@ def data_of(answer: Answer, units: Units) -> View:
 
 def plot(stage: Stage) -> Any:
     """Return the plot of velocity over time and place."""
-    drawn = stage.plot("field", "time", "place", TEXT, left=NARROW, bare=True)
+    drawn = stage.plot("field", "near", "place", TEXT, left=NARROW, bare=True)
     drawn.image("velocity", "x", "y", "dw", "dh", source=stage.source("field", *EMPTY), color_mapper=stage.signed, level="image")
     fronts = drawn.multi_line("time", "place", source=stage.source("fronts", "time", "place"), line_width=1)
     paint(fronts.glyph, line_color="front")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import CustomJSTickFormatter, LinearAxis
 
-from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.look import paint
 from stickslip.explorer.page.stage import Stage, dress
 from stickslip.explorer.page.view import Key, Units, View, axis_label, limits
@@ -24,17 +24,9 @@ return "10" + [...String(Math.round(tick))].map((one) => (one === "-" ? "⁻" : 
 def data_of(answer: Answer, units: Units) -> View:
     """Return the curve, the visited part of it as a band, and the texts of the axes."""
     law = answer.law
-    name, symbol, unit = ("slip", "u", units.slip) if law.along == "slip" else ("slip rate", "v", units.rate)
-    if not np.abs(law.x).max() < 1e4 * unit[1]:  # the curve can reach much further than the run
-        unit = unit_of("m" if law.along == "slip" else "m/s", law.x)
-    if law.log:
-        unit = ("m" if law.along == "slip" else "m/s", 1.0)
-
-    def place(values: Any) -> Any:
-        shown = np.asarray(values, float) / unit[1]
-        return np.log10(np.maximum(np.abs(shown), 1e-300)) if law.log else shown
-
-    x, (low, high) = place(law.x), place(law.visited)
+    name, symbol = ("slip", "u") if law.along == "slip" else ("slip rate", "v")
+    unit = unit_along(law, units)
+    x, (low, high) = place(law, law.x, unit), place(law, law.visited, unit)
     least, most = float(np.nanmin(x)), float(np.nanmax(x))
     inside = (x >= low) & (x <= high)
     ends = [np.interp(end, x, law.coefficient) for end in (low, high)]
@@ -42,14 +34,30 @@ def data_of(answer: Answer, units: Units) -> View:
     label = axis_label(name, symbol, unit[0])
     main = answer.motions[0]
     along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
-    now = {"law_x": np.clip(place(along), least, most), "law_y": main.traction / answer.scenario.problem.body.normal_load}
+    now = {
+        "law_x": np.clip(place(law, along, unit), least, most),
+        "law_y": main.traction / answer.scenario.problem.body.normal_load,
+    }
     return View(
         columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "motion": now},
         limits={"law_x": (least, most), "law_y": limits(law.coefficient)},
         labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction coefficient μ"},
-        keys={"law": (Key("law", "grey"), Key("visited by the run", "law"))},
+        keys={"law": (Key("law", "ink"), Key("visited by the run", "law"))},
         hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
     )
+
+
+def unit_along(law: LawPicture, units: Units) -> tuple[str, float]:
+    """Return the unit of the horizontal axis: that of the run, SI for powers of ten."""
+    si, own = ("m", units.slip) if law.along == "slip" else ("m/s", units.rate)
+    fits = 0.05 <= np.abs(law.x).max() / own[1] < 1e4  # the curve can reach much further than the run
+    return (si, 1.0) if law.log else own if fits else unit_of(si, law.x)
+
+
+def place(law: LawPicture, values: Any, unit: tuple[str, float]) -> Any:
+    """Return where values (SI) lie on the horizontal axis."""
+    shown = np.asarray(values, float) / unit[1]
+    return np.log10(np.maximum(np.abs(shown), 1e-300)) if law.log else shown
 
 
 def plot(stage: Stage) -> Any:
@@ -60,7 +68,9 @@ def plot(stage: Stage) -> Any:
     dress(powers)
     drawn.add_layout(powers, "below")
     stage.note("axis:law_powers", powers)
-    paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="grey")
+    pinned = drawn.line("x", "y", source=stage.source("pinned_law", "x", "y"), line_width=2, line_alpha=0.8)
+    paint(pinned.glyph, line_color="pin")
+    paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="ink")
     paint(drawn.line("x", "y", source=stage.source("visited", "x", "y"), line_width=3.2, line_cap="round").glyph, line_color="law")
     dot = drawn.scatter("x", "y", source=stage.source("now_law", "x", "y"), size=9, level="overlay")
     paint(dot.glyph, fill_color="cursor", line_color="card")

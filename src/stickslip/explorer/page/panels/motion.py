@@ -14,6 +14,8 @@ from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, 
 from stickslip.figures.style import CURVES, FORCES
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
+MANY = 30
+"""More marks than this are not drawn as lines in the panels."""
 SYMBOLS = {"slip": "u", "rate": "v", "traction": "τ"}
 
 
@@ -21,11 +23,11 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return the curves of both bodies, and the times of the marks."""
     main = answer.motions[0]
     others = answer.motions[1:2]
-    drawn = [_columns(motion, units) for motion in (main, *others)]
+    drawn = [columns_of(motion, units) for motion in (main, *others)]
     columns = {"motion": drawn[0], "companion": drawn[1] if others else {name: [] for name in drawn[0]}}
     if others and not share_loads(main, others[0]):
         columns["companion"] |= {name: np.full(others[0].time.size, np.nan) for name in ("traction", "load")}
-    columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks]}
+    columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks] if len(answer.marks) <= MANY else []}
     if main.body == "block":
         # The end of the spring that is pulled, from the law of the spring.
         stiffness = answer.scenario.problem.body.stiffness
@@ -60,7 +62,7 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         keys=keys,
         facts={
-            "time": {"unit": units.time[0], "size": units.time[1]},
+            "time": {"unit": units.time[0], "size": units.time[1], "from": float(time[0][0]), "to": float(time[0][-1])},
             "read": [
                 {"column": column, "symbol": SYMBOLS[column], "unit": unit, "offset": bool(units.offset and column == "traction")}
                 for column, unit in (("slip", units.slip[0]), ("rate", units.rate[0]), ("traction", units.stress[0]))
@@ -70,7 +72,8 @@ def data_of(answer: Answer, units: Units) -> View:
     )
 
 
-def _columns(motion: Motion, units: Units) -> Columns:
+def columns_of(motion: Motion, units: Units) -> Columns:
+    """Return the curves of one body in the units shown."""
     return {
         "time": motion.time / units.time[1],
         "slip": motion.slip / units.slip[1],
@@ -89,6 +92,8 @@ def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     drawn = stage.plot(name, "time", name, TEXTS[name], left=NARROW, bare=bare)
     columns = ("time", "slip", "rate", "traction", "load")
     main, other = stage.source("motion", *columns), stage.source("companion", *columns)
+    pinned = drawn.line("time", name, source=stage.source("pinned", *columns), line_width=2, line_alpha=0.8)
+    paint(pinned.glyph, line_color="pin")
     marks = drawn.vspan(x="time", source=stage.source("marks", "time"), line_width=1, line_dash="dotted")
     paint(marks.glyph, line_color="faint")
     if name == "traction":

@@ -14,6 +14,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.look import FONT, paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Key, Units, View, axis_label, round_step
+from stickslip.figures.style import unit_of
 
 TEXT = "Shape of the body at the time of the cursor: displacements, drawn many times larger"
 WIDTH = 10.0
@@ -25,9 +26,9 @@ REACH = 0.3
 def data_of(answer: Answer, units: Units) -> View:
     """Return how much displacements are enlarged, and the length of the bar that shows their scale."""
     slab, slip = answer.slab, answer.motions[0].slip
-    shown = np.asarray(slab.displacement if slab is not None else slip - slip[0]) / units.slip[1]
-    largest = float(np.abs(shown).max()) or 1.0
-    scale, bar = REACH * WIDTH / largest, round_step(largest)
+    largest = float(np.abs(slab.displacement if slab is not None else slip - slip[0]).max()) or 1.0
+    unit, size = unit_of("m", largest)
+    scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
     keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else []
     height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
     return View(
@@ -38,7 +39,8 @@ def data_of(answer: Answer, units: Units) -> View:
         facts={
             "shape": {
                 "kind": "slab" if slab is not None else "block",
-                "scale": scale, "bar": bar * scale, "width": WIDTH, "height": height, "text": f"{bar:g} {units.slip[0]}",
+                "scale": scale, "bar": bar * size / units.slip[1] * scale, "width": WIDTH, "height": height,
+                "text": f"{bar:g} {unit}",
             }
         },
     )  # fmt: skip

@@ -8,23 +8,32 @@ from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.page.view import Units
 from stickslip.figures.style import nearly_flat, unit_of
 
+WHOLE = 0.2
+"""The panels of slab and energy share the axis of time of the others if they show at least this share of the run."""
 
-def units_of(answer: Answer) -> Units:
-    """Return the units of an answer: panels that show the same quantity share the unit."""
-    motions, contact, slab = answer.motions, answer.contact, answer.slab
-    main = motions[0]
+
+def units_of(answer: Answer, kept: Answer | None = None) -> Units:
+    """Return the units of an answer, and of the run that is kept beside it: panels that show the same quantity share the unit."""
+    contact, slab, main = answer.contact, answer.slab, answer.motions[0]
+    motions = (*answer.motions, *(kept.motions[:1] if kept else ()))
     same = [motion for motion in motions if share_loads(main, motion)]
     stresses = [curve for motion in same for curve in (motion.traction, motion.load)]
     offset = float(main.traction[0]) if nearly_flat(*stresses) else 0.0
     slips = [motion.slip for motion in motions]
     rates = [motion.slip_rate for motion in motions]
+    span, window = np.ptp(main.time), np.ptp(answer.energy.time)
+    whole = window >= WHOLE * span
     return Units(
-        time=unit_of("s", np.ptp(main.time)),
+        time=unit_of("s", span),
+        near=unit_of("s", span if whole else window),
+        begin=0.0 if whole else float(answer.energy.time[0]),
+        whole=bool(whole),
         slip=unit_of("m", *slips),
         rate=unit_of("m/s", *rates),
         stress=unit_of(main.load_unit, *(curve - offset for curve in stresses)),
         offset=offset,
         load=unit_of(main.load_unit, contact.load if contact else main.load),
+        on_curve=unit_of("m/s", main.slip_rate, contact.path_rate if contact else 0.0),
         place=unit_of("m", slab.place if slab else 1.0),
     )
 

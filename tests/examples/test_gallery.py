@@ -1,0 +1,220 @@
+"""Every script of examples/ is run, and what it computes is compared with closed forms and with the numbers of the paper."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib import pyplot
+from matplotlib.figure import Figure
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
+TRIP = 2 * 10e3 / 3500
+"""Two-way travel time of the paper's slab (s)."""
+
+Names = dict[str, Any]
+CHECKS: dict[str, Callable[[Names], None]] = {}
+
+
+def check(function: Callable[[Names], None]) -> Callable[[Names], None]:
+    CHECKS[function.__name__] = function
+    return function
+
+
+def close(value: Any, expected: Any, rtol: float = 1e-9) -> None:
+    np.testing.assert_allclose(value, expected, rtol=rtol, atol=0.0)
+
+
+@check
+def first_event(names: Names) -> None:
+    event = names["run"].events.iloc[0]
+    close([event.end, event.slip, event.peak_rate], [TRIP, 23.4402332474, 4.10204081633])
+
+
+@check
+def block_and_slab(names: Names) -> None:
+    table = names["both"].table
+    close(table.slip, [0.273505101, 0.376105283], 2e-9)
+    assert table.pulses.tolist() == [1, 3]
+    assert table.shocks.tolist() == [0, 2]
+
+
+@check
+def scenario_with_other_numbers(names: Names) -> None:
+    """The last driver has 1/4 of the slab's impedance: each round trip changes the load by 0.6 times the wave that left."""
+    run = names["run"]
+    rates = [float(run.slip_rate((k + 0.5) * TRIP)) for k in range(4)]
+    law, slab = run.problem.friction, run.problem.body
+    load = run.problem.strength + 1e3
+    far = (2 * slab.impedance / (slab.impedance + slab.driver_impedance)) * load
+    for rate in rates:
+        close(slab.impedance * rate + slab.normal_stress * float(law.coefficient(0.0, rate)), load, 1e-8)
+        load = 0.6 * (2 * slab.impedance * rate - load) + far
+
+
+@check
+def is_it_unique(names: Names) -> None:
+    ratio = math.sqrt(1.0 / 0.196)
+    close(names["contact"].critical_value, 0.196, 1e-12)
+    close([names["fold"].rate, names["fold"].load], [ratio - 1, 30e6 + 9.8e6 * (2 * ratio - 1)])
+
+
+@check
+def four_selection_rules(names: Names) -> None:
+    assert list(names["waits"]) == ["perfect-delay", "minimal", "maxwell", "maximal"]
+    close(list(names["waits"].values()), [468.80466, 468.80466, 394.25768, 378.2617], 1e-6)
+
+
+@check
+def own_selection_rule(names: Names) -> None:
+    """The rule jumps where the load is halfway between the folds, both ways: by Z times the change of the rate."""
+    shocks, middle = names["run"].shocks, 0.5 * (80e6 + 64471887.2424)
+    close(names["run"].load(shocks.time), [middle, middle])
+
+
+@check
+def own_friction_law(names: Names) -> None:
+    u, v = 2e-6, 0.1
+    close(names["law"].coefficient(u, v), 0.6 + 0.2 * math.exp(-u / 9e-6) + 0.5 * v, 1e-14)
+    run = names["run"]
+    residual = run.load(2e-4) - run.traction(2e-4) - run.problem.body.impedance * run.slip_rate(2e-4)
+    assert abs(residual) < 1e-9 * run.problem.strength
+
+
+@check
+def measured_friction(names: Names) -> None:
+    assert abs(names["peaks"]["true law"] - 4.10204081633) < 1e-8
+    for name in ("fitted", "smoothed"):
+        assert abs(names["peaks"][name] - 4.102) < 0.15, name
+
+
+@check
+def pulses_and_echoes(names: Names) -> None:
+    starts = names["pulses"].start
+    close(starts.iloc[2] - starts.iloc[1], names["period"], 1e-4)
+    close(names["pulses"].slip.iloc[1], 2 * math.pi / 50, 1e-3)
+
+
+@check
+def figure_for_teaching(names: Names) -> None:
+    for (time, place), (rate, stress) in zip(names["places"].values(), ((0, 80e6), (30e6 / 9.8e6, 50e6), (0, 20e6)), strict=True):
+        at = names["run"].field(place, time)
+        assert abs(at.velocity - rate) < 1e-8
+        assert abs(at.stress - stress) < 10.0
+
+
+@check
+def energy_of_an_event(names: Names) -> None:
+    assert abs(names["event"].balance) < 1e-9 * names["event"].heat
+    close(names["run"].pulses().fracture.iloc[1], 100e6 * 0.5 * math.pi / 50, 1e-6)
+
+
+@check
+def earthquake_cycles(names: Names) -> None:
+    assert len(names["table"]) == 214
+    close(names["gaps"], names["wait"], 1e-6)  # the threshold of an event leaves out the slowest slip
+
+
+@check
+def velocity_steps(names: Names) -> None:
+    close(names["measured"], 0.003 * math.log(10), 2e-3)
+
+
+@check
+def tides(names: Names) -> None:
+    assert len(names["hours"]) == 7
+    assert names["hours"].between(0.3, 1.6).all()
+
+
+@check
+def triggered_by_a_wave(names: Names) -> None:
+    close(names["run"].events.duration, [1.0, 1.0], 1e-9)
+    assert names["run"].events.slip.round(4).tolist() == [0.0754, 0.0705]
+
+
+@check
+def map_of_pulses(names: Names) -> None:
+    assert (int(names["found"].pulses.min()), int(names["found"].pulses.max())) == (2, 12)
+    assert ((names["product"] > names["critical"]) == (names["regimes"].irregular == 1)).all()
+
+
+@check
+def sweep_on_a_cluster(names: Names) -> None:
+    assert (names["found"].slip == names["here"].slip).all()
+    assert ((names["found"].events == 1) == (names["found"]["friction.alpha"] > 0.196)).all()
+
+
+@check
+def seismograms(names: Names) -> None:
+    """What passes a station is what the contact did x/c earlier, and the steady shear of the start, V x/h."""
+    run, times = names["run"], np.array([0.5, 1.0, 1.5])
+    for place in names["stations"][:2]:
+        shear = run.problem.pull_rate * place / 10e3
+        close(run.field(place, times + place / 3500).velocity, run.slip_rate(times) + shear, 1e-10)
+
+
+@check
+def bowed_string(names: Names) -> None:
+    close(names["starts"].mean(), 1 / 146.8, 1e-3)
+
+
+@check
+def kolsky_bar(names: Names) -> None:
+    close(names["event"].peak_rate, (68e6 - 25e6) / 8.7e6, 1e-4)
+
+
+@pytest.fixture(autouse=True)
+def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.chdir(tmp_path)
+    mpl.use("agg")
+    yield
+    pyplot.close("all")
+
+
+def name_of(path: Path) -> str:
+    return path.stem.partition("_")[2]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=name_of)
+def test_example_computes_what_its_check_says_and_draws_a_figure(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    names, figures = run_by_blocks(path)
+    assert figures, "an example has a picture in the gallery"
+    assert not any(figure.stale for figure in figures), "the gallery takes a figure at the end of the block that makes it"
+    assert list(Path().iterdir()) == [], "an example leaves no files"
+    assert capsys.readouterr().out, "an example says something"
+    CHECKS[name_of(path)](names)
+
+
+def run_by_blocks(path: Path) -> tuple[Names, list[Figure]]:
+    """Run the blocks between lines `# %%` as the gallery does: at the end of each it draws the figures, and closes them."""
+    names: Names = {"__name__": "__main__"}
+    figures = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for block in path.read_text(encoding="utf-8").split("\n# %%\n"):
+            exec(compile(block, path.name, "exec"), names)
+            for number in pyplot.get_fignums():
+                figures.append(pyplot.figure(number))
+                figures[-1].canvas.draw()
+            pyplot.close("all")
+    return names, figures
+
+
+def test_every_check_belongs_to_an_example() -> None:
+    assert list(CHECKS) == [name_of(path) for path in EXAMPLES]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=name_of)
+def test_example_begins_with_a_title_and_what_one_learns(path: Path) -> None:
+    title, line, blank, *rest = re.match(r'"""\n(.*?)"""', path.read_text(encoding="utf-8"), re.DOTALL)[1].splitlines()
+    assert set(line) == {"="}
+    assert len(line) == len(title)
+    assert blank == ""
+    assert any(one.startswith("You learn ") for one in rest)
